@@ -1,0 +1,32 @@
+"""Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
+
+from absolute.description import Axis, Input, Joint, Model
+from absolute.errors import (
+    AbsoluteError,
+    AssemblyError,
+    DescriptionError,
+    InputError,
+    PoseError,
+    SingularPose,
+    UnreachableInput,
+)
+from absolute.macpherson import macpherson
+from absolute.solution import Solution
+from absolute.solve import solve
+
+__all__ = [
+    "AbsoluteError",
+    "AssemblyError",
+    "Axis",
+    "DescriptionError",
+    "Input",
+    "InputError",
+    "Joint",
+    "Model",
+    "PoseError",
+    "SingularPose",
+    "Solution",
+    "UnreachableInput",
+    "macpherson",
+    "solve",
+]

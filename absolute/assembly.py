@@ -1,0 +1,93 @@
+"""The mechanism in Pinocchio: one free-flying body each, and the rows that join them."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from absolute.description import Model
+from absolute.drawing import Drawing
+from absolute.laws import LAWS
+from absolute.rows import rows_of
+from absolute.solution import Array
+from absolute.stack import RowStack
+
+
+class Poses(NamedTuple):
+    """Poses of all bodies, the chassis first: rotation (bodies, 3, 3), origin (bodies, 3)."""
+
+    rotation: Array
+    origin: Array
+
+
+class Mechanism:
+    """Bodies of a model as free flyers on the universe, in units of size, with all their rows.
+
+    The chassis is the universe: its motion is added to the solution afterwards.
+
+    Attributes:
+        model, drawing, stack: what was described, its lengths, its rows.
+        pin_model, pin_data: the Pinocchio model of the moving bodies.
+        drawn: configuration of the drawing, (7 * moving bodies,).
+        drawn_inputs: (inputs,) values of the inputs in the drawing, rad or mm.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.drawing = drawing = Drawing(model)
+        rows = rows_of(model, drawing)
+        self.stack = RowStack(rows, len(drawing.bodies))
+        self.pin_model = pin.Model()
+        self._ids = [
+            self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body) for body in model.moving
+        ]
+        # After the last joint and frame: data made earlier would be too small.
+        self.pin_data = self.pin_model.createData()
+        self.drawn = pin.neutral(self.pin_model)
+        self.drawn.reshape(-1, 7)[:, :3] = drawing.origins[1:]
+        # Views into the data of Pinocchio; `poses` copies them out.
+        placements = [self.pin_data.oMi[index] for index in self._ids]
+        self._rotations = [np.eye(3)] + [placement.rotation for placement in placements]
+        self._origins = [np.zeros(3)] + [placement.translation for placement in placements]
+        self._laws = [
+            (
+                LAWS[drive.law].expand,
+                drive.factor / drawing.size,
+            )
+            for drive in model.inputs.values()
+        ]
+        coordinates = self.stack.place(*self.poses(self.drawn)).values[self.joint_rows :]
+        self.drawn_inputs = np.array(
+            [
+                LAWS[drive.law].invert(coordinate / factor)
+                for drive, coordinate, (_, factor) in zip(model.inputs.values(), coordinates, self._laws, strict=True)
+            ]
+        )
+
+    @property
+    def joint_rows(self) -> int:
+        """Number of rows before the rows of the inputs."""
+        return self.stack.count - len(self.model.inputs)
+
+    def poses(self, q: Array) -> Poses:
+        """Poses of all bodies at a configuration."""
+        pin.forwardKinematics(self.pin_model, self.pin_data, q)
+        return Poses(np.array(self._rotations), np.array(self._origins))
+
+    def moved(self, q: Array, rotation: Array, step: Array) -> Array:
+        """Configuration after a step [o', w] per body in world axes; Pinocchio takes body axes."""
+        local = step.reshape(-1, 2, 3) @ rotation[1:]
+        moved: Array = pin.normalize(self.pin_model, pin.integrate(self.pin_model, q, local.ravel()))
+        return moved
+
+    def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> tuple[Array, Array, Array]:
+        """What the rows shall equal, and its first and second rate, for inputs and their rates."""
+        target, rate, second = np.zeros((3, self.stack.count))
+        start = self.joint_rows
+        for row, (law, factor) in enumerate(self._laws, start):
+            value, speed = values[row - start], rates[row - start]
+            f, f1, f2 = law(value)
+            target[row] = factor * f
+            rate[row] = factor * f1 * speed
+            second[row] = factor * (f2 * speed * speed + f1 * seconds[row - start])
+        return target, rate, second

@@ -1,0 +1,79 @@
+"""From one pose to another along a path of targets, without leaving the branch."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from absolute.assembly import Mechanism
+from absolute.newton import EPS, SMALLEST_RCOND, Pose, accelerations, correct
+from absolute.solution import Array
+
+# A path: share of the way in [0, 1] -> target of the rows, its first and second derivative.
+Path = Callable[[float], tuple[Array, Array, Array]]
+
+# No body turns or moves further than a quarter (rad, or units of size) in one step: over that
+# distance the second-order prediction holds for any rigid mechanism that is not near a fold.
+LONGEST_STEP = 0.25
+# The curved part of a step, and what Newton adds, must be small against its straight part.
+LARGEST_CURVE = 0.5
+LARGEST_CORRECTION = 0.1
+# A step below sqrt(eps) that still bends this much means a fold within eps of the target.
+SHORTEST_STEP = float(np.sqrt(EPS))
+# Steps of a quarter at most: thousands would be many turns around. A guard against endless work.
+MOST_STEPS = 2000
+
+
+class Blocked(Exception):
+    """The path cannot be followed to its end; carries how far it was and the last good pose."""
+
+    def __init__(self, share: float, pose: Pose, corrections: int) -> None:
+        super().__init__(f"blocked at {share:.17g} of the way")
+        self.share = share
+        self.pose = pose
+        self.corrections = corrections
+
+
+def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
+    """The pose at the end of a path, and the Newton corrections it took.
+
+    Each step is predicted to second order by the factors of the last pose and corrected by Newton.
+    It is refused and halved when it is long, bends much, needs a large correction, or changes the
+    sign of the determinant.
+
+    Raises:
+        Blocked: steps have become too short to go on: the mechanism locks there.
+    """
+    pose, share, length, spent = start, 0.0, 1.0, 0
+    for _ in range(MOST_STEPS):
+        length = min(length, 1.0 - share)
+        _, slope, bend = path(share)
+        with np.errstate(over="ignore", invalid="ignore"):
+            straight, curve = accelerations(mechanism, pose, slope * length, bend * length**2)
+            size = float(np.abs(straight).max())
+            turned = np.cross(straight.reshape(-1, 2, 3)[:, 1], straight.reshape(-1, 2, 3)[:, 0])
+            curve.reshape(-1, 2, 3)[:, 0] -= turned
+            curved = 0.5 * float(np.abs(curve).max())
+        arrived = None
+        if size <= LONGEST_STEP and curved <= LARGEST_CURVE * size + pose.floor:
+            end = share + length if length < 1.0 - share else 1.0
+            predicted = mechanism.moved(pose.q, pose.poses.rotation, straight + 0.5 * curve)
+            outcome = correct(mechanism, predicted, path(end)[0])
+            spent += outcome.corrections
+            if (
+                outcome.pose is not None
+                and outcome.largest <= LARGEST_CORRECTION * size + outcome.pose.floor
+                and outcome.pose.sign == pose.sign
+                and outcome.pose.rcond >= SMALLEST_RCOND
+            ):
+                arrived = outcome.pose
+        if arrived is not None:
+            pose, share, length = arrived, end, 2.0 * length
+            if share >= 1.0:
+                return pose, spent
+        else:
+            # Straight to the longest step allowed where the length alone was too large.
+            shrink = LONGEST_STEP / size if LONGEST_STEP < size < np.inf else 1.0
+            length *= min(0.5, shrink)
+            if size <= SHORTEST_STEP or share + length == share:
+                break
+    raise Blocked(share, pose, spent)

@@ -1,0 +1,180 @@
+"""A linkage as plain data: points, the bodies that hold them, joints and inputs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from absolute.errors import DescriptionError
+from absolute.laws import LAWS
+from absolute.mapping import ReadOnly
+
+Vector = tuple[float, float, float]
+
+# Rows each joint kind takes away from the six relative freedoms of its two bodies.
+JOINT_ROWS = {"spherical": 3, "universal": 4, "cylindrical": 4, "revolute": 5, "prismatic": 5}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A line fixed to a body, as drawn.
+
+    Attributes:
+        through: a point of the body.
+        toward: a second point of the body, or a direction in the frame of the points, or None
+            where only the point matters (spherical joint).
+    """
+
+    through: str
+    toward: str | Vector | None = None
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Two bodies and the axis each brings; the joint makes the two axes fit.
+
+    Kinds: `spherical` joins the points; `revolute` joins points and lines; `cylindrical` makes the
+    two lines one line; `prismatic` does so and lets neither body turn about it against the other;
+    `universal` joins the points and keeps the two lines at a right angle (the pins of a cross).
+    Lines that become one keep the sense in which they are drawn.
+    """
+
+    kind: str
+    first: str
+    second: str
+    on_first: Axis
+    on_second: Axis
+
+
+@dataclass(frozen=True)
+class Input:
+    """A driven coordinate: how far a point of one body stands along an axis of another.
+
+    axis . (point - axis.through) = factor * value          law "linear", value in mm
+    axis . (point - axis.through) = factor * cos(value)     law "cosine", value in rad, factor in mm
+    """
+
+    first: str
+    axis: Axis
+    second: str
+    point: str
+    law: str
+    factor: float
+
+
+@dataclass(frozen=True)
+class Model:
+    """A linkage, checked on construction.
+
+    Attributes:
+        points: name -> (x, y, z) of the drawing, mm.
+        chassis: name of the body that does not turn and carries all others.
+        bodies: name -> names of its points; the chassis is one of them.
+        joints: name -> Joint.
+        inputs: name -> Input.
+    Raises:
+        DescriptionError: a name is unknown, a number is not finite, an axis has no length, or
+            joints and inputs do not give six rows per moving body.
+    """
+
+    points: Mapping[str, Vector]
+    chassis: str
+    bodies: Mapping[str, tuple[str, ...]]
+    joints: Mapping[str, Joint]
+    inputs: Mapping[str, Input]
+
+    def __post_init__(self) -> None:
+        points = {name: vector_of(f"point {name!r}", name, value) for name, value in self.points.items()}
+        object.__setattr__(self, "points", ReadOnly(points))
+        object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
+        object.__setattr__(self, "joints", ReadOnly(self.joints))
+        object.__setattr__(self, "inputs", ReadOnly(self.inputs))
+        _check_bodies(self)
+        for name, joint in self.joints.items():
+            _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
+            _check_pair(self, f"joint {name!r}", name, joint.first, joint.second)
+            for body, axis in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
+                _check_axis(self, f"joint {name!r}", name, body, axis, joint.kind != "spherical")
+        for name, drive in self.inputs.items():
+            _check_choice(f"law of input {name!r}", name, drive.law, LAWS)
+            _check_pair(self, f"input {name!r}", name, drive.first, drive.second)
+            _check_axis(self, f"input {name!r}", name, drive.first, drive.axis, True)
+            _check_axis(self, f"input {name!r}", name, drive.second, Axis(drive.point), False)
+            if not np.isfinite(drive.factor) or drive.factor == 0:
+                raise DescriptionError(
+                    f"factor of input {name!r} is {drive.factor!r}; it must be finite and not zero",
+                    name, drive.factor,
+                )  # fmt: skip
+        self._check_count()
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the bodies that move, in the order given."""
+        return tuple(name for name in self.bodies if name != self.chassis)
+
+    def _check_count(self) -> None:
+        rows = sum(JOINT_ROWS[joint.kind] for joint in self.joints.values()) + len(self.inputs)
+        unknowns = 6 * len(self.moving)
+        if rows != unknowns:
+            cure = "add an input or a joint" if rows < unknowns else "remove an input or free a joint"
+            raise DescriptionError(
+                f"joints and inputs give {rows} rows for {unknowns} unknown velocities "
+                f"(6 for each of {len(self.moving)} moving bodies); they must be equal: {cure}",
+                "rows", rows,
+            )  # fmt: skip
+
+
+def vector_of(what: str, name: str, value: object) -> Vector:
+    """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
+    return (float(array[0]), float(array[1]), float(array[2]))
+
+
+def _check_choice(what: str, name: str, value: str, allowed: Mapping[str, object]) -> None:
+    if value not in allowed:
+        raise DescriptionError(f"{what} is {value!r}; it must be one of {sorted(allowed)}", name, value)
+
+
+def _check_bodies(model: Model) -> None:
+    _check_choice("chassis", "chassis", model.chassis, model.bodies)
+    if not model.moving:
+        raise DescriptionError("there is no moving body; give at least one beside the chassis", "bodies")
+    placed: set[str] = set()
+    for body, names in model.bodies.items():
+        if not names:
+            raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
+        for name in names:
+            _check_choice(f"a point of body {body!r}", body, name, model.points)
+        placed.update(names)
+    loose = sorted(set(model.points) - placed)
+    if loose:
+        raise DescriptionError(f"points {loose} belong to no body; add them to one or leave them out", loose[0])
+
+
+def _check_pair(model: Model, what: str, name: str, first: str, second: str) -> None:
+    for body in (first, second):
+        _check_choice(f"a body of {what}", name, body, model.bodies)
+    if first == second:
+        raise DescriptionError(f"{what} joins body {first!r} to itself; name two bodies", name, first)
+
+
+def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs_line: bool) -> None:
+    ends = [axis.through] + ([axis.toward] if isinstance(axis.toward, str) else [])
+    for end in ends:
+        if end not in model.bodies[body]:
+            raise DescriptionError(
+                f"{what} uses point {end!r}, which body {body!r} does not hold; "
+                f"its points are {list(model.bodies[body])}",
+                name, end,
+            )  # fmt: skip
+    if needs_line and axis.toward is None:
+        raise DescriptionError(f"{what} needs a direction at {axis.through!r}: give `toward`", name)
+    if axis.toward is not None and not isinstance(axis.toward, str):
+        direction = vector_of(f"a direction of {what}", name, axis.toward)
+        if not 0 < np.linalg.norm(direction) < np.inf:
+            raise DescriptionError(f"a direction of {what} is {direction}; it must not be zero", name, direction)

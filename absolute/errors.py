@@ -1,0 +1,87 @@
+"""The refusals of this package: each says what, where, which value, what is allowed, what to try."""
+
+from collections.abc import Mapping
+
+from absolute.solution import Solution
+
+
+class AbsoluteError(Exception):
+    """Base of every error raised here.
+
+    Attributes:
+        partial: the motion solved before the failing instant, or None if there is none.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.partial: Solution | None = None
+
+
+class DescriptionError(AbsoluteError):
+    """The description of the linkage is not usable: a name, a point, an axis, the row count.
+
+    Attributes:
+        name: the point, body, joint or input at fault.
+        value: what was found there.
+    """
+
+    def __init__(self, message: str, name: str = "", value: object = None) -> None:
+        super().__init__(message)
+        self.name = name
+        self.value = value
+
+
+class InputError(AbsoluteError):
+    """Inputs or chassis motion of a wrong name, shape or value.
+
+    Attributes:
+        name: the input at fault, or "chassis".
+        instant: index of the first bad instant, or None when the fault is not at one instant.
+        value: what was found there.
+    """
+
+    def __init__(self, message: str, name: str = "", instant: int | None = None, value: object = None) -> None:
+        super().__init__(message)
+        self.name = name
+        self.instant = instant
+        self.value = value
+
+
+class PoseError(AbsoluteError):
+    """Base of the errors about one pose of the mechanism.
+
+    Attributes:
+        instant: index of the instant, or None while the drawing itself is being assembled.
+        inputs: the inputs asked for, by name (rad or mm).
+        reached: the inputs of the last pose that could be solved on the way there.
+        residual: largest violation of any row at that last pose, mm.
+        condition: estimate of the condition number (1-norm) at that last pose.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        instant: int | None = None,
+        inputs: Mapping[str, float] | None = None,
+        reached: Mapping[str, float] | None = None,
+        residual: float = float("nan"),
+        condition: float = float("nan"),
+    ) -> None:
+        super().__init__(message)
+        self.instant = instant
+        self.inputs = dict(inputs or {})
+        self.reached = dict(reached or {})
+        self.residual = residual
+        self.condition = condition
+
+
+class AssemblyError(PoseError):
+    """The bodies as drawn cannot be joined by a continuous change of the drawing."""
+
+
+class UnreachableInput(PoseError):
+    """No continuous motion of the assembled mechanism leads to these inputs."""
+
+
+class SingularPose(PoseError):
+    """The inputs do not fix the pose: the Jacobian has lost rank to working accuracy."""

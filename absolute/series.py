@@ -1,0 +1,69 @@
+"""Inputs and chassis motion over the instants, checked."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from absolute.errors import InputError
+from absolute.solution import Array
+
+
+def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
+    """(N, 3, inputs): value, rate and acceleration of every input of the model, in its order.
+
+    Raises:
+        InputError: an input is missing, unknown, of another length, or not finite.
+    """
+    unknown = sorted(set(inputs) - set(names))
+    missing = sorted(set(names) - set(inputs))
+    if unknown or missing:
+        raise InputError(
+            f"inputs must be exactly {sorted(names)}; unknown: {unknown}, missing: {missing}",
+            (unknown or missing)[0],
+        )
+    columns = [checked(name, inputs[name], (3,), "value, rate and acceleration at each instant") for name in names]
+    for name, column in zip(names, columns, strict=True):
+        if len(column) != len(columns[0]):
+            raise InputError(
+                f"input {name!r} has {len(column)} instants, {names[0]!r} has {len(columns[0])}; give both the same",
+                name, None, len(column),
+            )  # fmt: skip
+    return np.stack(columns, axis=-1) if columns else np.zeros((0, 3, 0))
+
+
+def chassis_series(chassis: Array | None, count: int) -> Array:
+    """(N, 3, 3): translation, velocity, acceleration of the chassis; zeros for None.
+
+    Raises:
+        InputError: another shape or length, or not finite.
+    """
+    if chassis is None:
+        return np.zeros((count, 3, 3))
+    series = checked("chassis", chassis, (3, 3), "translation, velocity and acceleration at each instant")
+    if len(series) != count:
+        raise InputError(
+            f"chassis has {len(series)} instants, the inputs have {count}; give both the same",
+            "chassis", None, len(series),
+        )  # fmt: skip
+    return series
+
+
+def checked(name: str, values: object, shape: tuple[int, ...], content: str) -> Array:
+    """A copy of `values` as floats of shape (N, *shape), finite throughout."""
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name!r} is not an array of numbers: {error}", name, None, values) from error
+    wanted = "(N, " + ", ".join(str(length) for length in shape) + ")"
+    if array.shape[1:] != shape or array.ndim != 1 + len(shape):
+        raise InputError(
+            f"{name!r} has shape {array.shape}; {wanted} is needed: {content}", name, None, array.shape
+        )
+    bad = np.flatnonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=1))
+    if bad.size:
+        instant = int(bad[0])
+        raise InputError(
+            f"{name!r} is {array[instant].tolist()} at instant {instant}; all its numbers must be finite",
+            name, instant, array[instant].tolist(),
+        )  # fmt: skip
+    return array

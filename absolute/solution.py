@@ -1,0 +1,36 @@
+"""What a solved motion holds: plain arrays by name, one row per instant."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Motion of every point and body at N instants; all arrays are read-only.
+
+    Attributes:
+        position: point name -> (N, 3), mm, world axes; chassis, moving and carried points.
+        velocity: point name -> (N, 3), mm/s; empty when no rates were asked for.
+        acceleration: point name -> (N, 3), mm/s^2; empty when no rates were asked for.
+        angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
+        angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
+        iterations: (N,) Newton corrections spent on the way to each instant.
+        residual: (N,) largest violation of any row, mm (rows of directions times the size of the
+            mechanism).
+        condition: (N,) 2-norm condition number of the scaled Jacobian, or None if not asked for.
+    """
+
+    position: Mapping[str, Array]
+    velocity: Mapping[str, Array]
+    acceleration: Mapping[str, Array]
+    angular_velocity: Mapping[str, Array]
+    angular_acceleration: Mapping[str, Array]
+    iterations: Counts
+    residual: Array
+    condition: Array | None
