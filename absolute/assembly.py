@@ -27,6 +27,7 @@ class Mechanism:
 
     Attributes:
         model, drawing, stack: what was described, its lengths, its rows.
+        joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
         drawn_inputs: (inputs,) values of the inputs in the drawing, rad or mm.
@@ -37,6 +38,7 @@ class Mechanism:
         self.drawing = drawing = Drawing(model)
         rows = rows_of(model, drawing)
         self.stack = RowStack(rows, len(drawing.bodies))
+        self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         self._ids = [
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body) for body in model.moving
@@ -64,11 +66,6 @@ class Mechanism:
             ]
         )
 
-    @property
-    def joint_rows(self) -> int:
-        """Number of rows before the rows of the inputs."""
-        return self.stack.count - len(self.model.inputs)
-
     def poses(self, q: Array) -> Poses:
         """Poses of all bodies at a configuration."""
         pin.forwardKinematics(self.pin_model, self.pin_data, q)
@@ -82,12 +79,10 @@ class Mechanism:
 
     def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> tuple[Array, Array, Array]:
         """What the rows shall equal, and its first and second rate, for inputs and their rates."""
-        target, rate, second = np.zeros((3, self.stack.count))
-        start = self.joint_rows
-        for row, (law, factor) in enumerate(self._laws, start):
-            value, speed = values[row - start], rates[row - start]
+        driven = []
+        for (law, factor), value, speed, second in zip(self._laws, values, rates, seconds, strict=True):
             f, f1, f2 = law(value)
-            target[row] = factor * f
-            rate[row] = factor * f1 * speed
-            second[row] = factor * (f2 * speed * speed + f1 * seconds[row - start])
-        return target, rate, second
+            driven.append((factor * f, factor * f1 * speed, factor * (f2 * speed * speed + f1 * second)))
+        targets = np.zeros((3, self.stack.count))
+        targets[:, self.joint_rows :] = np.array(driven).T
+        return targets[0], targets[1], targets[2]

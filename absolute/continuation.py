@@ -7,6 +7,7 @@ import numpy as np
 from absolute.assembly import Mechanism
 from absolute.newton import EPS, SMALLEST_RCOND, Pose, accelerations, correct
 from absolute.solution import Array
+from absolute.stack import cross
 
 # A path: share of the way in [0, 1] -> target of the rows, its first and second derivative.
 Path = Callable[[float], tuple[Array, Array, Array]]
@@ -50,8 +51,9 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
         with np.errstate(over="ignore", invalid="ignore"):
             straight, curve = accelerations(mechanism, pose, slope * length, bend * length**2)
             size = float(np.abs(straight).max())
-            turned = np.cross(straight.reshape(-1, 2, 3)[:, 1], straight.reshape(-1, 2, 3)[:, 0])
-            curve.reshape(-1, 2, 3)[:, 0] -= turned
+            # A step turns with the body, so its curve is o'' - w x o'.
+            twist = straight.reshape(-1, 2, 3)
+            curve.reshape(-1, 2, 3)[:, 0] -= cross(twist[:, 1], twist[:, 0])
             curved = 0.5 * float(np.abs(curve).max())
         arrived = None
         if size <= LONGEST_STEP and curved <= LARGEST_CURVE * size + pose.floor:

@@ -1,5 +1,6 @@
 """Newton's method on the manifold of body poses, to rounding, and the rates at a pose."""
 
+import math
 from dataclasses import dataclass
 
 import eigenpy
@@ -60,7 +61,7 @@ def pose_at(mechanism: Mechanism, q: Array, poses: Poses, placed: Placed, target
     # Its columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
     floor = 64 * EPS / rcond if rcond > 0 else np.inf
     return Pose(
-        q, poses, placed, factors, rcond, float(np.sign(factors.determinant())),
+        q, poses, placed, factors, rcond, math.copysign(1.0, factors.determinant()),
         float(np.abs(target - placed.values).max()), floor,
     )  # fmt: skip
 
@@ -105,8 +106,14 @@ def correct(mechanism: Mechanism, q: Array, target: Array) -> Corrected:
             return Corrected(None, count, np.inf)
         largest += size
         q = mechanism.moved(q, poses.rotation, step)
-        settled = contraction > 0.5 or size * contraction < EPS * (1 - contraction)
-        if not settled and (contraction > GOOD_CONTRACTION and size > GOOD_CONTRACTION**2):
+        if count == 1:
+            # Nothing is known of the contraction yet; Newton squares the size of a correction.
+            settled = False
+            renew = size > GOOD_CONTRACTION
+        else:
+            settled = contraction > 0.5 or size * contraction < EPS * (1 - contraction)
+            renew = contraction > GOOD_CONTRACTION
+        if renew and not settled:
             current = None
         previous = size
     return Corrected(None, MOST_CORRECTIONS, np.inf)
