@@ -1,0 +1,38 @@
+"""Suspension kinematics by point coordinates: one quadratic map, solved with error bounds.
+
+from pointcoord import Scene, simulate
+motion = simulate(Scene.load("bounce"))
+motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
+"""
+
+from pointcoord.errors import (
+    AssemblyError,
+    InputOutOfRange,
+    MechanismError,
+    NotComputed,
+    OutsideMotion,
+    PointcoordError,
+    SceneError,
+    SingularConfiguration,
+    UnknownName,
+)
+from pointcoord.motion import Motion, Samples
+from pointcoord.scene import Scene, built_in_scenes
+from pointcoord.simulate import simulate
+
+__all__ = [
+    "AssemblyError",
+    "InputOutOfRange",
+    "MechanismError",
+    "Motion",
+    "NotComputed",
+    "OutsideMotion",
+    "PointcoordError",
+    "Samples",
+    "Scene",
+    "SceneError",
+    "SingularConfiguration",
+    "UnknownName",
+    "built_in_scenes",
+    "simulate",
+]

@@ -1,0 +1,220 @@
+r"""Assembly: from the drawing to a pose, along a path that cannot change branch.
+
+Between two sets of known coordinates the path is straight, and what is not yet assembled is taken back
+in proportion. One step goes along the tangent y1 to y + s y1, where, because C is quadratic,
+
+    C(y + s y1) - (1 - s) C(y) = s^2 B(y1, y1)      exactly.
+
+So Kantorovich's condition (see `certificate`) along the step needs only three constants at its start,
+
+    (1 - s z)^2 >= 2 omega q s^2,   z = |X C_u(y1)|,  q = |X B(y1, y1)|,  omega = Lipschitz(X C_u),
+
+and solves in closed form: up to s = 1 / (z + sqrt(2 omega q)) there is exactly one assembly in a tube
+about the tangent, and it is the continuation of the one that the step started from. The steps shrink on
+their own towards a pose where the path ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.certificate import certify
+from pointcoord.errors import AssemblyError
+from pointcoord.linear import Factors, factorise
+from pointcoord.mechanism import Mechanism
+from pointcoord.newton import polish
+from pointcoord.quadratic import QuadraticMap
+from pointcoord.work import Work
+
+Array = NDArray[np.float64]
+
+# Fraction of the proven step: at 1 Newton's convergence from the tangent would be only linear.
+SAFETY = 0.8
+# A path that advances less than this fraction in a step has met the end of what can be assembled:
+# steps shrink with the square of the distance to the end, which is then below 1e-5 of the path.
+SMALLEST_STEP = 1e-10
+STEPS = 2000
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One assembled configuration or a batch of them.
+
+    Attributes:
+        y: coordinates, shape (..., size), in the mechanism's units.
+        factors: factorisation of the Jacobian there.
+        residual: largest row of C(y), shape (...,), in the mechanism's units (squared for links).
+        iterations: Newton steps that the last correction took, shape (...,).
+        condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
+        bound: proven distance to the exact assembly, largest coordinate, shape (...,), mm; infinite
+            where nothing is proven. See `certificate` for what it covers.
+        work: what it cost.
+    """
+
+    y: Array
+    factors: Factors
+    residual: Array
+    iterations: NDArray[np.int64]
+    condition: Array
+    bound: Array
+    work: Work
+
+
+@dataclass(frozen=True)
+class Path:
+    """How far a batch of poses followed their paths: `done` is 1 where the end was reached."""
+
+    y: Array
+    factors: Factors
+    iterations: NDArray[np.int64]
+    done: Array
+    work: Work
+
+
+def proven_step(system: QuadraticMap, y: Array, factors: Factors, tangent: Array) -> Array:
+    """Largest s for which the tangent step is proven to stay on its branch, shape (...,).
+
+    The condition holds if it holds in any weighted maximum norm. Three are tried: plain, and two that
+    weigh each coordinate by the curvature of its own path, so that what hardly moves hardly counts.
+    """
+    inverse = factors.preconditioner
+    bend = np.abs(inverse @ system.residual(tangent)[..., None])[..., 0]
+    turn = np.abs(inverse @ system.jacobian(tangent))
+    largest = bend.max(axis=-1, keepdims=True)
+    best = np.zeros(y.shape[:-1])
+    for weights in (np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest):
+        omega = system.lipschitz(inverse, weights)
+        q = (bend / weights).max(axis=-1)
+        z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
+        best = np.fmax(best, 1.0 / (z + np.sqrt(2.0 * omega * q)))
+    return best
+
+
+def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | None = None) -> Path:
+    """Carry poses along straight paths to other known coordinates.
+
+    Args:
+        y: start, shape (..., size); what its residual is not zero by is taken back along the path.
+        target: known coordinates at the end, shape (..., size - unknowns).
+        factors: factorisation of C_u at y, if it is at hand.
+    Returns:
+        Poses at the ends of their paths, or where these stop.
+    """
+    n = system.unknowns
+    batch = np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
+    y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()
+    target = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
+    start, offset = y[:, n:].copy(), system.residual(y)
+    change = target - start
+    remaining = np.ones(len(y))
+    iterations = np.zeros(len(y), dtype=np.int64)
+    work = Work(residuals=len(y))
+    if factors is None:
+        factors = factorise(system.jacobian(y))
+        work += Work(factorisations=len(y))
+    factors = factors.reshaped((len(y),))
+    active = np.flatnonzero(~factors.singular)
+    for _ in range(STEPS):
+        if not active.size:
+            break
+        left, local = remaining[active], factors.taken(active)
+        tangent = np.zeros((len(active), y.shape[-1]))
+        tangent[:, n:] = change[active] * left[:, None]
+        with np.errstate(all="ignore"):
+            drive = 2.0 * system.polar(y[active], tangent) + offset[active] * left[:, None]
+            tangent[:, :n] = -local.solve(drive)
+            step = np.minimum(SAFETY * proven_step(system, y[active], local, tangent), 1.0)
+        able = step * left >= SMALLEST_STEP  # False for a NaN as well
+        active, tangent, step, left = active[able], tangent[able], step[able], left[able]
+        left = np.where(step >= 1.0, 0.0, left * (1.0 - step))
+        guess = y[active] + step[:, None] * tangent
+        ahead = start[active] + change[active] * (1.0 - left)[:, None]
+        guess[:, n:] = np.where((left == 0.0)[:, None], target[active], ahead)
+        if not active.size:
+            break
+        reached = polish(system, guess, offset[active] * left[:, None])
+        work = work + reached.work
+        # In exact arithmetic every correction converges; one that does not has run out of digits.
+        good = reached.converged
+        active, left = active[good], left[good]
+        y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
+        factors = factors.replaced(active, reached.factors.taken(np.flatnonzero(good)))
+        active = active[left > 0.0]
+    return Path(
+        y=y.reshape(*batch, -1),
+        factors=factors.reshaped(batch),
+        iterations=iterations.reshape(batch),
+        done=(1.0 - remaining).reshape(batch),
+        work=work,
+    )
+
+
+def as_pose(
+    mechanism: Mechanism, y: Array, factors: Factors, iterations: NDArray[np.int64], work: Work
+) -> Pose:
+    """A pose with its residual, condition number and proven bound."""
+    proof = certify(mechanism.map, y, factors, mechanism.known_uncertainty(y))
+    return Pose(
+        y=y,
+        factors=factors,
+        residual=np.abs(mechanism.map.residual(y)).max(axis=-1),
+        iterations=iterations,
+        condition=factors.condition,
+        bound=proof.radius * mechanism.unit,
+        work=work,
+    )
+
+
+def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float | None = None) -> Pose:
+    """The pose for given inputs on the branch of the drawing.
+
+    The drawing is first assembled at its own inputs, then the inputs are taken from there to the wanted
+    ones along a straight line of the driven coordinates.
+
+    Args:
+        inputs: value of each input, shape (...,), rad or mm.
+        instant: for messages, s.
+    Raises:
+        AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
+    """
+    system, n = mechanism.map, mechanism.map.unknowns
+    target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
+    target = target[..., 0, :]
+    drawing = follow(system, mechanism.drawn, mechanism.drawn[..., n:])
+    _require(mechanism, drawing, mechanism.drawn[..., n:], "the drawing cannot be assembled", instant)
+    path = follow(system, drawing.y, target)
+    _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
+    return as_pose(mechanism, path.y, path.factors, path.iterations, drawing.work + path.work)
+
+
+def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
+    if (path.done >= 1.0).all():
+        return
+    first = tuple(np.argwhere(path.done < 1.0)[0])
+    known = path.y[first][mechanism.map.unknowns :]
+    goal = np.broadcast_to(target, (*path.done.shape, target.shape[-1]))[first]
+    raise stopped(mechanism, problem, known, goal, float(path.factors.condition[first]), instant)
+
+
+def stopped(
+    mechanism: Mechanism, problem: str, known: Array, goal: Array, condition: float, instant: float | None
+) -> AssemblyError:
+    """The error for a path that ends at `known` on its way to `goal` (each of shape (known,))."""
+    first = mechanism.map.unknowns
+    change = {
+        drive.input: abs(goal[p] - known[p])
+        for drive in mechanism.topology.drives
+        for p in [mechanism.layout.scalar(drive.coordinate) - first]
+    }
+    return AssemblyError(
+        problem,
+        reached=mechanism.input_values(known),
+        wanted=mechanism.input_values(goal),
+        condition=condition,
+        reduce=max(change, key=lambda name: change[name]),
+        instant=instant,
+    )

@@ -1,0 +1,253 @@
+r"""A motion as a chain of short power series.
+
+A segment is as long as its last two terms allow: at its end they, and what they contribute to the
+derivatives that are asked for, are below the tolerance relative to the size of that derivative. The
+terms that were left out are smaller still. The end is then solved by Newton, which starts the next
+segment without inherited error and shows what the error was; a segment that missed is halved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.assembly import Pose, stopped
+from pointcoord.errors import AssemblyError
+from pointcoord.inputs import TimeFunction
+from pointcoord.linear import Factors
+from pointcoord.mechanism import Mechanism
+from pointcoord.newton import Converged, polish
+from pointcoord.series import expand
+from pointcoord.work import Work
+
+Array = NDArray[np.float64]
+
+# Instants per matrix product: the powers and the results of a block stay in a second-level cache.
+BLOCK = 1024
+# A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
+# shrink in proportion to the time that is left, so its place is then known to as many digits.
+SHORTEST = 1e-11
+# Trial lengths of a segment, in units of where the last terms equal the first.
+TRIALS = np.geomspace(1.0, 1e-4, 120)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One series: y(start + s scale) = sum_k coefficients[k] s^k until `stop`.
+
+    Attributes:
+        start, stop: s. scale: unit of time, s.
+        coefficients: shape (..., order + 1, size), in the mechanism's units.
+    """
+
+    start: float
+    stop: float
+    scale: float
+    coefficients: Array
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Segments in order of time, and what they cost."""
+
+    segments: tuple[Segment, ...]
+    work: Work
+
+    @property
+    def stop(self) -> float:
+        """The last instant, s."""
+        return self.segments[-1].stop
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a chain is cut.
+
+    Attributes:
+        tolerance: allowed truncation, in the mechanism's units; for a derivative the same fraction of
+            that derivative's size.
+        derivative: highest time derivative that will be evaluated.
+        order: of each series.
+    """
+
+    tolerance: float
+    derivative: int
+    order: int = 20
+
+
+def build_chain(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    start: float,
+    stop: float,
+    settings: Settings,
+) -> Chain:
+    """Follow the inputs from an assembled pose; a batch of poses shares its segments.
+
+    Args:
+        functions: the inputs as functions of time.
+        pose: assembled at `start`, any leading batch dimensions.
+    Raises:
+        AssemblyError: the motion meets a pose that it cannot pass; `partial` is the chain up to there.
+    """
+    breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
+    y, factors, work = pose.y, pose.factors, Work()
+    scale = _power_of_two(stop - start)
+    segments: list[Segment] = []
+    instant = start
+    while instant < stop or not segments:
+        limit = next((b for b in breaks if b > instant), stop)
+        series = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
+        work += Work(
+            segments=1, series_orders=settings.order, rate_solves=settings.order * int(np.prod(y.shape[:-1]))
+        )
+        if limit == instant:
+            segments.append(Segment(instant, stop, scale, series))
+            break
+        length = _length(series[..., : mechanism.map.unknowns], settings) * scale
+        while True:
+            end = limit if instant + length >= limit else instant + length
+            reached = _end(mechanism, functions, series, end, (end - instant) / scale)
+            work += reached.work
+            good = reached.converged & (reached.first_step <= settings.tolerance)
+            if good.all():
+                break
+            length = 0.5 * (end - instant)
+            if length < SHORTEST * (stop - start):
+                member = tuple(np.argwhere(~good)[0])
+                partial = Chain(tuple(segments), work) if segments else None
+                raise _cannot_pass(
+                    mechanism, functions, y[member], factors.condition[member], instant, stop, partial
+                )
+        segments.append(Segment(instant, end, scale, series))
+        instant, y, factors = end, reached.y, reached.factors
+        scale = _power_of_two(length)
+    return Chain(tuple(segments), work)
+
+
+def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: int) -> Array:
+    """Sum series at instants by matrix products.
+
+    Args:
+        columns: for each segment its coefficients of the wanted coordinates, shape (..., order + 1, m).
+        instants: in any order, inside the chain, shape (N,), s.
+        derivatives: highest time derivative wanted.
+    Returns:
+        Shape (..., derivatives + 1, N, m), per s**derivative.
+    """
+    batch, width = columns[0].shape[:-2], columns[0].shape[-1]
+    result = np.empty((*batch, derivatives + 1, len(instants), width))
+    order = np.argsort(instants, kind="stable")
+    sorted_instants = instants[order]
+    is_sorted = bool((order == np.arange(len(order))).all())
+    starts = [segment.start for segment in chain.segments]
+    edges = [0, *np.searchsorted(sorted_instants, starts[1:], side="left").tolist(), len(instants)]
+    for segment, piece, first, last in zip(chain.segments, columns, edges[:-1], edges[1:], strict=True):
+        if first == last:
+            continue
+        table = _derivative_table(piece, segment.scale, derivatives)
+        for low in range(first, last, BLOCK):
+            high = min(low + BLOCK, last)
+            s = (sorted_instants[low:high] - segment.start) / segment.scale
+            powers = np.vander(s, table.shape[-2], increasing=True)
+            block = (powers @ table).reshape(*batch, high - low, derivatives + 1, width)
+            block = np.moveaxis(block, -2, -3)
+            if is_sorted:
+                result[..., low:high, :] = block
+            else:
+                result[..., order[low:high], :] = block
+    return result
+
+
+def _derivative_table(coefficients: Array, scale: float, derivatives: int) -> Array:
+    """Coefficients of a series and of its time derivatives side by side, (..., order + 1, (d + 1) m)."""
+    parts = [coefficients]
+    powers = np.arange(coefficients.shape[-2], dtype=float)[:, None]
+    for _ in range(derivatives):
+        lower = np.zeros_like(coefficients)
+        lower[..., :-1, :] = (parts[-1] * powers)[..., 1:, :] / scale
+        parts.append(lower)
+    return np.concatenate(parts, axis=-1)
+
+
+def _expand(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    y: Array,
+    factors: Factors,
+    instant: float,
+    scale: float,
+    order: int,
+) -> Array:
+    known = mechanism.known_series({name: f.series(instant, order) for name, f in functions.items()})
+    return expand(mechanism.map, factors, y, known * (scale ** np.arange(order + 1.0))[:, None])
+
+
+def _end(
+    mechanism: Mechanism, functions: Mapping[str, TimeFunction], series: Array, end: float, s: float
+) -> Converged:
+    """The end of a segment, by the series and then by Newton."""
+    guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+    known = mechanism.known_series({name: f.series(end, 0) for name, f in functions.items()})
+    guess[..., mechanism.map.unknowns :] = known[..., 0, :]
+    return polish(mechanism.map, guess)
+
+
+def _length(series: Array, settings: Settings) -> float:
+    r"""Length of a segment in its own time unit; the shortest that a member of the batch needs.
+
+    With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
+    k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
+    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
+    """
+    size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
+    orders = np.arange(size.shape[-1], dtype=float)
+    last = size[:, -2:].max(axis=-1)
+    if not (last > 0.0).any():
+        return np.inf
+    # Where the larger of the last terms is 1: any useful segment is shorter.
+    with np.errstate(divide="ignore", over="ignore"):
+        reach = np.min(np.where(size[:, -2:] > 0.0, size[:, -2:] ** (-1.0 / orders[-2:]), np.inf))
+        trials = reach * TRIALS
+        fits = np.ones(len(trials), dtype=bool)
+        falling = np.ones_like(orders)
+        for d in range(settings.derivative + 1):
+            powers = trials[:, None] ** np.maximum(orders - d, 0.0)
+            terms = size[:, None, :] * (falling * powers)[None]
+            whole = np.ones(terms.shape[:2]) if d == 0 else terms[..., d:].max(axis=-1)
+            fits &= (terms[..., -2:].sum(axis=-1) <= settings.tolerance * whole).all(axis=0)
+            falling = falling * np.maximum(orders - d, 0.0)
+    return float(trials[np.argmax(fits)]) if fits.any() else float(trials[-1])
+
+
+def _power_of_two(length: float) -> float:
+    """The power of two at or above a length, so that scaling by it rounds nothing; 1 for zero."""
+    return float(np.ldexp(1.0, np.frexp(length)[1])) if length > 0.0 else 1.0
+
+
+def _cannot_pass(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    y: Array,
+    condition: float,
+    instant: float,
+    stop: float,
+    partial: Chain | None,
+) -> AssemblyError:
+    ahead = min(stop, instant + 1e-6 * (stop - instant))
+    goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
+    goal = goal.reshape(-1, goal.shape[-1])[0]
+    error = stopped(
+        mechanism,
+        "the motion cannot pass a singular pose",
+        y[mechanism.map.unknowns :],
+        goal,
+        float(condition),
+        instant,
+    )
+    error.partial = partial
+    return error

@@ -1,0 +1,119 @@
+"""How an input of the user becomes a known coordinate of the map, and back.
+
+Values are power series of shape (..., order + 1); lengths are in units of the mechanism.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import InputOutOfRange
+from pointcoord.inputs import cosine
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3)."""
+
+    vectors: dict[str, Array]
+    unit: Array
+
+    def distance(self, start: str, end: str) -> Array:
+        """Drawn distance between two points, shape (...,)."""
+        return np.asarray(np.linalg.norm(self.vectors[start] - self.vectors[end], axis=-1))
+
+    def along(self, start: str, end: str, direction: str) -> Array:
+        """Component of the drawn vector from start to end along a direction, shape (...,)."""
+        difference = self.vectors[end] - self.vectors[start]
+        return np.asarray(np.sum(difference * self.vectors[direction], axis=-1))
+
+
+class Drive(Protocol):
+    """One driven coordinate and the input that drives it."""
+
+    @property
+    def coordinate(self) -> str:
+        """Name of the known coordinate."""
+        ...
+
+    @property
+    def input(self) -> str:
+        """Name of the input."""
+        ...
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """The coordinate's series from the input's."""
+        ...
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """The coordinate at which the drawing itself stands."""
+        ...
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """The input that gives a coordinate."""
+        ...
+
+
+@dataclass(frozen=True)
+class ArmAngle:
+    """rise = d cos(angle), d the drawn length from pivot to point (paper eq. 12); angle in rad.
+
+    The cosine tells angles apart between 0 and pi only, so only these are allowed.
+    """
+
+    coordinate: str
+    input: str
+    pivot: str
+    point: str
+    direction: str
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """d cos of the angle's series.
+
+        Raises:
+            InputOutOfRange: an angle outside 0 .. pi.
+        """
+        angle = value[..., 0]
+        outside = ~((angle >= 0.0) & (angle <= np.pi))
+        if outside.any():
+            worst = float(np.atleast_1d(angle[outside])[0])
+            raise InputOutOfRange(self.input, worst, "0 to pi rad, measured from the upward vertical")
+        return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """Height of the drawn point over its pivot."""
+        return drawing.along(self.pivot, self.point, self.direction)
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """arccos(rise / d)."""
+        ratio = coordinate / drawing.distance(self.pivot, self.point)
+        return np.asarray(np.arccos(np.clip(ratio, -1.0, 1.0)))
+
+
+@dataclass(frozen=True)
+class Travel:
+    """A displacement along a direction; mm."""
+
+    coordinate: str
+    input: str
+    origin: str
+    point: str
+    direction: str
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """The displacement in the mechanism's units."""
+        return value / np.asarray(drawing.unit)[..., None]
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """The travel at which the drawn point stands: against the direction is positive (eq. 14)."""
+        return -drawing.along(self.origin, self.point, self.direction)
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """The displacement in mm."""
+        return np.asarray(coordinate * drawing.unit)

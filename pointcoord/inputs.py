@@ -1,0 +1,122 @@
+r"""Inputs as functions of time, given by their power series about any instant.
+
+A time function f answers one question: the coefficients f_k of
+
+    f(t + h) = sum_k f_k h^k,      f_0 = f(t), f_1 = f'(t), f_2 = f''(t) / 2, ...
+
+which is all that positions, velocities, accelerations and whole motions need.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb, factorial
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+
+Array = NDArray[np.float64]
+
+
+class TimeFunction(Protocol):
+    """A scalar function of time that is analytic between its breaks."""
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
+        ...
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Instants where a derivative jumps, s; a power series must not be used across them."""
+        ...
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """f(t) = sum_j coefficients[j] t^j."""
+
+    coefficients: tuple[float, ...]
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k)."""
+        t = np.asarray(instants, dtype=float)
+        result = np.zeros((*t.shape, order + 1))
+        for k in range(min(order + 1, len(self.coefficients))):
+            shifted = [comb(j, k) * self.coefficients[j] for j in range(k, len(self.coefficients))]
+            result[..., k] = np.polynomial.polynomial.polyval(t, np.array(shifted))
+        return result
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: a polynomial is analytic everywhere."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Sine:
+    """f(t) = offset + amplitude sin(angular_frequency t + phase); rad/s and rad."""
+
+    amplitude: float
+    angular_frequency: float
+    phase: float = 0.0
+    offset: float = 0.0
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
+        angle = self.angular_frequency * np.asarray(instants, dtype=float) + self.phase
+        sine, cosine = np.sin(angle), np.cos(angle)
+        quarter_turns = (sine, cosine, -sine, -cosine)
+        factors = [self.amplitude * self.angular_frequency**k / factorial(k) for k in range(order + 1)]
+        result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
+        result[..., 0] += self.offset
+        return result
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: a sine is analytic everywhere."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Table:
+    """The cubic spline through (times, values), not-a-knot at its ends.
+
+    Its value, rate and acceleration are continuous; its third derivative jumps at the times.
+    """
+
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """The cubic piece that starts at or before each instant, shifted to the instant."""
+        t = np.asarray(instants, dtype=float)
+        spline = CubicSpline(self.times, self.values, bc_type="not-a-knot", extrapolate=False)
+        result = np.zeros((*t.shape, order + 1))
+        for k in range(min(order, 3) + 1):
+            result[..., k] = spline(t, nu=k) / factorial(k)
+        return result
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The inner times of the table."""
+        return self.times[1:-1]
+
+
+def cosine(angle: Array) -> Array:
+    r"""Series of cos(a) from the series of a, both of shape (..., order + 1).
+
+    c' = -s a' and s' = c a' give, term by term,
+    c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
+    """
+    orders = angle.shape[-1]
+    c = np.zeros_like(angle)
+    s = np.zeros_like(angle)
+    c[..., 0], s[..., 0] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
+    weighted = angle * np.arange(orders)
+    for k in range(1, orders):
+        head = weighted[..., 1 : k + 1]
+        c[..., k] = -np.sum(head * s[..., k - 1 :: -1][..., :k], axis=-1) / k
+        s[..., k] = np.sum(head * c[..., k - 1 :: -1][..., :k], axis=-1) / k
+    return c

@@ -1,0 +1,124 @@
+"""A solved scene, read by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.assembly import Pose
+from pointcoord.errors import NotComputed, UnknownName
+from pointcoord.work import Work
+
+Array = NDArray[np.float64]
+
+
+class Channel(Mapping[str, Array]):
+    """Arrays by name, read-only; knows which effect makes it when the scene did not ask for it."""
+
+    def __init__(self, quantity: str, effect: str, arrays: Mapping[str, Array] | None) -> None:
+        self.quantity = quantity
+        self.effect = effect
+        self._arrays = None if arrays is None else dict(arrays)
+        for array in (self._arrays or {}).values():
+            array.setflags(write=False)
+
+    @property
+    def computed(self) -> bool:
+        """Whether the scene asked for it."""
+        return self._arrays is not None
+
+    def __getitem__(self, name: str) -> Array:
+        if self._arrays is None:
+            raise NotComputed(f"{self.quantity} of {name}", self.effect)
+        if name not in self._arrays:
+            raise UnknownName(self.quantity, name, self._arrays)
+        return self._arrays[name]
+
+    def __contains__(self, name: object) -> bool:
+        return self._arrays is not None and name in self._arrays
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays or {})
+
+    def __len__(self) -> int:
+        return len(self._arrays or {})
+
+    def __repr__(self) -> str:
+        return f"<{self.quantity}: {', '.join(self) if self.computed else 'not computed'}>"
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What a scene asked for, at some instants.
+
+    Attributes:
+        times: shape (N,), s.
+        position: of every point, (N, 3), mm; velocity mm/s; acceleration mm/s^2.
+        angular_velocity, angular_acceleration: of the bodies, (N, 3), rad/s and rad/s^2, world axes.
+        wheel: `camber` and `kingpin`, (N,), rad.
+    """
+
+    times: Array
+    position: Channel
+    velocity: Channel
+    acceleration: Channel
+    angular_velocity: Channel
+    angular_acceleration: Channel
+    wheel: Channel
+
+
+@dataclass(frozen=True)
+class Motion(Samples):
+    """A solved scene.
+
+    Attributes:
+        method: how it was solved: series, newton or printed.
+        start: the assembled pose at the first instant, with its condition number and proven bound.
+        work: what it cost.
+        notes: numbers that have no meaning, and why; empty if there are none.
+        resample: evaluates the motion at other instants, if the method allows it.
+    """
+
+    method: str
+    start: Pose
+    work: Work
+    notes: tuple[str, ...]
+    resample: Callable[[Array], Samples] | None
+
+    def at(self, instants: ArrayLike) -> Samples:
+        """The same results at any instants inside the motion, without a new solve.
+
+        Args:
+            instants: a number or an array of them, s.
+        Returns:
+            Arrays of shape (N, 3); for a single number (3,).
+        Raises:
+            OutsideMotion: an instant before the start, after the stop, or not a number.
+            NotComputed: the method knows the motion at the scene's instants only.
+        """
+        if self.resample is None:
+            raise NotComputed(f"a motion between instants (method {self.method!r})", "method 'series'")
+        asked = np.asarray(instants, dtype=float)
+        samples = self.resample(np.atleast_1d(asked))
+        return samples if asked.ndim else _only(samples)
+
+
+def _only(samples: Samples) -> Samples:
+    def first(channel: Channel) -> Channel:
+        arrays = {name: channel[name][..., 0, :] for name in channel} if channel.computed else None
+        return Channel(channel.quantity, channel.effect, arrays)
+
+    wheel = samples.wheel
+    angles = {name: wheel[name][..., 0] for name in wheel} if wheel.computed else None
+    return Samples(
+        times=samples.times[0],
+        position=first(samples.position),
+        velocity=first(samples.velocity),
+        acceleration=first(samples.acceleration),
+        angular_velocity=first(samples.angular_velocity),
+        angular_acceleration=first(samples.angular_acceleration),
+        wheel=Channel(wheel.quantity, wheel.effect, angles),
+    )

@@ -1,0 +1,173 @@
+r"""The quadratic map: every constraint of a mechanism is one sparse quadratic form.
+
+All coordinates are stacked in y = [u, w], the unknown ones first. The known ones hold the constants
+0 and 1 besides chassis points and inputs, so that linear and constant terms are quadratic too and
+the whole map is homogeneous:
+
+    C_r(y) = sum_t c_t (y_a - y_b)(y_c - y_d)  =  B_r(y, y)      (terms t of row r)
+
+with the polar form B(a, b) = B(b, a), the Jacobian C'(y) h = 2 B(y, h), and B constant. A term is a
+product of two differences because that is what constraints are made of, and because a difference
+taken first loses nothing when the points are close together and far from the origin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+UNIT_ROUNDOFF = float(np.finfo(float).eps) / 2
+
+
+@dataclass(frozen=True)
+class Product:
+    """c (y_a - y_b)(y_c - y_d), with left = (a, b) and right = (c, d)."""
+
+    coefficient: float
+    left: tuple[int, int]
+    right: tuple[int, int]
+
+
+Row = tuple[Product, ...]
+
+
+@dataclass(frozen=True)
+class QuadraticMap:
+    """A system of quadratic rows in `size` coordinates, of which the first `unknowns` are unknown.
+
+    Every array may have leading batch dimensions, and nothing loops over them.
+    """
+
+    rows: tuple[Row, ...]
+    unknowns: int
+    size: int
+
+    @cached_property
+    def _terms(self) -> tuple[Array, Indices, Indices, Indices, Indices, Indices]:
+        products = [product for row in self.rows for product in row]
+        ends = np.array([(*p.left, *p.right) for p in products], dtype=np.intp).reshape(-1, 4)
+        starts = np.cumsum([0, *(len(row) for row in self.rows[:-1])])
+        coefficients = np.array([p.coefficient for p in products])
+        return coefficients, ends[:, 0], ends[:, 1], ends[:, 2], ends[:, 3], starts.astype(np.intp)
+
+    @cached_property
+    def _jacobian_pattern(self) -> tuple[Indices, Array, Indices, Indices]:
+        """Where each term's derivative goes: factor index, signed coefficient, run starts, flat position.
+
+        d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term; factors are
+        numbered left ones first, then right ones.
+        """
+        count = sum(len(row) for row in self.rows)
+        entries: list[tuple[int, int, float]] = []
+        number = 0
+        for index, row in enumerate(self.rows):
+            for product in row:
+                for ends, other in ((product.left, number + count), (product.right, number)):
+                    for coordinate, sign in ((ends[0], 1.0), (ends[1], -1.0)):
+                        if coordinate < self.unknowns:
+                            position = index * self.unknowns + coordinate
+                            entries.append((position, other, sign * product.coefficient))
+                number += 1
+        entries.sort(key=lambda entry: entry[0])
+        flat = np.array([entry[0] for entry in entries], dtype=np.intp)
+        first = np.flatnonzero(np.diff(flat, prepend=-1)).astype(np.intp)
+        factors = np.array([entry[1] for entry in entries], dtype=np.intp)
+        return factors, np.array([entry[2] for entry in entries]), first, flat[first]
+
+    @cached_property
+    def _curvature(self) -> tuple[Array, Indices, Indices]:
+        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
+        pairs: dict[tuple[int, int], int] = {}
+        entries: list[tuple[int, int, float]] = []
+        for index, row in enumerate(self.rows):
+            for p in row:
+                for i, left_sign in ((p.left[0], 1.0), (p.left[1], -1.0)):
+                    for j, right_sign in ((p.right[0], 1.0), (p.right[1], -1.0)):
+                        if i < self.unknowns and j < self.unknowns:
+                            value = p.coefficient * left_sign * right_sign
+                            for pair in ((i, j), (j, i)):
+                                entries.append((index, pairs.setdefault(pair, len(pairs)), value))
+        table = np.zeros((len(self.rows), len(pairs)))
+        for index, column, value in entries:
+            table[index, column] += value
+        ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
+        return table, ends[:, 0], ends[:, 1]
+
+    def factors(self, y: Array) -> tuple[Array, Array]:
+        """Both differences of every term, each of shape (..., terms)."""
+        _, a, b, c, d, _ = self._terms
+        return y.take(a, axis=-1) - y.take(b, axis=-1), y.take(c, axis=-1) - y.take(d, axis=-1)
+
+    def gather(self, products: Array) -> Array:
+        """Sum the products of factors, shape (..., terms), into rows, shape (..., rows)."""
+        coefficients, *_, starts = self._terms
+        return np.add.reduceat(products * coefficients, starts, axis=-1)
+
+    def residual(self, y: Array) -> Array:
+        """C(y) = B(y, y), shape (..., rows)."""
+        left, right = self.factors(y)
+        return self.gather(left * right)
+
+    def polar(self, a: Array, b: Array) -> Array:
+        """B(a, b), symmetric and bilinear, shape (..., rows); C'(y) h = 2 B(y, h)."""
+        left_a, right_a = self.factors(a)
+        left_b, right_b = self.factors(b)
+        return self.gather(0.5 * (left_a * right_b + left_b * right_a))
+
+    def jacobian(self, y: Array) -> Array:
+        """C_u(y), the derivative by the unknowns, shape (..., rows, unknowns); linear in y."""
+        factors, coefficients, first, flat = self._jacobian_pattern
+        both = np.concatenate(self.factors(y), axis=-1)
+        entries = np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
+        matrix = np.zeros((*y.shape[:-1], len(self.rows) * self.unknowns))
+        matrix[..., flat] = entries
+        return matrix.reshape(*y.shape[:-1], len(self.rows), self.unknowns)
+
+    def uncertainty(self, y: Array, data: Array) -> Array:
+        r"""How far the computed C(y) may be from the exact one, shape (..., rows).
+
+        Each factor carries the rounding of its difference and the `data` uncertainty of its two
+        coordinates (shape (..., size)); the row adds the rounding of its products and of their sum,
+        gamma = (terms + 2) u relative to the sum of magnitudes (Higham, Accuracy and Stability, ch. 3).
+        """
+        coefficients, a, b, c, d, starts = self._terms
+        left, right = (np.abs(factor) for factor in self.factors(y))
+        left_error = UNIT_ROUNDOFF * left + data.take(a, axis=-1) + data.take(b, axis=-1)
+        right_error = UNIT_ROUNDOFF * right + data.take(c, axis=-1) + data.take(d, axis=-1)
+        gamma = (max(len(row) for row in self.rows) + 2) * UNIT_ROUNDOFF
+        spread = gamma * left * right + left * right_error + left_error * (right + right_error)
+        return np.add.reduceat(spread * np.abs(coefficients), starts, axis=-1)
+
+    def lipschitz(self, preconditioner: Array, weights: Array) -> Array:
+        r"""The Lipschitz constant of X C_u in a weighted maximum norm, shape (...,).
+
+        With |u| = max_i |u_i| / g_i it is max_i (1 / g_i) sum_jk |sum_r X_ir 2 B_rjk| g_j g_k for a
+        preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns). C_u is
+        linear in y, so this one number holds everywhere.
+        """
+        table, first, second = self._curvature
+        products = weights.take(first, axis=-1) * weights.take(second, axis=-1)
+        sums = np.abs(preconditioner @ table) @ products[..., None]
+        return np.asarray((sums[..., 0] / weights).max(axis=-1))
+
+
+def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap:
+    """Build a map and check that every row has a term and every coordinate exists.
+
+    Raises:
+        ValueError: a row is empty, or a term names a coordinate outside 0 .. size - 1.
+    """
+    for number, row in enumerate(rows):
+        if not row:
+            raise ValueError(f"row {number} has no terms")
+        for product in row:
+            if not all(0 <= i < size for i in (*product.left, *product.right)):
+                raise ValueError(f"row {number}: {product} names a coordinate outside 0..{size - 1}")
+    return QuadraticMap(tuple(tuple(row) for row in rows), unknowns, size)

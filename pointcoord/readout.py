@@ -1,0 +1,81 @@
+"""From the states of points to what a scene asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import rigid, wheel
+from pointcoord.effects import Plan
+from pointcoord.mechanism import Mechanism
+from pointcoord.motion import Channel, Samples
+
+Array = NDArray[np.float64]
+States = Sequence[Mapping[str, Array]]
+"""For each time derivative, the points' states of shape (..., N, 3) in the mechanism's units."""
+
+BodyRates = Callable[[Mapping[str, Array], Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array]]
+
+
+@dataclass(frozen=True)
+class Readout:
+    """How states become results.
+
+    Attributes:
+        outboard: unit vector away from the car's middle.
+        body_rates: angular velocity and acceleration of a body from its points' states; the least
+            squares of `rigid` unless a variant replaces it.
+    """
+
+    mechanism: Mechanism
+    plan: Plan
+    outboard: Array
+    body_rates: BodyRates
+
+    def samples(self, times: Array, states: States) -> Samples:
+        """Name the states, in mm, and compute the effects of the plan from them."""
+        asked = self.plan.effects
+        unit = np.asarray(self.mechanism.unit)[..., None, None]
+        origin = self.mechanism.origin[..., None, :]
+        position = {name: p * unit + origin for name, p in states[0].items()}
+        derivatives = {
+            quantity: {name: p * unit for name, p in states[order].items()} if quantity in asked else None
+            for order, quantity in ((1, "velocity"), (2, "acceleration"))
+        }
+        omegas: dict[str, Array] | None = None
+        alphas: dict[str, Array] | None = None
+        if "knuckle_rates" in asked:
+            omegas, alphas = {}, {}
+            for body, points in self.mechanism.topology.bodies.items():
+                omegas[body], alphas[body] = self.body_rates(
+                    *({point: states[order][point] for point in points} for order in range(3))
+                )
+        angles = self._wheel_angles(states[0]) if "wheel_angles" in asked else None
+        return Samples(
+            times=times,
+            position=Channel("position", "", position),
+            velocity=Channel("velocity", "velocity", derivatives["velocity"]),
+            acceleration=Channel("acceleration", "acceleration", derivatives["acceleration"]),
+            angular_velocity=Channel("angular velocity", "knuckle_rates", omegas),
+            angular_acceleration=Channel("angular acceleration", "knuckle_rates", alphas),
+            wheel=Channel("wheel angle", "wheel_angles", angles),
+        )
+
+    def _wheel_angles(self, position: Mapping[str, Array]) -> dict[str, Array]:
+        up, lower = self.mechanism.drawing.vectors["up"], position["strut_lower"]
+        return {
+            "camber": wheel.camber_angle(lower, position["wheel_centre"], up, self.outboard),
+            "kingpin": wheel.kingpin_angle(position["lower_ball_joint"], lower, up, self.outboard),
+        }
+
+
+def least_squares_rates(
+    position: Mapping[str, Array], velocity: Mapping[str, Array], acceleration: Mapping[str, Array]
+) -> tuple[Array, Array]:
+    """Angular velocity and acceleration of a body from all its points."""
+    places, rates, second = (rigid.stack_points(list(s.values())) for s in (position, velocity, acceleration))
+    omega = rigid.angular_velocity(places, rates)
+    return omega, rigid.angular_acceleration(places, second, omega)

@@ -1,0 +1,252 @@
+"""The scene file: which mechanism, which inputs, which instants, which effects, how accurate.
+
+A scene is checked when it is read. Every fault names the file, the key, the value and what is allowed.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from pointcoord.effects import EFFECTS
+from pointcoord.errors import PointcoordError, SceneError
+from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
+from pointcoord.suspensions import TOPOLOGIES
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+
+# Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
+MOST_SAMPLES = 10_000_000
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class MechanismPart(_Part):
+    """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes."""
+
+    type: Literal["macpherson"]
+    side: Literal["left", "right"] = "left"
+    up: Vector = (0.0, 0.0, 1.0)
+    right: Vector = (0.0, 1.0, 0.0)
+    points: dict[str, Vector]
+
+    @field_validator("points")
+    @classmethod
+    def _known_points(cls, points: dict[str, Vector]) -> dict[str, Vector]:
+        needed = TOPOLOGIES["macpherson"].points
+        extra = [name for name in points if name not in needed]
+        missing = [name for name in needed if name not in points]
+        if extra:
+            raise ValueError(f"no point is called {extra[0]!r}; allowed: {', '.join(needed)}")
+        if missing:
+            raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(needed)}")
+        return points
+
+    @model_validator(mode="after")
+    def _orthonormal(self) -> Self:
+        up, right = np.array(self.up), np.array(self.right)
+        # Components printed with 15 digits leave 1e-15 in each product; anything above is a slip.
+        worst = max(abs(up @ up - 1.0), abs(right @ right - 1.0), abs(up @ right))
+        if not worst <= 1e-12:
+            raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
+        return self
+
+    @property
+    def outboard(self) -> NDArray[np.float64]:
+        """Unit vector away from the car's middle."""
+        return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
+
+
+class SinePart(_Part):
+    """offset + amplitude sin(angular_frequency t + phase)."""
+
+    amplitude: Number
+    angular_frequency: Number
+    phase: Number = 0.0
+    offset: Number = 0.0
+
+
+class TablePart(_Part):
+    """A cubic spline through values at increasing times."""
+
+    times: tuple[Number, ...] = Field(min_length=4)
+    values: tuple[Number, ...] = Field(min_length=4)
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        if len(self.times) != len(self.values):
+            raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
+        if not (np.diff(self.times) > 0.0).all():
+            raise ValueError("times do not increase; allowed: strictly increasing times")
+        return self
+
+
+class InputPart(_Part):
+    """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
+
+    constant: Number | None = None
+    polynomial: tuple[Number, ...] | None = Field(default=None, min_length=1)
+    sine: SinePart | None = None
+    table: TablePart | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        given = [
+            name for name in ("constant", "polynomial", "sine", "table") if getattr(self, name) is not None
+        ]
+        if len(given) != 1:
+            raise ValueError(
+                f"{' and '.join(given) or 'nothing'} given; allowed: exactly one of constant, polynomial, sine, table"
+            )
+        return self
+
+    @property
+    def function(self) -> TimeFunction:
+        """The input as a function of time."""
+        if self.constant is not None:
+            return Polynomial((self.constant,))
+        if self.polynomial is not None:
+            return Polynomial(self.polynomial)
+        if self.sine is not None:
+            return Sine(self.sine.amplitude, self.sine.angular_frequency, self.sine.phase, self.sine.offset)
+        assert self.table is not None  # the validator has seen that one is given
+        return Table(self.table.times, self.table.values)
+
+
+class TimePart(_Part):
+    """The instants: `samples` of them evenly from start to stop, both included; s."""
+
+    start: Number
+    stop: Number
+    samples: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)]
+
+    @model_validator(mode="after")
+    def _forwards(self) -> Self:
+        if self.samples == 1 and self.start != self.stop:
+            raise ValueError(
+                f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
+            )
+        if self.samples > 1 and not self.start < self.stop:
+            raise ValueError(f"start {self.start} is not before stop {self.stop}; allowed: start < stop")
+        return self
+
+
+class Scene(_Part):
+    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`."""
+
+    title: str = ""
+    effects: tuple[str, ...] = ()
+    tolerance: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] = 1e-9
+    mechanism: MechanismPart
+    inputs: dict[str, InputPart]
+    time: TimePart
+
+    @field_validator("effects")
+    @classmethod
+    def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
+        for name in effects:
+            if name not in EFFECTS:
+                raise ValueError(f"no effect is called {name!r}; allowed: {', '.join(EFFECTS)}")
+        return effects
+
+    @model_validator(mode="after")
+    def _inputs_fit(self) -> Self:
+        topology = TOPOLOGIES[self.mechanism.type]
+        for name in self.inputs:
+            if name not in topology.inputs:
+                raise ValueError(f"no input is called {name!r}; allowed: {', '.join(topology.inputs)}")
+        for name in topology.required_inputs:
+            if name not in self.inputs:
+                raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")
+        for name, part in self.inputs.items():
+            table = part.table
+            if table is not None and not (
+                table.times[0] <= self.time.start and self.time.stop <= table.times[-1]
+            ):
+                raise ValueError(
+                    f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
+                    f"allowed: all of time, {self.time.start} to {self.time.stop} s"
+                )
+        return self
+
+    @property
+    def instants(self) -> NDArray[np.float64]:
+        """The instants of the scene, shape (samples,), s."""
+        return np.linspace(self.time.start, self.time.stop, self.time.samples)
+
+    @property
+    def functions(self) -> dict[str, TimeFunction]:
+        """Every input as a function of time."""
+        return {name: part.function for name, part in self.inputs.items()}
+
+    @classmethod
+    def from_mapping(cls, content: Mapping[str, Any], source: str = "scene") -> Scene:
+        """Check a scene given as plain data, as `tomllib` reads it.
+
+        Raises:
+            SceneError: the first fault, with its key; further ones are counted.
+        """
+        try:
+            return cls.model_validate(content)
+        except ValidationError as error:
+            raise _scene_error(source, error) from None
+
+    @classmethod
+    def load(cls, name: str | Path) -> Scene:
+        """Read a built-in scene by name, or a scene file by path.
+
+        Raises:
+            SceneError: there is no such scene, or it is not written as it must be.
+        """
+        if str(name) in built_in_scenes():
+            text = resources.files("pointcoord").joinpath("scenes", f"{name}.toml").read_bytes()
+        else:
+            try:
+                text = Path(name).read_bytes()
+            except (OSError, ValueError) as error:
+                reason = getattr(error, "strerror", None) or str(error)
+                raise SceneError(
+                    str(name),
+                    "",
+                    f"cannot be read ({reason})",
+                    f"a path, or one of {', '.join(built_in_scenes())}",
+                ) from None
+        try:
+            content = tomllib.loads(text.decode("utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+            raise SceneError(str(name), "", f"is not TOML: {error}", "TOML 1.0 in UTF-8") from None
+        return cls.from_mapping(content, str(name))
+
+
+def built_in_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with the package."""
+    folder = resources.files("pointcoord").joinpath("scenes")
+    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def _scene_error(source: str, error: ValidationError) -> PointcoordError:
+    faults = error.errors(include_url=False)
+    first = faults[0]
+    key = ".".join(str(part) for part in first["loc"])
+    problem = first["msg"].removeprefix("Value error, ")
+    given = first["input"]
+    if first["type"] == "missing":
+        problem = "this key is missing"
+    elif first["type"] == "extra_forbidden":
+        problem = "there is no such key"
+    elif not isinstance(given, dict | BaseModel) and first["type"] != "value_error":
+        shown = repr(given)
+        problem = f"{problem}, not {shown if len(shown) <= 60 else shown[:57] + '...'}"
+    if len(faults) > 1:
+        problem += f" (and {len(faults) - 1} more)"
+    return SceneError(source, key, problem)

@@ -1,0 +1,31 @@
+"""A count of what a solver did, so that what was not asked for can be shown not to be computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+
+@dataclass(frozen=True)
+class Work:
+    """Numbers of operations; a batch of matrices counts each of its members.
+
+    Attributes:
+        residuals: evaluations of the constraints.
+        factorisations: Jacobians built and factorised.
+        rate_solves: linear solves for rates (velocity, acceleration and higher orders).
+        segments: power series that the motion is made of.
+        series_orders: orders of those series, summed.
+        derivatives_evaluated: time derivatives evaluated at the instants (0 position, 1 velocity, ...).
+        coordinates_evaluated: coordinates per instant, over all derivatives.
+    """
+
+    residuals: int = 0
+    factorisations: int = 0
+    rate_solves: int = 0
+    segments: int = 0
+    series_orders: int = 0
+    derivatives_evaluated: int = 0
+    coordinates_evaluated: int = 0
+
+    def __add__(self, other: Work) -> Work:
+        return Work(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
