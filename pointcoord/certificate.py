@@ -68,7 +68,7 @@ def certify(system: QuadraticMap, y: Array, factors: Factors, data: Array) -> Ce
         eta = (np.abs(inverse @ residual[..., None]) + magnitude @ doubt[..., None])[..., 0].max(axis=-1)
         defect = np.abs(np.eye(n) - inverse @ matrix) + gamma * (magnitude @ np.abs(matrix))
         z = defect.sum(axis=-1).max(axis=-1)
-        omega = system.lipschitz(inverse, np.ones(y.shape[:-1] + (n,)))
+        omega = system.lipschitz(inverse, np.ones((*y.shape[:-1], n)))
         room = 1.0 - z
         constant = 2.0 * omega * eta / room**2
         root = np.sqrt(np.maximum(1.0 - constant, 0.0))

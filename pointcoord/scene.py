@@ -106,7 +106,8 @@ class InputPart(_Part):
         ]
         if len(given) != 1:
             raise ValueError(
-                f"{' and '.join(given) or 'nothing'} given; allowed: exactly one of constant, polynomial, sine, table"
+                f"{' and '.join(given) or 'nothing'} given; "
+                "allowed: exactly one of constant, polynomial, sine, table"
             )
         return self
 

@@ -34,7 +34,7 @@ def expand(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Ar
     series[..., 1:, n:] = known[..., 1:, :]
     series[..., 0, :] = y
     left, right = system.factors(series)
-    driven = np.any(known[..., 1:, :] != 0.0, axis=tuple(range(known.ndim - 2)) + (known.ndim - 1,))
+    driven = np.any(known[..., 1:, :].reshape(-1, orders - 1, known.shape[-1]) != 0.0, axis=(0, 2))
     for k in range(1, orders):
         products = np.zeros_like(left[..., 0, :])
         if driven[k - 1]:

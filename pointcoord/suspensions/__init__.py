@@ -1,7 +1,7 @@
 """The linkages that can be solved, by the name that a scene gives them."""
 
-from pointcoord.mechanism import Topology
 from pointcoord.suspensions.macpherson import MACPHERSON, MACPHERSON_PRINTED
+from pointcoord.topology import Topology
 
 TOPOLOGIES: dict[str, Topology] = {"macpherson": MACPHERSON}
 """Each linkage with slides that have coordinates of their own."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pointcoord.constraints import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
 from pointcoord.drives import ArmAngle, Travel
-from pointcoord.mechanism import Topology
+from pointcoord.topology import Topology
 
 _LINKS = (
     Link("lower_ball_joint", "lower_arm_front"),  # (1)

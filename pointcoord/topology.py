@@ -1,0 +1,77 @@
+"""A topology: what is joined to what, as data; no numbers of a particular car."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from pointcoord.constraints import Constraint, Link, OnLine
+from pointcoord.drives import Drive
+from pointcoord.layout import Layout
+from pointcoord.quadratic import QuadraticMap, quadratic_map
+
+
+@dataclass(frozen=True)
+class Topology:
+    """A linkage as points, bodies, constraints and inputs.
+
+    Attributes:
+        chassis: points that the chassis carries. moving: points to be solved for.
+        bodies: points of each body of three or more points whose rates are of interest.
+        carried: points that ride on a body and constrain nothing, with the three points that carry them.
+        directions: unit vectors that the chassis carries.
+        constraints: links, slides, rack, driven heights.
+        drives: the inputs that drive a coordinate.
+        chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
+    """
+
+    name: str
+    chassis: tuple[str, ...]
+    moving: tuple[str, ...]
+    bodies: Mapping[str, tuple[str, ...]]
+    carried: Mapping[str, tuple[str, str, str]]
+    directions: tuple[str, ...]
+    constraints: tuple[Constraint, ...]
+    drives: tuple[Drive, ...]
+    chassis_motion: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Every point that a car of this kind needs."""
+        return (*self.chassis, *self.moving, *self.carried)
+
+    @property
+    def required_inputs(self) -> tuple[str, ...]:
+        """Inputs that must be given."""
+        return tuple(drive.input for drive in self.drives)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Every input that may be given."""
+        return (*self.required_inputs, *self.chassis_motion)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """A name for each row of the map."""
+        return tuple(label for constraint in self.constraints for label in constraint.labels)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The order of the coordinates."""
+        slides = [c for c in self.constraints if isinstance(c, OnLine)]
+        links = [c for c in self.constraints if isinstance(c, Link)]
+        return Layout(
+            moving=self.moving,
+            ratios=tuple(slide.ratio for slide in slides),
+            chassis=self.chassis,
+            directions=self.directions,
+            driven=tuple(drive.coordinate for drive in self.drives),
+            squared_lengths=tuple((link.start, link.end) for link in links),
+        )
+
+    @cached_property
+    def map(self) -> QuadraticMap:
+        """All constraints as one quadratic map; the same for every car of this topology."""
+        rows = [row for constraint in self.constraints for row in constraint.rows(self.layout)]
+        return quadratic_map(rows, self.layout.unknowns, self.layout.size)
