@@ -1,13 +1,12 @@
 """From one pose to another along a path of targets, without leaving the branch."""
 
+import math
 from collections.abc import Callable
-
-import numpy as np
 
 from absolute.assembly import Mechanism
 from absolute.newton import EPS, SMALLEST_RCOND, Pose, accelerations, correct
 from absolute.solution import Array
-from absolute.stack import cross
+from absolute.vectors import cross
 
 # A path: share of the way in [0, 1] -> target of the rows, its first and second derivative.
 Path = Callable[[float], tuple[Array, Array, Array]]
@@ -18,8 +17,11 @@ LONGEST_STEP = 0.25
 # The curved part of a step, and what Newton adds, must be small against its straight part.
 LARGEST_CURVE = 0.5
 LARGEST_CORRECTION = 0.1
+# When a step is like the one before it: not much longer, and its direction within a tenth.
+LARGEST_RATIO = 2.0
+ALIKE = 0.01
 # A step below sqrt(eps) that still bends this much means a fold within eps of the target.
-SHORTEST_STEP = float(np.sqrt(EPS))
+SHORTEST_STEP = math.sqrt(EPS)
 # Steps of a quarter at most: thousands would be many turns around. A guard against endless work.
 MOST_STEPS = 2000
 
@@ -48,34 +50,50 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
     for _ in range(MOST_STEPS):
         length = min(length, 1.0 - share)
         _, slope, bend = path(share)
-        with np.errstate(over="ignore", invalid="ignore"):
-            straight, curve = accelerations(mechanism, pose, slope * length, bend * length**2)
-            size = float(np.abs(straight).max())
-            # A step turns with the body, so its curve is o'' - w x o'.
-            twist = straight.reshape(-1, 2, 3)
-            curve.reshape(-1, 2, 3)[:, 0] -= cross(twist[:, 1], twist[:, 0])
-            curved = 0.5 * float(np.abs(curve).max())
+        straight, curve = accelerations(mechanism, pose, slope * length, bend * length**2)
+        size = math.sqrt(straight @ straight)
+        # A step turns with the body, so its curve is o'' - w x o'.
+        twist = straight.reshape(-1, 2, 3)
+        curve.reshape(-1, 2, 3)[:, 0] -= cross(twist[:, 1], twist[:, 0])
+        curved = 0.5 * math.sqrt(curve @ curve)
         arrived = None
         if size <= LONGEST_STEP and curved <= LARGEST_CURVE * size + pose.floor:
             end = share + length if length < 1.0 - share else 1.0
-            predicted = mechanism.moved(pose.q, pose.poses.rotation, straight + 0.5 * curve)
-            outcome = correct(mechanism, predicted, path(end)[0])
+            step = straight + 0.5 * curve + remembered(pose, slope * length)
+            outcome = correct(mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), path(end)[0], pose.rcond)
             spent += outcome.corrections
-            if (
-                outcome.pose is not None
-                and outcome.largest <= LARGEST_CORRECTION * size + outcome.pose.floor
-                and outcome.pose.sign == pose.sign
-                and outcome.pose.rcond >= SMALLEST_RCOND
-            ):
-                arrived = outcome.pose
+            if outcome.pose is not None and keeps_branch(pose, outcome.pose, outcome.added, size):
+                arrived = outcome.pose._replace(slope=slope * length, added=step - straight - 0.5 * curve + outcome.added)
         if arrived is not None:
             pose, share, length = arrived, end, 2.0 * length
             if share >= 1.0:
                 return pose, spent
         else:
             # Straight to the longest step allowed where the length alone was too large.
-            shrink = LONGEST_STEP / size if LONGEST_STEP < size < np.inf else 1.0
+            shrink = LONGEST_STEP / size if LONGEST_STEP < size < math.inf else 1.0
             length *= min(0.5, shrink)
             if size <= SHORTEST_STEP or share + length == share:
                 break
     raise Blocked(share, pose, spent)
+
+
+def keeps_branch(start: Pose, end: Pose, added: Array, size: float) -> bool:
+    """Whether a step ends on the branch it began on: small corrections, no singular pose between."""
+    small = math.sqrt(added @ added) <= LARGEST_CORRECTION * size + end.floor
+    return small and end.sign == start.sign and end.rcond >= SMALLEST_RCOND
+
+
+def remembered(pose: Pose, slope: Array) -> Array | float:
+    """The third-order part of a step, from what was missing in the step before.
+
+    A step of the same direction and `ratio` times the length lacks ratio^3 times as much. In
+    another direction nothing is known.
+    """
+    if pose.slope is None or pose.added is None:
+        return 0.0
+    before = float(pose.slope @ pose.slope)
+    ratio = float(slope @ pose.slope) / before if before > 0 else 0.0
+    apart = slope - ratio * pose.slope
+    if not 0 < ratio <= LARGEST_RATIO or float(apart @ apart) > ALIKE * float(slope @ slope):
+        return 0.0
+    return pose.added * ratio**3

@@ -6,7 +6,7 @@ from absolute.assembly import Mechanism
 from absolute.mapping import ReadOnly
 from absolute.newton import Pose
 from absolute.solution import Array, Solution
-from absolute.stack import cross
+from absolute.vectors import cross
 
 # Jacobians per batch when condition numbers are asked for: a few megabytes at a time.
 BATCH = 256

@@ -1,7 +1,7 @@
 """Newton's method on the manifold of body poses, to rounding, and the rates at a pose."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import eigenpy
 import numpy as np
@@ -23,8 +23,7 @@ GOOD_CONTRACTION = 1e-2
 MOST_CORRECTIONS = 25
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """A configuration where the rows meet their target, with the factorised Jacobian there.
 
     Attributes:
@@ -34,7 +33,9 @@ class Pose:
         rcond: estimate of its reciprocal condition number (1-norm).
         sign: sign of its determinant; it changes only through a singular pose.
         residual: largest violation of a row, in units of size.
-        norm: 1-norm of the Jacobian.
+        floor: the largest correction that rounding explains.
+        slope: rate of the rows along the step that led here, or None.
+        added: what Newton added to the prediction of that step, [o', w] summed.
     """
 
     q: Array
@@ -45,78 +46,69 @@ class Pose:
     sign: float
     residual: float
     floor: float
-
-    def solve(self, rate: Array) -> Array:
-        """Velocities [o', w] of the moving bodies for a rate of the rows."""
-        velocity: Array = self.factors.solve(rate)
-        return velocity
+    slope: Array | None = None
+    added: Array | None = None
 
 
-def pose_at(mechanism: Mechanism, q: Array, poses: Poses, placed: Placed, target: Array) -> Pose:
-    """Factorise the Jacobian at a configuration."""
-    jacobian = mechanism.stack.jacobian(placed)
-    factors = eigenpy.PartialPivLU(jacobian)
+def pose_at(
+    mechanism: Mechanism, q: Array, poses: Poses, placed: Placed, target: Array, factors: eigenpy.PartialPivLU
+) -> Pose:
+    """The pose at a configuration whose Jacobian is factorised."""
     rcond = factors.rcond()
     # Rounding of a few products of order 1 in each row, as the inverse of the Jacobian sees it.
     # Its columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
     floor = 64 * EPS / rcond if rcond > 0 else np.inf
-    return Pose(
-        q, poses, placed, factors, rcond, math.copysign(1.0, factors.determinant()),
-        float(np.abs(target - placed.values).max()), floor,
-    )  # fmt: skip
+    sign = math.copysign(1.0, factors.determinant())
+    return Pose(q, poses, placed, factors, rcond, sign, float(np.abs(target - placed.values).max()), floor)
 
 
-@dataclass(frozen=True)
-class Corrected:
-    """Outcome of Newton's method: the pose or None, corrections spent, their largest size."""
+class Corrected(NamedTuple):
+    """Outcome of Newton's method: the pose or None, corrections spent, their sum."""
 
     pose: Pose | None
     corrections: int
-    largest: float
+    added: Array
 
 
-def correct(mechanism: Mechanism, q: Array, target: Array) -> Corrected:
+def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corrected:
     """Solve  rows(q) = target  near q.
 
     The first Jacobian serves every correction as long as each is a hundredth of the one before;
     it is renewed otherwise. With contraction c the error left after a correction s is at most
-    s c / (1 - c); Newton stops when that is below eps, or when corrections no longer shrink and
-    are as small as rounding explains. Anything else is a failure: `pose` is None.
+    s c / (1 - c); before c is known, about s^2 / rcond, with the `rcond` of a pose nearby, as the
+    rows are quadratic with second derivatives of order 1. Newton stops when that is below eps, or when corrections no longer shrink, and
+    then a fresh Jacobian must find the next correction as small as rounding explains. Anything
+    else is a failure: `pose` is None.
     """
-    current: Pose | None = None
+    factors = None
     previous = np.inf
-    largest = 0.0
+    added = np.zeros(mechanism.stack.count)
     settled = False
     for count in range(1, MOST_CORRECTIONS + 1):
         poses = mechanism.poses(q)
         placed = mechanism.stack.place(*poses)
-        if current is None or settled:
-            current = pose_at(mechanism, q, poses, placed, target)
-        step = current.solve(target - placed.values)
-        size = float(np.abs(step).max())
-        if not np.isfinite(size) or current.rcond < EPS:
-            return Corrected(None, count, np.inf)
-        if settled or size <= EPS:
-            if size <= current.floor:
-                fresh = current if current.q is q else pose_at(mechanism, q, poses, placed, target)
-                return Corrected(fresh, count - 1, largest)
-            settled = False
+        if factors is None or settled:
+            factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
+        step = factors.solve(target - placed.values)
+        size = math.sqrt(step @ step)
+        if not math.isfinite(size):
+            break
+        if settled:
+            pose = pose_at(mechanism, q, poses, placed, target, factors)
+            return Corrected(pose if size <= pose.floor else None, count - 1, added)
         contraction = size / previous
-        if contraction > 0.5 and size > current.floor:
-            return Corrected(None, count, np.inf)
-        largest += size
+        added += step
         q = mechanism.moved(q, poses.rotation, step)
         if count == 1:
-            # Nothing is known of the contraction yet; Newton squares the size of a correction.
-            settled = False
+            settled = size * size <= EPS * rcond
             renew = size > GOOD_CONTRACTION
         else:
             settled = contraction > 0.5 or size * contraction < EPS * (1 - contraction)
             renew = contraction > GOOD_CONTRACTION
-        if renew and not settled:
-            current = None
+        if renew:
+            factors = None
         previous = size
-    return Corrected(None, MOST_CORRECTIONS, np.inf)
+    return Corrected(None, count, added)
 
 
 def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) -> tuple[Array, Array]:
@@ -124,8 +116,8 @@ def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) 
 
     J v = rate,  J a = second - drift(v):  one matrix serves both.
     """
-    velocity = pose.solve(rate)
+    velocity = pose.factors.solve(rate)
     moving = np.zeros((len(pose.poses.origin), 2, 3))
     moving[1:] = velocity.reshape(-1, 2, 3)
     drift = mechanism.stack.drift(pose.placed, moving[:, 0], moving[:, 1])
-    return velocity, pose.solve(second - drift)
+    return velocity, pose.factors.solve(second - drift)

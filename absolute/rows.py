@@ -13,6 +13,7 @@ from absolute.description import Joint, Model
 from absolute.drawing import Drawing
 from absolute.errors import DescriptionError
 from absolute.solution import Array
+from absolute.vectors import cross
 
 X, Y, Z = 0, 1, 2
 
@@ -121,13 +122,13 @@ def joint_frames(name: str, joint: Joint, drawing: Drawing) -> tuple[Array, Arra
             "swap the points of one line or correct the drawing",
             name, cosine,
         )  # fmt: skip
-    axis = np.cross(z1, z2)
-    turned = frame1 + np.cross(axis, frame1) + np.cross(axis, np.cross(axis, frame1)) / (1.0 + cosine)
+    axis = cross(z1, z2)
+    turned = frame1 + cross(axis, frame1) + cross(axis, cross(axis, frame1)) / (1.0 + cosine)
     return frame1, np.asarray(turned, dtype=float)
 
 
 def frame_about(z: Array) -> Array:
     """Right-handed unit axes x, y, z as rows, with z given."""
-    x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
+    x = cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
     x = x / np.linalg.norm(x)
-    return np.array([x, np.cross(z, x), z])
+    return np.array([x, cross(z, x), z])

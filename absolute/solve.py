@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+import eigenpy
 import numpy as np
 
 from absolute.assembly import Mechanism
@@ -74,7 +75,8 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     """
     poses = mechanism.poses(mechanism.drawn)
     placed = mechanism.stack.place(*poses)
-    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values)
+    factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
+    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, factors)
     size = mechanism.drawing.size
     names = tuple(mechanism.model.inputs)
     inputs = dict(zip(names, mechanism.drawn_inputs.tolist(), strict=True))

@@ -14,15 +14,10 @@ import numpy as np
 
 from absolute.rows import Rows
 from absolute.solution import Array
+from absolute.vectors import LAST, NEXT
 
-_NEXT = np.array([1, 2, 0])
-_LAST = np.array([2, 0, 1])
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Vector product over the last axis; far quicker than numpy's for a few vectors."""
-    product: Array = a.take(_NEXT, -1) * b.take(_LAST, -1) - a.take(_LAST, -1) * b.take(_NEXT, -1)
-    return product
+# w @ _WHEEL is the transposed matrix of "w x", row by row: features are kept as rows.
+_WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 
 
 class Placed(NamedTuple):
@@ -67,17 +62,25 @@ class RowStack:
         ]
         self._local, self._is_point = features.tables()
         self._picks = np.array(features.flat(picks)).T.copy()
-        # Places in the flat Jacobian and signs, in the order in which `jacobian` writes.
-        self._offset_rows = slice(len(rows.angles), count)
-        first, second = [row.first for row in every], [row.second for row in every]
-        blocks = [(row, first[row], 0) for row in range(len(rows.angles), count)]
-        blocks += [(row, second[row], 0) for row in range(len(rows.angles), count)]
-        blocks += [(row, first[row], 3) for row in range(count)]
-        blocks += [(row, second[row], 3) for row in range(count)]
-        starts = np.array([6 * bodies * row + 6 * body + part for row, body, part in blocks], dtype=int)
-        self._places = (starts[:, None] + np.arange(3)).ravel()
-        offsets = 3 * len(rows.offsets)
-        self._signs = np.repeat([-1.0, 1.0, 1.0, -1.0], [offsets, offsets, 3 * count, 3 * count])
+        # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
+        angles = len(rows.angles)
+        self._offset_rows = slice(angles, count)
+        source = np.zeros((count, bodies, 2, 3), dtype=int)
+        axis = np.arange(3)
+        pushes = 3 * (count - angles)
+        for row, of in enumerate(every):
+            source[row, of.first, 1] = 1 + 2 * pushes + 3 * row + axis
+            source[row, of.second, 1] = 1 + 2 * pushes + 3 * (count + row) + axis
+            if row >= angles:
+                source[row, of.second, 0] = 1 + 3 * (row - angles) + axis
+                source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
+        self._source = source[:, 1:].reshape(count, -1)
+        # Numbers in the flat parts from which a x (f - c1) and (f - c2) x a are multiplied out.
+        part = np.arange(5 * count * 3).reshape(5, count, 3)
+        a, f, c1, c2 = part[0], part[1], part[3], part[4]
+        self._turn_a = np.array([[a[:, NEXT], a[:, LAST]], [a[:, LAST], a[:, NEXT]]])
+        self._turn_f = np.array([[f[:, LAST], f[:, NEXT]], [f[:, NEXT], f[:, LAST]]])
+        self._turn_c = np.array([[c1[:, LAST], c1[:, NEXT]], [c2[:, NEXT], c2[:, LAST]]])
         self._sense_bodies = [np.array([s[k] for s in rows.senses], dtype=int) for k in (1, 2)]
         self._sense_vectors = [np.array([s[k] for s in rows.senses]).reshape(-1, 3, 1) for k in (3, 4)]
         self.sense_owners = tuple(sense.owner for sense in rows.senses)
@@ -87,19 +90,18 @@ class RowStack:
         turned = self._local @ rotation.swapaxes(-1, -2)
         parts = self._parts(turned + self._is_point * origin[..., None, :])
         reach = parts[..., 1, :, :] - parts[..., 2, :, :]
-        return Placed(turned, parts, reach, np.einsum("...ij,...ij->...i", parts[..., 0, :, :], reach))
+        return Placed(turned, parts, reach, np.vecdot(parts[..., 0, :, :], reach))
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""
-        parts = placed.parts
-        along = parts[..., 0, self._offset_rows, :]
-        turning = cross(parts[..., :1, :, :], parts[..., 1:2, :, :] - parts[..., 3:, :, :])
-        lead = parts.shape[:-3]
-        flat = (*lead, -1)
-        entries = np.concatenate((along.reshape(flat), along.reshape(flat), turning.reshape(flat)), -1)
-        matrix = np.zeros((*lead, self.count * 6 * self._bodies))
-        matrix[..., self._places] = entries * self._signs
-        return matrix.reshape(*lead, self.count, 6 * self._bodies)[..., 6:]
+        lead = placed.parts.shape[:-3]
+        numbers = placed.parts.reshape(*lead, -1)
+        products = numbers.take(self._turn_a, -1) * (numbers.take(self._turn_f, -1) - numbers.take(self._turn_c, -1))
+        turning = (products[..., 0, :, :] - products[..., 1, :, :]).reshape(*lead, -1)
+        along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
+        entries = np.concatenate((np.zeros((*lead, 1)), along, -along, turning), -1)
+        matrix: Array = entries.take(self._source, -1)
+        return matrix
 
     def drift(self, placed: Placed, velocity: Array, spin: Array) -> Array:
         """Second rate of the rows when no body accelerates: a''.e + 2 a'.e' + a.e''.
@@ -107,23 +109,13 @@ class RowStack:
         Args:
             velocity: (..., bodies, 3) of the body origins. spin: (..., bodies, 3) angular.
         """
-        x, y, z = spin[..., 0], spin[..., 1], spin[..., 2]
-        # Transposed matrix of "spin x", for features as rows.
-        wheel = np.zeros((*spin.shape, 3))
-        wheel[..., 0, 1], wheel[..., 0, 2], wheel[..., 1, 2] = z, -y, x
-        wheel[..., 1, 0], wheel[..., 2, 0], wheel[..., 2, 1] = -z, y, -x
-        rate = placed.turned @ wheel
+        turning = (spin @ _WHEEL).reshape(*spin.shape, 3)
+        rate = placed.turned @ turning
         first = self._parts(rate + self._is_point * velocity[..., None, :])
-        second = self._parts(rate @ wheel)
-        a = placed.parts[..., 0, :, :]
-        drift: Array = np.einsum(
-            "...ij,...ij->...i", second[..., 0, :, :], placed.reach
-        ) + np.einsum(
-            "...ij,...ij->...i", a, second[..., 1, :, :] - second[..., 2, :, :]
-        )  # fmt: skip
-        drift += 2.0 * np.einsum(
-            "...ij,...ij->...i", first[..., 0, :, :], first[..., 1, :, :] - first[..., 2, :, :]
-        )
+        second = self._parts(rate @ turning)
+        drift: Array = np.vecdot(second[..., 0, :, :], placed.reach)
+        drift += np.vecdot(placed.parts[..., 0, :, :], second[..., 1, :, :] - second[..., 2, :, :])
+        drift += 2.0 * np.vecdot(first[..., 0, :, :], first[..., 1, :, :] - first[..., 2, :, :])
         return drift
 
     def senses(self, rotation: Array) -> Array:
