@@ -7,8 +7,8 @@ from absolute.errors import (
     DescriptionError,
     InputError,
     PoseError,
-    SingularPose,
-    UnreachableInput,
+    SingularError,
+    UnreachableError,
 )
 from absolute.macpherson import macpherson
 from absolute.solution import Solution
@@ -24,9 +24,9 @@ __all__ = [
     "Joint",
     "Model",
     "PoseError",
-    "SingularPose",
+    "SingularError",
     "Solution",
-    "UnreachableInput",
+    "UnreachableError",
     "macpherson",
     "solve",
 ]

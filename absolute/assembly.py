@@ -41,7 +41,8 @@ class Mechanism:
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         self._ids = [
-            self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body) for body in model.moving
+            self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
+            for body in model.moving
         ]
         # After the last joint and frame: data made earlier would be too small.
         self.pin_data = self.pin_model.createData()
@@ -62,7 +63,9 @@ class Mechanism:
         self.drawn_inputs = np.array(
             [
                 LAWS[drive.law].invert(coordinate / factor)
-                for drive, coordinate, (_, factor) in zip(model.inputs.values(), coordinates, self._laws, strict=True)
+                for drive, coordinate, (_, factor) in zip(
+                    model.inputs.values(), coordinates, self._laws, strict=True
+                )
             ]
         )
 
@@ -77,7 +80,9 @@ class Mechanism:
         moved: Array = pin.normalize(self.pin_model, pin.integrate(self.pin_model, q, local.ravel()))
         return moved
 
-    def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> tuple[Array, Array, Array]:
+    def targets(
+        self, values: list[float], rates: list[float], seconds: list[float]
+    ) -> tuple[Array, Array, Array]:
         """What the rows shall equal, and its first and second rate, for inputs and their rates."""
         driven = []
         for (law, factor), value, speed, second in zip(self._laws, values, rates, seconds, strict=True):

@@ -17,16 +17,13 @@ LONGEST_STEP = 0.25
 # The curved part of a step, and what Newton adds, must be small against its straight part.
 LARGEST_CURVE = 0.5
 LARGEST_CORRECTION = 0.1
-# When a step is like the one before it: not much longer, and its direction within a tenth.
-LARGEST_RATIO = 2.0
-ALIKE = 0.01
 # A step below sqrt(eps) that still bends this much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
 # Steps of a quarter at most: thousands would be many turns around. A guard against endless work.
 MOST_STEPS = 2000
 
 
-class Blocked(Exception):
+class BlockedError(Exception):
     """The path cannot be followed to its end; carries how far it was and the last good pose."""
 
     def __init__(self, share: float, pose: Pose, corrections: int) -> None:
@@ -44,7 +41,7 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
     sign of the determinant.
 
     Raises:
-        Blocked: steps have become too short to go on: the mechanism locks there.
+        BlockedError: steps have become too short to go on: the mechanism locks there.
     """
     pose, share, length, spent = start, 0.0, 1.0, 0
     for _ in range(MOST_STEPS):
@@ -59,11 +56,13 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
         arrived = None
         if size <= LONGEST_STEP and curved <= LARGEST_CURVE * size + pose.floor:
             end = share + length if length < 1.0 - share else 1.0
-            step = straight + 0.5 * curve + remembered(pose, slope * length)
-            outcome = correct(mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), path(end)[0], pose.rcond)
+            step = straight + 0.5 * curve
+            outcome = correct(
+                mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), path(end)[0], pose.rcond
+            )
             spent += outcome.corrections
             if outcome.pose is not None and keeps_branch(pose, outcome.pose, outcome.added, size):
-                arrived = outcome.pose._replace(slope=slope * length, added=step - straight - 0.5 * curve + outcome.added)
+                arrived = outcome.pose
         if arrived is not None:
             pose, share, length = arrived, end, 2.0 * length
             if share >= 1.0:
@@ -74,26 +73,10 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
             length *= min(0.5, shrink)
             if size <= SHORTEST_STEP or share + length == share:
                 break
-    raise Blocked(share, pose, spent)
+    raise BlockedError(share, pose, spent)
 
 
 def keeps_branch(start: Pose, end: Pose, added: Array, size: float) -> bool:
     """Whether a step ends on the branch it began on: small corrections, no singular pose between."""
     small = math.sqrt(added @ added) <= LARGEST_CORRECTION * size + end.floor
     return small and end.sign == start.sign and end.rcond >= SMALLEST_RCOND
-
-
-def remembered(pose: Pose, slope: Array) -> Array | float:
-    """The third-order part of a step, from what was missing in the step before.
-
-    A step of the same direction and `ratio` times the length lacks ratio^3 times as much. In
-    another direction nothing is known.
-    """
-    if pose.slope is None or pose.added is None:
-        return 0.0
-    before = float(pose.slope @ pose.slope)
-    ratio = float(slope @ pose.slope) / before if before > 0 else 0.0
-    apart = slope - ratio * pose.slope
-    if not 0 < ratio <= LARGEST_RATIO or float(apart @ apart) > ALIKE * float(slope @ slope):
-        return 0.0
-    return pose.added * ratio**3

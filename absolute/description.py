@@ -103,8 +103,9 @@ class Model:
             if not np.isfinite(drive.factor) or drive.factor == 0:
                 raise DescriptionError(
                     f"factor of input {name!r} is {drive.factor!r}; it must be finite and not zero",
-                    name, drive.factor,
-                )  # fmt: skip
+                    name,
+                    drive.factor,
+                )
         self._check_count()
 
     @property
@@ -120,8 +121,9 @@ class Model:
             raise DescriptionError(
                 f"joints and inputs give {rows} rows for {unknowns} unknown velocities "
                 f"(6 for each of {len(self.moving)} moving bodies); they must be equal: {cure}",
-                "rows", rows,
-            )  # fmt: skip
+                "rows",
+                rows,
+            )
 
 
 def vector_of(what: str, name: str, value: object) -> Vector:
@@ -153,7 +155,7 @@ def _check_bodies(model: Model) -> None:
         placed.update(names)
     loose = sorted(set(model.points) - placed)
     if loose:
-        raise DescriptionError(f"points {loose} belong to no body; add them to one or leave them out", loose[0])
+        raise DescriptionError(f"points {loose} belong to no body; add them to one or drop them", loose[0])
 
 
 def _check_pair(model: Model, what: str, name: str, first: str, second: str) -> None:
@@ -170,11 +172,14 @@ def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs
             raise DescriptionError(
                 f"{what} uses point {end!r}, which body {body!r} does not hold; "
                 f"its points are {list(model.bodies[body])}",
-                name, end,
-            )  # fmt: skip
+                name,
+                end,
+            )
     if needs_line and axis.toward is None:
         raise DescriptionError(f"{what} needs a direction at {axis.through!r}: give `toward`", name)
     if axis.toward is not None and not isinstance(axis.toward, str):
         direction = vector_of(f"a direction of {what}", name, axis.toward)
         if not 0 < np.linalg.norm(direction) < np.inf:
-            raise DescriptionError(f"a direction of {what} is {direction}; it must not be zero", name, direction)
+            raise DescriptionError(
+                f"a direction of {what} is {direction}; it must not be zero", name, direction
+            )

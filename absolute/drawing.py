@@ -34,10 +34,11 @@ class Drawing:
         self.size = spread * unit
         if not spread > SHORTEST_AXIS or not np.finfo(float).tiny < self.size < np.inf:
             raise DescriptionError(
-                f"the points lie within {self.size:.3g} mm of each other at coordinates up to {largest:.3g} mm: "
+                f"the points lie within {self.size:.3g} mm at coordinates up to {largest:.3g} mm: "
                 "too few digits tell them apart; draw the mechanism nearer to the origin",
-                "points", self.size,
-            )  # fmt: skip
+                "points",
+                self.size,
+            )
         self._points = dict(zip(model.points, (coordinates - self.middle) / self.size, strict=True))
         self.bodies = {name: index for index, name in enumerate((model.chassis, *model.moving))}
         self.origins = np.array(
@@ -56,10 +57,11 @@ class Drawing:
             length = float(np.linalg.norm(line))
             if length < SHORTEST_AXIS:
                 raise DescriptionError(
-                    f"{what}: points {axis.through!r} and {axis.toward!r} are {length * self.size:.3g} mm apart; "
+                    f"{what}: {axis.through!r} and {axis.toward!r} are {length * self.size:.3g} mm apart; "
                     f"an axis needs more than {SHORTEST_AXIS * self.size:.3g} mm: move one of them",
-                    axis.through, length * self.size,
-                )  # fmt: skip
+                    axis.through,
+                    length * self.size,
+                )
             return np.asarray(line / length, dtype=float)
         line = np.array(axis.toward, dtype=float)
         line = line / np.abs(line).max()

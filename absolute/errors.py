@@ -40,7 +40,9 @@ class InputError(AbsoluteError):
         value: what was found there.
     """
 
-    def __init__(self, message: str, name: str = "", instant: int | None = None, value: object = None) -> None:
+    def __init__(
+        self, message: str, name: str = "", instant: int | None = None, value: object = None
+    ) -> None:
         super().__init__(message)
         self.name = name
         self.instant = instant
@@ -79,9 +81,9 @@ class AssemblyError(PoseError):
     """The bodies as drawn cannot be joined by a continuous change of the drawing."""
 
 
-class UnreachableInput(PoseError):
+class UnreachableError(PoseError):
     """No continuous motion of the assembled mechanism leads to these inputs."""
 
 
-class SingularPose(PoseError):
+class SingularError(PoseError):
     """The inputs do not fix the pose: the Jacobian has lost rank to working accuracy."""

@@ -47,17 +47,23 @@ def macpherson(
             (missing or unknown)[0],
         )
     drawn = {name: np.array(vector_of(f"point {name!r}", name, points[name])) for name in POINTS}
-    upward, rightward = _unit("up", vector_of("up", "up", up)), _unit("right", vector_of("right", "right", right))
+    upward, rightward = (
+        _unit("up", vector_of("up", "up", up)),
+        _unit("right", vector_of("right", "right", right)),
+    )
     skew = float(upward @ rightward)
     if abs(skew) > LARGEST_SKEW:
         raise DescriptionError(
-            f"up and right are {np.degrees(np.arccos(skew)):.6g} degrees apart; they must be at a right angle",
-            "right", skew,
-        )  # fmt: skip
+            f"up and right are {np.degrees(np.arccos(skew)):.6g} degrees apart; a right angle is needed",
+            "right",
+            skew,
+        )
     along = _between(drawn, "tie_rod_inner", "tie_rod_outer")
     # Pins of the cross at right angles to the tie rod, made from the car's axis it is least along,
     # so that they turn with the car.
-    sideways = min((upward, np.cross(rightward, upward), rightward), key=lambda axis: abs(float(axis @ along)))
+    sideways = min(
+        (upward, np.cross(rightward, upward), rightward), key=lambda axis: abs(float(axis @ along))
+    )
     pin_of_rack = _unit("tie_rod", _plain(np.cross(along, sideways)))
     pin_of_rod = np.cross(along, pin_of_rack)
     _between(drawn, "lower_arm_front", "lower_ball_joint")
@@ -69,20 +75,35 @@ def macpherson(
         "arm_pivot": Joint("revolute", "chassis", "lower_arm", arm_axis, arm_axis),
         "lower_ball": Joint("spherical", "lower_arm", "knuckle", ball, ball),
         "strut": Joint(
-            "prismatic", "knuckle", "strut_rod",
-            Axis("lower_ball_joint", "strut_lower"), Axis("strut_rod_end", "strut_top"),
+            "prismatic",
+            "knuckle",
+            "strut_rod",
+            Axis("lower_ball_joint", "strut_lower"),
+            Axis("strut_rod_end", "strut_top"),
         ),
         "top_mount": Joint("spherical", "chassis", "strut_rod", Axis("strut_top"), Axis("strut_top")),
-        "tie_rod_outer_ball": Joint("spherical", "knuckle", "tie_rod", Axis("tie_rod_outer"), Axis("tie_rod_outer")),
-        "tie_rod_inner_cross": Joint(
-            "universal", "rack", "tie_rod",
-            Axis("tie_rod_inner", _plain(pin_of_rack)), Axis("tie_rod_inner", _plain(pin_of_rod)),
+        "tie_rod_outer_ball": Joint(
+            "spherical", "knuckle", "tie_rod", Axis("tie_rod_outer"), Axis("tie_rod_outer")
         ),
-        "rack_slide": Joint("prismatic", "chassis", "rack", Axis("rack_centre", slide), Axis("tie_rod_inner", slide)),
-    }  # fmt: skip
+        "tie_rod_inner_cross": Joint(
+            "universal",
+            "rack",
+            "tie_rod",
+            Axis("tie_rod_inner", _plain(pin_of_rack)),
+            Axis("tie_rod_inner", _plain(pin_of_rod)),
+        ),
+        "rack_slide": Joint(
+            "prismatic", "chassis", "rack", Axis("rack_centre", slide), Axis("tie_rod_inner", slide)
+        ),
+    }
     inputs = {
         "arm_angle": Input(
-            "chassis", Axis("lower_arm_front", _plain(upward)), "lower_arm", "lower_ball_joint", "cosine", arm_length
+            "chassis",
+            Axis("lower_arm_front", _plain(upward)),
+            "lower_arm",
+            "lower_ball_joint",
+            "cosine",
+            arm_length,
         ),
         "rack": Input("chassis", Axis("rack_centre", slide), "rack", "tie_rod_inner", "linear", -1.0),
     }
@@ -102,7 +123,9 @@ def _between(drawn: Mapping[str, np.ndarray], start: str, end: str) -> np.ndarra
     line = drawn[end] - drawn[start]
     if not np.any(line):
         raise DescriptionError(
-            f"points {start!r} and {end!r} coincide at {_plain(drawn[start])}; move one of them", start, drawn[start]
+            f"points {start!r} and {end!r} coincide at {_plain(drawn[start])}; move one of them",
+            start,
+            _plain(drawn[start]),
         )
     return _unit(start, _plain(line))
 

@@ -91,7 +91,9 @@ class Record:
         numbers = np.zeros(count)
         for start in range(0, count, BATCH):
             part = slice(start, min(start + BATCH, count))
-            numbers[part] = np.linalg.cond(stack.jacobian(stack.place(self._rotation[part], self._origin[part])))
+            numbers[part] = np.linalg.cond(
+                stack.jacobian(stack.place(self._rotation[part], self._origin[part]))
+            )
         return numbers
 
 

@@ -34,8 +34,6 @@ class Pose(NamedTuple):
         sign: sign of its determinant; it changes only through a singular pose.
         residual: largest violation of a row, in units of size.
         floor: the largest correction that rounding explains.
-        slope: rate of the rows along the step that led here, or None.
-        added: what Newton added to the prediction of that step, [o', w] summed.
     """
 
     q: Array
@@ -46,8 +44,6 @@ class Pose(NamedTuple):
     sign: float
     residual: float
     floor: float
-    slope: Array | None = None
-    added: Array | None = None
 
 
 def pose_at(
@@ -76,9 +72,9 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
     The first Jacobian serves every correction as long as each is a hundredth of the one before;
     it is renewed otherwise. With contraction c the error left after a correction s is at most
     s c / (1 - c); before c is known, about s^2 / rcond, with the `rcond` of a pose nearby, as the
-    rows are quadratic with second derivatives of order 1. Newton stops when that is below eps, or when corrections no longer shrink, and
-    then a fresh Jacobian must find the next correction as small as rounding explains. Anything
-    else is a failure: `pose` is None.
+    rows are quadratic with second derivatives of order 1. Newton stops when that is below eps, or
+    when corrections no longer shrink, and then a fresh Jacobian must find the next correction as
+    small as rounding explains. Anything else is a failure: `pose` is None.
     """
     factors = None
     previous = np.inf

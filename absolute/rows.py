@@ -116,12 +116,14 @@ def joint_frames(name: str, joint: Joint, drawing: Drawing) -> tuple[Array, Arra
         return frame1, frame_about(z2)
     cosine = float(z1 @ z2)
     if cosine <= 0:
+        apart = np.degrees(np.arccos(max(cosine, -1.0)))
         raise DescriptionError(
-            f"joint {name!r}: its two lines are drawn {np.degrees(np.arccos(max(cosine, -1.0))):.1f} degrees apart; "
+            f"joint {name!r}: its two lines are drawn {apart:.1f} degrees apart; "
             "they shall become one line of the same sense, so less than 90 degrees is needed: "
             "swap the points of one line or correct the drawing",
-            name, cosine,
-        )  # fmt: skip
+            name,
+            cosine,
+        )
     axis = cross(z1, z2)
     turned = frame1 + cross(axis, frame1) + cross(axis, cross(axis, frame1)) / (1.0 + cosine)
     return frame1, np.asarray(turned, dtype=float)

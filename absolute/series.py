@@ -21,13 +21,17 @@ def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
             f"inputs must be exactly {sorted(names)}; unknown: {unknown}, missing: {missing}",
             (unknown or missing)[0],
         )
-    columns = [checked(name, inputs[name], (3,), "value, rate and acceleration at each instant") for name in names]
+    content = "value, rate and acceleration at each instant"
+    columns = [checked(name, inputs[name], (3,), content) for name in names]
     for name, column in zip(names, columns, strict=True):
         if len(column) != len(columns[0]):
             raise InputError(
-                f"input {name!r} has {len(column)} instants, {names[0]!r} has {len(columns[0])}; give both the same",
-                name, None, len(column),
-            )  # fmt: skip
+                f"input {name!r} has {len(column)} instants, {names[0]!r} has {len(columns[0])}; "
+                "give both the same",
+                name,
+                None,
+                len(column),
+            )
     return np.stack(columns, axis=-1) if columns else np.zeros((0, 3, 0))
 
 
@@ -43,8 +47,10 @@ def chassis_series(chassis: Array | None, count: int) -> Array:
     if len(series) != count:
         raise InputError(
             f"chassis has {len(series)} instants, the inputs have {count}; give both the same",
-            "chassis", None, len(series),
-        )  # fmt: skip
+            "chassis",
+            None,
+            len(series),
+        )
     return series
 
 
@@ -64,6 +70,8 @@ def checked(name: str, values: object, shape: tuple[int, ...], content: str) -> 
         instant = int(bad[0])
         raise InputError(
             f"{name!r} is {array[instant].tolist()} at instant {instant}; all its numbers must be finite",
-            name, instant, array[instant].tolist(),
-        )  # fmt: skip
+            name,
+            instant,
+            array[instant].tolist(),
+        )
     return array

@@ -6,9 +6,9 @@ import eigenpy
 import numpy as np
 
 from absolute.assembly import Mechanism
-from absolute.continuation import Blocked, Path, follow
+from absolute.continuation import BlockedError, Path, follow
 from absolute.description import Model
-from absolute.errors import AbsoluteError, AssemblyError, SingularPose, UnreachableInput
+from absolute.errors import AbsoluteError, AssemblyError, SingularError, UnreachableError
 from absolute.motion import Record
 from absolute.newton import SMALLEST_RCOND, Pose, accelerations, pose_at
 from absolute.series import chassis_series, input_series
@@ -37,8 +37,8 @@ def solve(
         DescriptionError: an axis of the model has no length or its lines point apart.
         InputError: names, shapes or values of inputs or chassis.
         AssemblyError: the bodies as drawn do not fit together.
-        UnreachableInput: the mechanism locks before the inputs of an instant.
-        SingularPose: the inputs of an instant do not fix the pose.
+        UnreachableError: the mechanism locks before the inputs of an instant.
+        SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
     """
     series = input_series(tuple(model.inputs), inputs)
@@ -86,34 +86,56 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     worst = int(np.abs(gap).argmax())
     owner = mechanism.stack.owners[worst]
     if not drawn.rcond >= SMALLEST_RCOND:
-        raise SingularPose(
+        raise SingularError(
             f"the drawing is singular: condition number about {_inverse(drawn.rcond):.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
             "Look for points on one line that should not be (a steering arm on the strut axis, "
             "an arm along its own axis) or an input at its dead point",
-            None, inputs, {}, float("nan"), _inverse(drawn.rcond),
-        )  # fmt: skip
+            None,
+            inputs,
+            {},
+            float("nan"),
+            _inverse(drawn.rcond),
+        )
 
     def path(share: float) -> tuple[Array, Array, Array]:
         return placed.values + share * gap, gap, np.zeros_like(gap)
 
     try:
-        return follow(mechanism, drawn, path)
-    except Blocked as blocked:
+        pose, spent = follow(mechanism, drawn, path)
+    except BlockedError as blocked:
         left = float(np.abs(gap).max()) * (1 - blocked.share) * size
         raise AssemblyError(
             f"the drawing cannot be assembled: rows are violated by up to {np.abs(gap).max() * size:.3g} mm "
             f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
             "draw the points closer to an assembled pose",
-            None, inputs, {}, left, _inverse(blocked.pose.rcond),
-        ) from blocked  # fmt: skip
+            None,
+            inputs,
+            {},
+            left,
+            _inverse(blocked.pose.rcond),
+        ) from blocked
+
+    senses = mechanism.stack.senses(pose.poses.rotation)
+    if (senses <= 0).any():
+        reversed_joint = mechanism.stack.sense_owners[int(senses.argmin())]
+        raise AssemblyError(
+            f"joint {reversed_joint!r} is reversed in the assembled pose; "
+            "draw its two lines in the same sense",
+            None,
+            inputs,
+            {},
+            pose.residual * size,
+            _inverse(pose.rcond),
+        )
+    return pose, spent
 
 
 def travel(
     mechanism: Mechanism, pose: Pose, start: Sequence[float], goal: Sequence[float], instant: int
 ) -> tuple[Pose, int]:
     """From the pose at inputs `start` to that at `goal`: straight, else one input after the other."""
-    blocks: list[Blocked] = []
+    blocks: list[BlockedError] = []
     spent = 0
     for legs in _itineraries(start, goal):
         arrived: Pose = pose
@@ -121,7 +143,7 @@ def travel(
             for begin, end in legs:
                 arrived, corrections = follow(mechanism, arrived, _straight(mechanism, begin, end))
                 spent += corrections
-        except Blocked as blocked:
+        except BlockedError as blocked:
             spent += blocked.corrections
             if not blocks:
                 blocks.append(blocked)
@@ -130,7 +152,9 @@ def travel(
     raise _refusal(mechanism, blocks[0], start, goal, instant)
 
 
-def _itineraries(start: Sequence[float], goal: Sequence[float]) -> list[list[tuple[list[float], list[float]]]]:
+def _itineraries(
+    start: Sequence[float], goal: Sequence[float]
+) -> list[list[tuple[list[float], list[float]]]]:
     begin, end = list(start), list(goal)
     ways = [[(begin, end)]]
     changed = [index for index, (a, b) in enumerate(zip(begin, end, strict=True)) if a != b]
@@ -159,30 +183,36 @@ def _straight(mechanism: Mechanism, begin: Sequence[float], end: Sequence[float]
 
 
 def _refusal(
-    mechanism: Mechanism, blocked: Blocked, start: Sequence[float], goal: Sequence[float], instant: int
+    mechanism: Mechanism, blocked: BlockedError, start: Sequence[float], goal: Sequence[float], instant: int
 ) -> AbsoluteError:
     names = tuple(mechanism.model.inputs)
     wanted = dict(zip(names, goal, strict=True))
-    reached = {
-        name: a + blocked.share * (b - a) for name, a, b in zip(names, start, goal, strict=True)
-    }
+    reached = {name: a + blocked.share * (b - a) for name, a, b in zip(names, start, goal, strict=True)}
     residual = blocked.pose.residual * mechanism.drawing.size
     condition = _inverse(blocked.pose.rcond)
     asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
     if blocked.share == 1.0 or np.allclose(list(reached.values()), goal, rtol=SMALLEST_RCOND, atol=0):
-        return SingularPose(
+        return SingularError(
             f"instant {instant}: {asked} is a singular pose (condition number about {condition:.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
             "stay away from the limit of the motion",
-            instant, wanted, reached, residual, condition,
-        )  # fmt: skip
-    return UnreachableInput(
+            instant,
+            wanted,
+            reached,
+            residual,
+            condition,
+        )
+    return UnreachableError(
         f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
         f"(condition number about {condition:.3g}, rows still closed to {residual:.3g} mm). "
         "Keep the inputs inside that limit, or reach them by another sequence of instants",
-        instant, wanted, reached, residual, condition,
-    )  # fmt: skip
+        instant,
+        wanted,
+        reached,
+        residual,
+        condition,
+    )
 
 
 def _inverse(rcond: float) -> float:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.rows import Rows
+from absolute.rows import Angle, Offset, Rows
 from absolute.solution import Array
 from absolute.vectors import LAST, NEXT
 
@@ -40,7 +40,7 @@ class RowStack:
     """Index arrays built once from the rows of a mechanism with `bodies` bodies, the chassis first."""
 
     def __init__(self, rows: Rows, bodies: int) -> None:
-        every = [*rows.angles, *rows.offsets]
+        every: list[Angle | Offset] = [*rows.angles, *rows.offsets]
         self.owners = tuple(row.owner for row in every)
         self.count = count = len(every)
         self._bodies = bodies
@@ -48,7 +48,11 @@ class RowStack:
         nothing = features.add(0, np.zeros(3), False)
         origins = [features.add(body, np.zeros(3), True) for body in range(bodies)]
         picks = [
-            (features.add(r.first, r.direction, False), features.add(r.second, r.partner, False), *[nothing] * 3)
+            (
+                features.add(r.first, r.direction, False),
+                features.add(r.second, r.partner, False),
+                *[nothing] * 3,
+            )
             for r in rows.angles
         ] + [
             (
@@ -96,7 +100,8 @@ class RowStack:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""
         lead = placed.parts.shape[:-3]
         numbers = placed.parts.reshape(*lead, -1)
-        products = numbers.take(self._turn_a, -1) * (numbers.take(self._turn_f, -1) - numbers.take(self._turn_c, -1))
+        arms = numbers.take(self._turn_f, -1) - numbers.take(self._turn_c, -1)
+        products = numbers.take(self._turn_a, -1) * arms
         turning = (products[..., 0, :, :] - products[..., 1, :, :]).reshape(*lead, -1)
         along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
         entries = np.concatenate((np.zeros((*lead, 1)), along, -along, turning), -1)
