@@ -22,11 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.certificate import certify
 from pointcoord.errors import AssemblyError
 from pointcoord.linear import Factors, factorise
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import polish
+from pointcoord.proof import pose_bound
 from pointcoord.quadratic import QuadraticMap
 from pointcoord.work import Work
 
@@ -50,8 +50,8 @@ class Pose:
         residual: largest row of C(y), shape (...,), in the mechanism's units (squared for links).
         iterations: Newton steps that the last correction took, shape (...,).
         condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
-        bound: proven distance to the exact assembly, largest coordinate, shape (...,), mm; infinite
-            where nothing is proven. See `certificate` for what it covers.
+        bound: proven distance of every coordinate of every point to the exact assembly, shape (...,),
+            mm; infinite where nothing is proven. See `certificate` for what it covers.
         work: what it cost.
     """
 
@@ -157,14 +157,13 @@ def as_pose(
     mechanism: Mechanism, y: Array, factors: Factors, iterations: NDArray[np.int64], work: Work
 ) -> Pose:
     """A pose with its residual, condition number and proven bound."""
-    proof = certify(mechanism.map, y, factors, mechanism.known_uncertainty(y))
     return Pose(
         y=y,
         factors=factors,
         residual=np.abs(mechanism.map.residual(y)).max(axis=-1),
         iterations=iterations,
         condition=factors.condition,
-        bound=proof.radius * mechanism.unit,
+        bound=pose_bound(mechanism, y, factors),
         work=work,
     )
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.assembly import Pose
 from pointcoord.errors import NotComputed, UnknownName
+from pointcoord.proof import Proof
 from pointcoord.work import Work
 
 Array = NDArray[np.float64]
@@ -79,14 +80,22 @@ class Motion(Samples):
         start: the assembled pose at the first instant, with its condition number and proven bound.
         work: what it cost.
         notes: numbers that have no meaning, and why; empty if there are none.
+        unit: the mechanism's size as a power of two, mm; scales of its coordinates.
         resample: evaluates the motion at other instants, if the method allows it.
+        prover: proves poses of the motion; called by `proof`.
     """
 
     method: str
     start: Pose
     work: Work
     notes: tuple[str, ...]
+    unit: float
     resample: Callable[[Array], Samples] | None
+    prover: Callable[[Array], Proof]
+
+    def proof(self) -> Proof:
+        """Proven error bound, condition number and sensitivity of the pose at each of the times."""
+        return self.prover(self.times)
 
     def at(self, instants: ArrayLike) -> Samples:
         """The same results at any instants inside the motion, without a new solve.

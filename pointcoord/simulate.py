@@ -24,6 +24,7 @@ from pointcoord.instants import Solved, solve_instants, square_velocity_term
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Motion, Samples
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
+from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
@@ -100,7 +101,9 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        return _motion(sampler(instants), method, pose, work, sampler)
+        return _motion(
+            sampler(instants), method, pose, work, sampler, _prover(mechanism, sampler.poses), mechanism
+        )
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -121,9 +124,14 @@ def _by_newton(
         plan = readout.plan
         width = sum(3 * len(state) for state in states)
         work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
-        return _motion(
-            readout.samples(solved.times, states), method, pose, pose.work + solved.work + work, None
-        )
+        samples = readout.samples(solved.times, states)
+
+        def poses(instants: Array) -> Array:
+            return solved.states[0][np.searchsorted(solved.times, instants)]
+
+        prover = _prover(readout.mechanism, poses)
+        cost = pose.work + solved.work + work
+        return _motion(samples, method, pose, cost, None, prover, readout.mechanism)
 
     try:
         solved = solve_instants(
@@ -136,8 +144,18 @@ def _by_newton(
     return motion(solved)
 
 
+def _prover(mechanism: Mechanism, poses: Callable[[Array], Array]) -> Callable[[Array], Proof]:
+    return lambda times: prove(mechanism, times, poses)
+
+
 def _motion(
-    samples: Samples, method: Method, pose: Pose, work: Work, resample: Callable[[Array], Samples] | None
+    samples: Samples,
+    method: Method,
+    pose: Pose,
+    work: Work,
+    resample: Callable[[Array], Samples] | None,
+    prover: Callable[[Array], Proof],
+    mechanism: Mechanism,
 ) -> Motion:
     notes = []
     for channel in (samples.angular_velocity, samples.angular_acceleration):
@@ -149,4 +167,13 @@ def _motion(
                     "instants: the printed quotient divides by zero there"
                 )
     fields = {name: getattr(samples, name) for name in samples.__dataclass_fields__}
-    return Motion(**fields, method=method, start=pose, work=work, notes=tuple(notes), resample=resample)
+    return Motion(
+        **fields,
+        method=method,
+        start=pose,
+        work=work,
+        notes=tuple(notes),
+        unit=float(mechanism.unit),
+        resample=resample,
+        prover=prover,
+    )

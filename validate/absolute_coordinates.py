@@ -1,0 +1,86 @@
+"""The absolute-coordinate model as a formulation. It gets hardpoints and inputs, and nothing solved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+import absolute
+from pointcoord.scene import MechanismPart, Scene
+from validate.formulation import Accuracy, FormulationError, Solution
+from validate.inputs import rates
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(float).eps)
+# A row of the model (a rotation applied to a body point, twice, and a difference) takes some 16
+# roundings of eps / 2 on numbers as large as the mechanism.
+ROUNDINGS = 8.0
+
+
+class AbsoluteCoordinates:
+    """Bodies with poses in Pinocchio."""
+
+    name = "absolute"
+
+    def solve(self, scene: Scene) -> Solution:
+        """Solve a scene; the pose error is the estimate ROUNDINGS * eps * condition * size.
+
+        Raises:
+            FormulationError: the model refuses the scene.
+        """
+        part, times, wanted = scene.mechanism, scene.instants, scene.effects
+        inputs = {name: rates(law, times) for name, law in scene.inputs.items()}
+        heave = inputs.pop("heave", None)
+        chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
+        needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
+        try:
+            model = absolute.macpherson(part.points, up=part.up, right=part.right)
+            solved = absolute.solve(model, inputs, chassis=chassis, rates=needs_rates, conditions=True)
+        except absolute.AbsoluteError as error:
+            raise FormulationError(self.name, error) from error
+        condition = np.ones(len(times)) if solved.condition is None else solved.condition
+        corners = np.array(list(part.points.values()))
+        size = float((corners.max(axis=0) - corners.min(axis=0)).max())
+        distance = float(np.abs(np.stack(list(solved.position.values()))).max())
+        return Solution(
+            formulation=self.name,
+            times=times,
+            position=solved.position,
+            velocity=solved.velocity if "velocity" in wanted else {},
+            acceleration=solved.acceleration if "acceleration" in wanted else {},
+            angular_velocity=_knuckle(solved.angular_velocity, wanted),
+            angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
+            wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
+            accuracy=Accuracy(
+                # The last term: a result far from the origin is rounded once more when it is stored.
+                pose_error=ROUNDINGS * EPS * condition * size + EPS * distance,
+                proven=False,
+                condition=condition,
+                sensitivity=np.zeros(len(times)),
+            ),
+        )
+
+
+def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> dict[str, Array]:
+    return {"knuckle": rates_of_bodies["knuckle"]} if "knuckle_rates" in wanted else {}
+
+
+def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, Array]:
+    """Camber (17) and kingpin (16) as the paper prints them, after turning the car into its axes.
+
+    A right wheel is first mirrored to the left, where the paper's formulas hold.
+    """
+    right, up = np.array(part.right), np.array(part.up)
+    side = 1.0 if part.side == "left" else -1.0
+    y = {
+        name: side * (position[name] @ right) for name in ("lower_ball_joint", "strut_lower", "wheel_centre")
+    }
+    z = {name: position[name] @ up for name in y}
+    p5, p7, p10 = "lower_ball_joint", "strut_lower", "wheel_centre"
+    return {
+        "kingpin": np.arctan((y[p7] - y[p5]) / (z[p7] - z[p5])),
+        "camber": np.arctan((z[p7] - z[p10]) / (y[p7] - y[p10])),
+    }

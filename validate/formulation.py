@@ -1,0 +1,84 @@
+"""What a formulation is to a comparison: a name, and a way from a scene to plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What a formulation says of its own accuracy; `tolerance` makes tolerances of it.
+
+    Attributes:
+        pose_error: error of each coordinate of each point, at most, shape (N,), mm.
+        proven: whether `pose_error` is a proven bound or an estimate.
+        condition: condition number of the matrix that gives the rates, shape (N,).
+        sensitivity: relative change of the rates per change of the pose, shape (N,), 1/mm; zero if
+            the formulation does not know it.
+        truncation: relative error of the rates that the method leaves on purpose.
+    """
+
+    pose_error: Array
+    proven: bool
+    condition: Array
+    sensitivity: Array
+    truncation: float = 0.0
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solved scene as plain arrays; empty mappings where the scene did not ask.
+
+    Attributes:
+        times: shape (N,), s.
+        position, velocity, acceleration: by point, (N, 3), mm and s.
+        angular_velocity, angular_acceleration: by body, (N, 3), rad and s, world axes.
+        wheel: `camber` and `kingpin`, (N,), rad.
+        notes: what the formulation itself says of numbers that have no meaning.
+    """
+
+    formulation: str
+    times: Array
+    position: Mapping[str, Array]
+    velocity: Mapping[str, Array]
+    acceleration: Mapping[str, Array]
+    angular_velocity: Mapping[str, Array]
+    angular_acceleration: Mapping[str, Array]
+    wheel: Mapping[str, Array]
+    accuracy: Accuracy
+    notes: tuple[str, ...] = ()
+
+
+class Formulation(Protocol):
+    """A way to solve a scene. Adding one is writing one class with these two members."""
+
+    @property
+    def name(self) -> str:
+        """Name on the command line and in reports."""
+        ...
+
+    def solve(self, scene: Scene) -> Solution:
+        """Solve a scene at its instants.
+
+        Raises:
+            FormulationError: the scene cannot be solved; carries the formulation's own error.
+        """
+        ...
+
+
+class FormulationError(Exception):
+    """A formulation refused a scene, with its own reason as the cause."""
+
+    def __init__(self, formulation: str, reason: Exception) -> None:
+        self.formulation = formulation
+        self.reason = reason
+        super().__init__(f"{formulation}: {reason}")

@@ -1,0 +1,56 @@
+"""The formulations that can be compared, by name."""
+
+from __future__ import annotations
+
+from validate.formulation import Formulation
+from validate.point_coordinates import PointCoordinates
+
+
+class UnknownFormulation(Exception):
+    """A name that no formulation has; the message lists those that exist."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
+
+
+class MissingPackage(Exception):
+    """A formulation needs a package that is not installed."""
+
+    def __init__(self, formulation: str, package: str) -> None:
+        self.formulation = formulation
+        self.package = package
+        super().__init__(
+            f"the formulation {formulation!r} needs the package {package!r}, which is not installed; "
+            "try: pip install 'pointcoord[validate]'"
+        )
+
+
+_POINT_COORDINATES: dict[str, Formulation] = {
+    f.name: f
+    for f in (
+        PointCoordinates("pointcoord", "series"),
+        PointCoordinates("pointcoord-newton", "newton"),
+        PointCoordinates("printed", "printed"),
+    )
+}
+
+NAMES = (*_POINT_COORDINATES, "absolute")
+
+
+def formulation(name: str) -> Formulation:
+    """A formulation by its name. Only the absolute model needs Pinocchio, and only when it is used.
+
+    Raises:
+        UnknownFormulation: no formulation has this name.
+        MissingPackage: Pinocchio is not installed.
+    """
+    if name in _POINT_COORDINATES:
+        return _POINT_COORDINATES[name]
+    if name != "absolute":
+        raise UnknownFormulation(name)
+    try:
+        from validate.absolute_coordinates import AbsoluteCoordinates
+    except ModuleNotFoundError as error:
+        raise MissingPackage(name, error.name or "pin") from error
+    return AbsoluteCoordinates()

@@ -1,0 +1,117 @@
+r"""Tolerances, each derived from what two formulations say of their own accuracy.
+
+For a pair of formulations 1, 2 at one instant, with e the error of a pose, k the condition number, s
+the sensitivity of the rates to the pose (its largest known value), V and A the largest speed and
+acceleration of any point in the scene, eps the rounding unit and C = 8 (each row of the linear systems
+takes at most 8 roundings of eps / 2 in each of two formulations):
+
+    T(position)     = e1 + e2
+    T(velocity)     = [C eps (k1 + k2) + s T(position) + truncation] V
+    T(acceleration) = [C eps (k1 + k2) + s T(position) + truncation] (A + s V^2) + 2 s V T(velocity)
+
+The pose error of pointcoord is a proven bound; of the absolute model it is C eps k size. The velocity
+solves C_u v = -C_w w', and a pose that is off by T turns C_u by s T relative to itself; the
+acceleration's right side holds 2 B(v, v), which a pose shift and a velocity error change as written.
+
+The rates of a body with points r_i about their centroid, |r_i| <= R, smallest eigenvalue m of its
+inertia tensor, and w, a its largest angular velocity and acceleration, are least squares, so
+
+    T(omega) = g [T(velocity) + w T(position)],    g = 2 sum |r_i| / m
+    T(alpha) = g [T(acceleration) + (a + 2 w^2) T(position) + 2 w R T(omega)]
+
+and an angle of a line of length l turns by at most T(angle) = 4 T(position) / l + 4 eps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.formulation import Solution
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(float).eps)
+ROUNDINGS = 8.0
+
+KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
+ANGLE_LINES = {
+    "camber": ("strut_lower", "wheel_centre"),
+    "kingpin": ("lower_ball_joint", "strut_lower"),
+}
+
+
+@dataclass(frozen=True)
+class Factors:
+    """The factors of a pair's tolerances, for the report; arrays over the instants where they vary."""
+
+    position: Array
+    condition: Array
+    sensitivity: Array
+    truncation: float
+    speed: float
+    acceleration: float
+
+
+def factors(first: Solution, second: Solution) -> Factors:
+    """What two solutions of a scene say of their accuracy, put together.
+
+    V and A are taken over both, so that a wrong rate widens its own tolerance by no more than itself.
+    """
+    a, b = first.accuracy, second.accuracy
+    return Factors(
+        position=a.pose_error + b.pose_error,
+        condition=a.condition + b.condition,
+        sensitivity=np.maximum(a.sensitivity, b.sensitivity),
+        truncation=a.truncation + b.truncation,
+        speed=min(_largest(first.velocity), _largest(second.velocity)),
+        acceleration=min(_largest(first.acceleration), _largest(second.acceleration)),
+    )
+
+
+def _largest(vectors: Mapping[str, Array]) -> float:
+    norms = [float(np.max(np.linalg.norm(v, axis=-1))) for v in vectors.values() if v.size]
+    return max(norms, default=0.0)
+
+
+def point_tolerances(f: Factors) -> dict[str, Array]:
+    """Tolerances of position (mm), velocity (mm/s) and acceleration (mm/s^2), each of shape (N,)."""
+    relative = ROUNDINGS * EPS * f.condition + f.sensitivity * f.position + f.truncation
+    velocity = relative * f.speed
+    bent = f.acceleration + f.sensitivity * f.speed**2
+    acceleration = relative * bent + 2.0 * f.sensitivity * f.speed * velocity
+    return {"position": f.position, "velocity": velocity, "acceleration": acceleration}
+
+
+def body_tolerances(
+    points: Mapping[str, Array], tolerances: Mapping[str, Array], spin: float, spin_rate: float
+) -> dict[str, Array]:
+    """Tolerances of a body's angular velocity (rad/s) and acceleration (rad/s^2), shape (N,).
+
+    Args:
+        points: positions of the body's points, (N, 3), mm.
+        tolerances: of the points, as `point_tolerances` gives them.
+        spin, spin_rate: the body's largest angular velocity and acceleration.
+    """
+    stack = np.stack(list(points.values()), axis=-2)
+    r = stack - stack.mean(axis=-2, keepdims=True)
+    lengths = np.linalg.norm(r, axis=-1)
+    inertia = np.sum(lengths**2, axis=-1)[:, None, None] * np.eye(3) - np.swapaxes(r, -2, -1) @ r
+    gain = 2.0 * lengths.sum(axis=-1) / np.linalg.eigvalsh(inertia)[:, 0]
+    omega = gain * (tolerances["velocity"] + spin * tolerances["position"])
+    pulled = (spin_rate + 2.0 * spin**2) * tolerances["position"]
+    turned = 2.0 * spin * lengths.max(axis=-1) * omega
+    return {
+        "angular_velocity": omega,
+        "angular_acceleration": gain * (tolerances["acceleration"] + pulled + turned),
+    }
+
+
+def angle_tolerance(name: str, position: Mapping[str, Array], tolerance: Array) -> Array:
+    """Tolerance of camber or kingpin angle, shape (N,), rad."""
+    start, end = ANGLE_LINES[name]
+    length = np.linalg.norm(position[end] - position[start], axis=-1)
+    return np.asarray(4.0 * tolerance / length + 4.0 * EPS)
