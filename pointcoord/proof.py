@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,42 +20,53 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class Proof:
-    """What is proven of each pose.
+    """What is proven of each pose, and how its rates depend on it.
 
     Attributes:
         times: shape (N,), s.
         bound: distance from every coordinate of every point to the exact assembly, at most, (N,), mm;
             infinite where nothing is proven. See `certificate` for what it covers.
         condition: condition number of the Jacobian, (N,).
-        sensitivity: relative change of the rates per change of the pose, (N,), 1/mm: the Lipschitz
-            constant of X C_u in the maximum norm.
+        velocity_sensitivity: change of a velocity per displacement of the pose, at most, (N,), 1/s;
+            zero where no velocity was solved for.
+        acceleration_sensitivity: the same of an acceleration, at given velocities, (N,), 1/s^2.
         residual: largest row of C(y), (N,), in the mechanism's units.
     """
 
     times: Array
     bound: Array
     condition: Array
-    sensitivity: Array
+    velocity_sensitivity: Array
+    acceleration_sensitivity: Array
     residual: Array
 
 
-def prove(mechanism: Mechanism, times: Array, poses: Callable[[Array], Array]) -> Proof:
+def prove(mechanism: Mechanism, times: Array, states: Callable[[Array], Sequence[Array]]) -> Proof:
     """Prove poses in blocks.
 
     Args:
         times: instants, shape (N,), s.
-        poses: gives the coordinates y, shape (n, size), at some of the instants.
+        states: gives the coordinates y, shape (n, size), at some of the instants, and as many of their
+            time derivatives as were solved for.
     """
     parts = []
     for low in range(0, len(times), BLOCK):
-        y = poses(times[low : low + BLOCK])
+        y, *rates = states(times[low : low + BLOCK])
         factors = factorise(mechanism.map.jacobian(y))
-        ones = np.ones((*y.shape[:-1], mechanism.map.unknowns))
-        sensitivity = mechanism.map.lipschitz(factors.preconditioner, ones) / mechanism.unit
         residual = np.abs(mechanism.map.residual(y)).max(axis=-1)
-        parts.append((pose_bound(mechanism, y, factors), factors.condition, sensitivity, residual))
+        first, second = (
+            _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
+            for order in (0, 1)
+        )
+        parts.append((pose_bound(mechanism, y, factors), factors.condition, first, second, residual))
     columns = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Proof(times, *columns)
+
+
+def _sensitivity(mechanism: Mechanism, factors: Factors, rate: Array) -> Array:
+    """max_i (|C_u^-1| |2 B(., rate)|)_i: how a displaced pose changes what solves C_u rate = ..."""
+    effect = mechanism.map.displacement_effect(rate)[..., None]
+    return np.asarray((np.abs(factors.preconditioner) @ effect)[..., 0].max(axis=-1))
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:

@@ -102,7 +102,7 @@ def _by_series(
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
         return _motion(
-            sampler(instants), method, pose, work, sampler, _prover(mechanism, sampler.poses), mechanism
+            sampler(instants), method, pose, work, sampler, _prover(mechanism, sampler.coordinates), mechanism
         )
 
     try:
@@ -126,10 +126,11 @@ def _by_newton(
         work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
         samples = readout.samples(solved.times, states)
 
-        def poses(instants: Array) -> Array:
-            return solved.states[0][np.searchsorted(solved.times, instants)]
+        def coordinates(instants: Array) -> list[Array]:
+            places = np.searchsorted(solved.times, instants)
+            return [state[places] for state in solved.states]
 
-        prover = _prover(readout.mechanism, poses)
+        prover = _prover(readout.mechanism, coordinates)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, cost, None, prover, readout.mechanism)
 
@@ -144,8 +145,8 @@ def _by_newton(
     return motion(solved)
 
 
-def _prover(mechanism: Mechanism, poses: Callable[[Array], Array]) -> Callable[[Array], Proof]:
-    return lambda times: prove(mechanism, times, poses)
+def _prover(mechanism: Mechanism, coordinates: Callable[[Array], list[Array]]) -> Callable[[Array], Proof]:
+    return lambda times: prove(mechanism, times, coordinates)
 
 
 def _motion(

@@ -80,13 +80,14 @@ class Sampler:
         ordered = [{name: state[name] for name in topology.points if name in state} for state in states]
         return self.readout.samples(instants, ordered)
 
-    def poses(self, instants: Array) -> Array:
-        """Coordinates y at instants, shape (N, size): the unknown ones from the series."""
-        mechanism = self.readout.mechanism
-        y = evaluate(self.chain, [s.coefficients for s in self.chain.segments], instants, 0)[..., 0, :, :]
+    def coordinates(self, instants: Array) -> list[Array]:
+        """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
+        mechanism, derivative = self.readout.mechanism, self.readout.plan.derivative
+        pieces = [segment.coefficients for segment in self.chain.segments]
+        y, *rates = evaluate(self.chain, pieces, instants, derivative)
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
         y[..., mechanism.map.unknowns :] = known[..., 0, :]
-        return y
+        return [y, *rates]
 
     @property
     def work(self) -> Work:

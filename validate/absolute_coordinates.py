@@ -59,7 +59,8 @@ class AbsoluteCoordinates:
                 pose_error=ROUNDINGS * EPS * condition * size + EPS * distance,
                 proven=False,
                 condition=condition,
-                sensitivity=np.zeros(len(times)),
+                velocity_sensitivity=np.zeros(len(times)),
+                acceleration_sensitivity=np.zeros(len(times)),
             ),
         )
 

@@ -22,15 +22,17 @@ class Accuracy:
         pose_error: error of each coordinate of each point, at most, shape (N,), mm.
         proven: whether `pose_error` is a proven bound or an estimate.
         condition: condition number of the matrix that gives the rates, shape (N,).
-        sensitivity: relative change of the rates per change of the pose, shape (N,), 1/mm; zero if
-            the formulation does not know it.
+        velocity_sensitivity: change of a velocity per displacement of the pose, shape (N,), 1/s.
+        acceleration_sensitivity: the same of an acceleration, shape (N,), 1/s^2. Both are zero if the
+            formulation does not know them.
         truncation: relative error of the rates that the method leaves on purpose.
     """
 
     pose_error: Array
     proven: bool
     condition: Array
-    sensitivity: Array
+    velocity_sensitivity: Array
+    acceleration_sensitivity: Array
     truncation: float = 0.0
 
 

@@ -23,5 +23,5 @@ def rates(part: InputPart, times: Array) -> Array:
         value = wave.offset + wave.amplitude * np.sin(angle)
         first = wave.amplitude * speed * np.cos(angle)
         return np.stack([value, first, -wave.amplitude * speed**2 * np.sin(angle)], axis=-1)
-    law = Polynomial(part.polynomial if part.polynomial is not None else [part.constant])
+    law = Polynomial([part.constant or 0.0] if part.polynomial is None else part.polynomial)
     return np.stack([law(times), law.deriv(1)(times), law.deriv(2)(times)], axis=-1)

@@ -1,17 +1,18 @@
 r"""Tolerances, each derived from what two formulations say of their own accuracy.
 
-For a pair of formulations 1, 2 at one instant, with e the error of a pose, k the condition number, s
-the sensitivity of the rates to the pose (its largest known value), V and A the largest speed and
-acceleration of any point in the scene, eps the rounding unit and C = 8 (each row of the linear systems
-takes at most 8 roundings of eps / 2 in each of two formulations):
+For a pair of formulations 1, 2 at one instant, with e the error of a pose, k the condition number, s1
+and s2 the largest change of a velocity and of an acceleration per displacement of the pose (the larger
+known value), V and A the largest speed and acceleration of any point in the scene, eps the rounding
+unit and C = 8 (each row of the linear systems takes at most 8 roundings of eps / 2 in each of two
+formulations):
 
     T(position)     = e1 + e2
-    T(velocity)     = [C eps (k1 + k2) + s T(position) + truncation] V
-    T(acceleration) = [C eps (k1 + k2) + s T(position) + truncation] (A + s V^2) + 2 s V T(velocity)
+    T(velocity)     = s1 T(position) + [C eps (k1 + k2) + truncation] V
+    T(acceleration) = s2 T(position) + 2 s1 T(velocity) + [C eps (k1 + k2) + truncation] A + C eps s1 V
 
 The pose error of pointcoord is a proven bound; of the absolute model it is C eps k size. The velocity
-solves C_u v = -C_w w', and a pose that is off by T turns C_u by s T relative to itself; the
-acceleration's right side holds 2 B(v, v), which a pose shift and a velocity error change as written.
+solves C_u v = -C_w w', so a pose displaced by d changes it by C_u^-1 2 B(d, v), at most s1 |d|. The
+acceleration solves C_u a = -C_w w'' - 2 B(v, v), where a velocity error enters as 4 B(v, .).
 
 The rates of a body with points r_i about their centroid, |r_i| <= R, smallest eigenvalue m of its
 inertia tensor, and w, a its largest angular velocity and acceleration, are least squares, so
@@ -50,7 +51,8 @@ class Factors:
 
     position: Array
     condition: Array
-    sensitivity: Array
+    velocity_sensitivity: Array
+    acceleration_sensitivity: Array
     truncation: float
     speed: float
     acceleration: float
@@ -65,7 +67,8 @@ def factors(first: Solution, second: Solution) -> Factors:
     return Factors(
         position=a.pose_error + b.pose_error,
         condition=a.condition + b.condition,
-        sensitivity=np.maximum(a.sensitivity, b.sensitivity),
+        velocity_sensitivity=np.maximum(a.velocity_sensitivity, b.velocity_sensitivity),
+        acceleration_sensitivity=np.maximum(a.acceleration_sensitivity, b.acceleration_sensitivity),
         truncation=a.truncation + b.truncation,
         speed=min(_largest(first.velocity), _largest(second.velocity)),
         acceleration=min(_largest(first.acceleration), _largest(second.acceleration)),
@@ -79,10 +82,14 @@ def _largest(vectors: Mapping[str, Array]) -> float:
 
 def point_tolerances(f: Factors) -> dict[str, Array]:
     """Tolerances of position (mm), velocity (mm/s) and acceleration (mm/s^2), each of shape (N,)."""
-    relative = ROUNDINGS * EPS * f.condition + f.sensitivity * f.position + f.truncation
-    velocity = relative * f.speed
-    bent = f.acceleration + f.sensitivity * f.speed**2
-    acceleration = relative * bent + 2.0 * f.sensitivity * f.speed * velocity
+    relative = ROUNDINGS * EPS * f.condition + f.truncation
+    velocity = f.velocity_sensitivity * f.position + relative * f.speed
+    acceleration = (
+        f.acceleration_sensitivity * f.position
+        + 2.0 * f.velocity_sensitivity * velocity
+        + relative * f.acceleration
+        + ROUNDINGS * EPS * f.velocity_sensitivity * f.speed
+    )
     return {"position": f.position, "velocity": velocity, "acceleration": acceleration}
 
 

@@ -1,0 +1,171 @@
+"""Results as text for people and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from validate.compare import Comparison, Outcome
+from validate.errata import Finding
+from validate.paper import WHY_NOT_EQUAL, PaperRow, root_mean_square
+from validate.tolerance import EPS, ROUNDINGS
+
+# Columns of words, which read better from the left.
+LEFT = ("worst at", "wrong quantity", "erratum", "slip of print", "verdict")
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Columns of text: words to the left, numbers to the right."""
+    lines = [list(head), *(list(row) for row in rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    lines.insert(1, ["-" * width for width in widths])
+    return "\n".join(
+        "  ".join(
+            cell.ljust(w) if i == 0 else cell.rjust(w)
+            for i, (cell, w) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    )
+
+
+def _with_unit(value: float, unit: str) -> str:
+    """Two significant digits, as tolerances deserve."""
+    return f"{value:.1e} {unit}" if math.isfinite(value) else "not a number"
+
+
+def worst_rows(outcome: Outcome) -> list[Comparison]:
+    """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
+    worst: dict[str, Comparison] = {}
+    for row in outcome.rows:
+        # The two wheel angles are quantities of their own.
+        key = row.name if row.quantity == "wheel" else row.quantity
+        if key not in worst or row.share > worst[key].share:
+            worst[key] = row
+    return list(worst.values())
+
+
+def outcome_text(outcome: Outcome) -> str:
+    """The agreement table of one scene and pair, and the factors of its tolerances."""
+    first, second = (s.formulation for s in outcome.solutions)
+    rows = [
+        (
+            row.name if row.quantity == "wheel" else row.quantity.replace("_", " "),
+            "" if row.quantity == "wheel" else row.name,
+            _with_unit(row.difference, row.unit),
+            _with_unit(row.tolerance, row.unit),
+            f"{row.instant:.4g} s",
+            row.verdict if row.share <= 1.0 else f"DISAGREES, {row.share:.1e} times",
+        )
+        for row in worst_rows(outcome)
+    ]
+    f = outcome.factors
+    lines = [
+        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants",
+        table(("quantity", "worst at", "largest difference", "held to", "at", "verdict"), rows),
+        f"  tolerances from C = {ROUNDINGS:g}, eps = {EPS:.2g}, cond <= {f.condition.max():.3g} (both), "
+        f"pose error <= {f.position.max():.2g} mm (both), s1 <= {f.velocity_sensitivity.max():.2g} /s, "
+        f"s2 <= {f.acceleration_sensitivity.max():.2g} /s^2, "
+        f"speed {f.speed:.3g} mm/s, acceleration {f.acceleration:.3g} mm/s^2",
+    ]
+    return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])
+
+
+def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
+    """What the printed formulas get wrong, each beside its erratum."""
+    if not findings:
+        return f"The paper's printed formulas agree in {', '.join(scenes)}."
+    rows = [
+        (f.scene, f.quantity.replace("_", " "), _with_unit(f.worst.difference, f.worst.unit), f.erratum)
+        for f in findings
+    ]
+    lines = table(("scene", "wrong quantity", "largest difference", "erratum"), rows)
+    return "The paper's formulas as printed, against the mended ones:\n" + lines
+
+
+def paper_text(rows: Sequence[PaperRow]) -> str:
+    """Tables 2 and 3, printed and computed."""
+    blocks = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
+    for number_of_table, label in ((2, "theta [deg]"), (3, "S [mm]")):
+        mine = [row for row in rows if row.printed.table == number_of_table]
+        lines = [
+            (
+                f"{row.printed.time:.2f}",
+                f"{row.printed.input:g}",
+                f"{row.input:.2f}",
+                _vector(row.printed.wheel_centre, "{:g}"),
+                _vector(row.wheel_centre, "{:.1f}"),
+                f"{row.position_gap:.1f}",
+                f"{row.omega_gap:.2f}",
+                f"{row.alpha_gap:.2f}",
+                row.printed.slip,
+            )
+            for row in mine
+        ]
+        head = (
+            "t [s]",
+            label,
+            "ours",
+            "wheel centre, printed",
+            "ours [mm]",
+            "apart",
+            "omega apart",
+            "alpha apart",
+            "slip of print",
+        )
+        blocks.append(f"Table {number_of_table}\n" + table(head, lines))
+    blocks.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
+    return "\n".join(blocks)
+
+
+def _vector(vector: Sequence[float], form: str) -> str:
+    return "(" + ", ".join(form.format(component) for component in vector) + ")"
+
+
+def outcome_data(outcome: Outcome) -> dict[str, Any]:
+    """One comparison as plain data: every row, and the factors of the tolerances."""
+    f = outcome.factors
+    return {
+        "scene": outcome.scene,
+        "formulations": [s.formulation for s in outcome.solutions],
+        "instants": len(outcome.solutions[0].times),
+        "agreed": outcome.agreed,
+        "rows": [_finite(asdict(row)) for row in outcome.rows],
+        "factors": {
+            "C": ROUNDINGS,
+            "eps": EPS,
+            "condition": float(f.condition.max()),
+            "pose_error_mm": float(f.position.max()),
+            "velocity_sensitivity_per_s": float(f.velocity_sensitivity.max()),
+            "acceleration_sensitivity_per_s2": float(f.acceleration_sensitivity.max()),
+            "truncation": f.truncation,
+            "speed_mm_per_s": f.speed,
+            "acceleration_mm_per_s2": f.acceleration,
+        },
+        "notes": list(outcome.notes),
+    }
+
+
+def finding_data(finding: Finding) -> dict[str, Any]:
+    """A wrong printed quantity as plain data."""
+    return {
+        "scene": finding.scene,
+        "quantity": finding.quantity,
+        "worst": _finite(asdict(finding.worst)),
+        "erratum": finding.erratum,
+    }
+
+
+def paper_data(rows: Sequence[PaperRow]) -> dict[str, Any]:
+    """The comparison with the printed tables as plain data."""
+    return {
+        "explanation": WHY_NOT_EQUAL,
+        "wheel_centre_rms_mm": root_mean_square(rows),
+        "rows": [asdict(row) for row in rows],
+    }
+
+
+def _finite(row: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no infinity: a number that does not exist is null."""
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
