@@ -65,7 +65,7 @@ def checked(name: str, values: object, shape: tuple[int, ...], content: str) -> 
         raise InputError(
             f"{name!r} has shape {array.shape}; {wanted} is needed: {content}", name, None, array.shape
         )
-    bad = np.flatnonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=1))
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=tuple(range(1, array.ndim))))
     if bad.size:
         instant = int(bad[0])
         raise InputError(

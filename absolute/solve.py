@@ -8,7 +8,7 @@ import numpy as np
 from absolute.assembly import Mechanism
 from absolute.continuation import BlockedError, Path, follow
 from absolute.description import Model
-from absolute.errors import AbsoluteError, AssemblyError, SingularError, UnreachableError
+from absolute.errors import AbsoluteError, AssemblyError, InputError, SingularError, UnreachableError
 from absolute.motion import Record
 from absolute.newton import SMALLEST_RCOND, Pose, accelerations, pose_at
 from absolute.series import chassis_series, input_series
@@ -49,22 +49,35 @@ def solve(
     if count == 0:
         return record.solution(0, carried)
     try:
-        pose, spent = assemble(mechanism)
-        at = mechanism.drawn_inputs.tolist()
-        for instant in range(count):
-            values, speeds, seconds = series[instant].tolist()
-            pose, steps = travel(mechanism, pose, at, values, instant)
-            motion = None
-            if rates:
-                _, first, second = mechanism.targets(values, speeds, seconds)
-                motion = accelerations(mechanism, pose, first, second)
-            record.write(instant, pose, motion, steps + spent)
-            at, spent = values, 0
+        # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
+        with np.errstate(over="ignore", invalid="ignore"):
+            _march(mechanism, series, rates, record)
     except AbsoluteError as error:
         done = record.written
         error.partial = record.solution(done, carried) if done else None
         raise
     return record.solution(count, carried)
+
+
+def _march(mechanism: Mechanism, series: Array, rates: bool, record: Record) -> None:
+    pose, spent = assemble(mechanism)
+    at = mechanism.drawn_inputs.tolist()
+    for instant, (values, speeds, seconds) in enumerate(series.tolist()):
+        pose, corrections = travel(mechanism, pose, at, values, instant)
+        motion = None
+        if rates:
+            _, first, second = mechanism.targets(values, speeds, seconds)
+            motion = accelerations(mechanism, pose, first, second)
+            if not np.isfinite(motion[1]).all():
+                raise InputError(
+                    f"instant {instant}: rates {speeds} and accelerations {seconds} of the inputs "
+                    f"{list(mechanism.model.inputs)} overflow; give smaller ones",
+                    next(iter(mechanism.model.inputs)),
+                    instant,
+                    (speeds, seconds),
+                )
+        record.write(instant, pose, motion, corrections + spent)
+        at, spent = values, 0
 
 
 def assemble(mechanism: Mechanism) -> tuple[Pose, int]:

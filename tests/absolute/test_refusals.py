@@ -1,0 +1,240 @@
+"""What cannot be described or solved is refused with the name, the place and the value."""
+
+import dataclasses
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import absolute
+from absolute import Axis, DescriptionError, InputError, Joint
+
+Array = NDArray[np.float64]
+Table = dict[str, tuple[float, float, float]]
+
+
+def test_missing_and_unknown_points_are_named(table: Table) -> None:
+    with pytest.raises(DescriptionError, match="missing: \\['strut_top'\\]"):
+        absolute.macpherson({name: p for name, p in table.items() if name != "strut_top"})
+    with pytest.raises(DescriptionError, match="unknown: \\['spring'\\]"):
+        absolute.macpherson({**table, "spring": (0, 0, 0)})
+
+
+@pytest.mark.parametrize(
+    "bad", [(1.0, 2.0), (1.0, np.nan, 2.0), (np.inf, 0.0, 0.0), "abc", None, ((1, 2, 3),)]
+)
+def test_a_point_needs_three_finite_numbers(table: Table, bad: Any) -> None:
+    with pytest.raises(DescriptionError, match="wheel_centre") as caught:
+        absolute.macpherson({**table, "wheel_centre": bad})
+    assert caught.value.name == "wheel_centre"
+
+
+@pytest.mark.parametrize(
+    ("moved", "onto"),
+    [
+        ("lower_arm_rear", "lower_arm_front"),
+        ("lower_ball_joint", "lower_arm_front"),
+        ("strut_lower", "lower_ball_joint"),
+        ("strut_rod_end", "strut_top"),
+        ("tie_rod_outer", "tie_rod_inner"),
+    ],
+)
+def test_coincident_points_of_an_axis_are_refused(
+    table: Table, held: Callable[[float, float], dict[str, Array]], moved: str, onto: str
+) -> None:
+    with pytest.raises(DescriptionError, match=f"{moved}|{onto}"):
+        absolute.solve(absolute.macpherson({**table, moved: table[onto]}), held(1.6, 0.0))
+
+
+def test_nearly_coincident_points_of_an_axis_are_refused(
+    table: Table, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    x, y, z = table["lower_ball_joint"]
+    with pytest.raises(DescriptionError, match="apart"):
+        absolute.solve(absolute.macpherson({**table, "strut_lower": (x, y, z + 1e-7)}), held(1.6, 0.0))
+
+
+def test_directions_are_checked(table: Table) -> None:
+    with pytest.raises(DescriptionError, match="right angle"):
+        absolute.macpherson(table, up=(0, 0, 1), right=(0, 1, 0.1))
+    with pytest.raises(DescriptionError, match="up is"):
+        absolute.macpherson(table, up=(0, 0, 0))
+    with pytest.raises(DescriptionError, match="right is"):
+        absolute.macpherson(table, right=(0, np.nan, 0))
+
+
+def test_reversed_strut_is_refused(table: Table, held: Callable[[float, float], dict[str, Array]]) -> None:
+    swapped = {**table, "strut_lower": table["lower_ball_joint"], "lower_ball_joint": table["strut_lower"]}
+    with pytest.raises(DescriptionError, match=r"strut.*less than 90"):
+        absolute.solve(absolute.macpherson(swapped), held(1.6, 0.0))
+
+
+def test_ball_joint_on_its_own_pivot_axis_is_singular(
+    table: Table, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    front, rear = np.array(table["lower_arm_front"]), np.array(table["lower_arm_rear"])
+    ball, top = 0.4 * front + 0.6 * rear, np.array(table["strut_top"])
+    # The strut is drawn along its own line, so that nothing else is wrong.
+    drawn = {
+        "lower_ball_joint": ball,
+        "strut_lower": 0.9 * ball + 0.1 * top,
+        "strut_rod_end": 0.5 * (ball + top),
+    }
+    with pytest.raises(absolute.SingularError, match="condition number") as caught:
+        absolute.solve(absolute.macpherson({**table, **drawn}), held(1.6, 0.0))
+    assert caught.value.instant is None
+
+
+def test_steering_arm_on_the_strut_axis_is_refused(
+    table: Table, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    low, high = np.array(table["lower_ball_joint"]), np.array(table["strut_lower"])
+    straight = {**table, "tie_rod_outer": tuple((0.5 * low + 0.5 * high).tolist())}
+    with pytest.raises((absolute.SingularError, absolute.AssemblyError)):
+        absolute.solve(absolute.macpherson(straight), held(1.6, 0.0))
+
+
+def test_exact_limit_of_the_motion_is_refused_as_singular(
+    table: Table, strut: absolute.Model, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    # A level pivot axis through the origin side: the ball joint is at its highest straight above.
+    level = {**table, "lower_arm_rear": (540.0, -5.0, -10.0)}
+    d = np.subtract(level["lower_ball_joint"], level["lower_arm_front"])
+    angle = float(np.arccos(np.hypot(d[1], d[2]) / np.linalg.norm(d)))
+    with pytest.raises(absolute.PoseError):
+        absolute.solve(absolute.macpherson(level), held(angle, 0.0))
+
+
+@pytest.mark.parametrize("name", ["nowhere", "", "Lower_Ball_Joint", "universe", "root_joint"])
+def test_unknown_names_are_refused_before_they_reach_pinocchio(strut: absolute.Model, name: str) -> None:
+    joint = strut.joints["lower_ball"]
+    for broken in (
+        dataclasses.replace(joint, first=name),
+        dataclasses.replace(joint, second=name),
+        dataclasses.replace(joint, kind=name),
+        dataclasses.replace(joint, on_first=Axis(name)),
+        dataclasses.replace(joint, on_second=Axis("lower_ball_joint", name)),
+    ):
+        with pytest.raises(DescriptionError, match="lower_ball"):
+            dataclasses.replace(strut, joints={**strut.joints, "lower_ball": broken})
+    drive = strut.inputs["rack"]
+    for wrong in (
+        dataclasses.replace(drive, first=name),
+        dataclasses.replace(drive, second=name),
+        dataclasses.replace(drive, point=name),
+        dataclasses.replace(drive, law=name),
+        dataclasses.replace(drive, axis=Axis(name, (0.0, 1.0, 0.0))),
+    ):
+        with pytest.raises(DescriptionError, match="rack"):
+            dataclasses.replace(strut, inputs={**strut.inputs, "rack": wrong})
+    with pytest.raises(DescriptionError, match="chassis"):
+        dataclasses.replace(strut, chassis=name)
+    with pytest.raises(DescriptionError, match="knuckle"):
+        dataclasses.replace(strut, bodies={**strut.bodies, "knuckle": (name,)})
+
+
+def test_row_count_must_match_the_unknowns(strut: absolute.Model) -> None:
+    fewer = {name: joint for name, joint in strut.joints.items() if name != "lower_ball"}
+    with pytest.raises(DescriptionError, match=r"27 rows for 30 unknown.*add"):
+        dataclasses.replace(strut, joints=fewer)
+    extra = {**strut.inputs, "again": strut.inputs["rack"]}
+    with pytest.raises(DescriptionError, match=r"31 rows for 30 unknown.*remove"):
+        dataclasses.replace(strut, inputs=extra)
+
+
+def test_a_joint_needs_two_bodies_and_a_line_where_its_kind_has_one(strut: absolute.Model) -> None:
+    with pytest.raises(DescriptionError, match="itself"):
+        dataclasses.replace(
+            strut,
+            joints={"x": Joint("spherical", "knuckle", "knuckle", Axis("strut_lower"), Axis("strut_lower"))},
+        )
+    with pytest.raises(DescriptionError, match="toward"):
+        dataclasses.replace(
+            strut,
+            joints={"x": Joint("revolute", "chassis", "rack", Axis("rack_centre"), Axis("tie_rod_inner"))},
+        )
+    with pytest.raises(DescriptionError, match="factor"):
+        dataclasses.replace(
+            strut, inputs={**strut.inputs, "rack": dataclasses.replace(strut.inputs["rack"], factor=0.0)}
+        )
+
+
+@pytest.mark.parametrize(
+    ("inputs", "say"),
+    [
+        ({"arm_angle": np.zeros((2, 3))}, "missing: \\['rack'\\]"),
+        (
+            {"arm_angle": np.zeros((2, 3)), "rack": np.zeros((2, 3)), "steer": np.zeros((2, 3))},
+            "unknown: \\['steer'\\]",
+        ),
+        ({"arm_angle": np.zeros((2, 3)), "rack": np.zeros((3, 3))}, "instants"),
+        ({"arm_angle": np.zeros((2, 3)), "rack": np.zeros(2)}, "shape"),
+        ({"arm_angle": np.zeros((2, 2)), "rack": np.zeros((2, 3))}, "shape"),
+        ({"arm_angle": np.zeros((2, 3)), "rack": [["a", "b", "c"]]}, "not an array of numbers"),
+        ({"arm_angle": np.zeros((2, 3)), "rack": np.array([[0, 0, 0], [0, np.inf, 0]])}, "instant 1"),
+    ],
+)
+def test_inputs_of_wrong_name_shape_or_value_are_refused(
+    strut: absolute.Model, inputs: Any, say: str
+) -> None:
+    with pytest.raises(InputError, match=say):
+        absolute.solve(strut, inputs)
+
+
+@pytest.mark.parametrize(
+    "chassis", [np.zeros((1, 3)), np.zeros((2, 3, 3)), np.full((1, 3, 3), np.nan), "still"]
+)
+def test_chassis_motion_is_checked(
+    strut: absolute.Model, held: Callable[[float, float], dict[str, Array]], chassis: Any
+) -> None:
+    with pytest.raises(InputError, match="chassis") as caught:
+        absolute.solve(strut, held(1.6, 0.0), chassis=chassis)
+    assert caught.value.name == "chassis"
+
+
+def test_every_refusal_is_of_one_family() -> None:
+    for error in (
+        DescriptionError,
+        InputError,
+        absolute.AssemblyError,
+        absolute.UnreachableError,
+        absolute.SingularError,
+    ):
+        assert issubclass(error, absolute.AbsoluteError)
+
+
+def test_errors_models_and_solutions_travel_between_processes(
+    strut: absolute.Model, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    with pytest.raises(absolute.UnreachableError) as caught:
+        absolute.solve(strut, held(1.6, 500.0))
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert (str(copy), copy.instant, copy.reached) == (str(caught.value), 0, caught.value.reached)
+    again = absolute.solve(pickle.loads(pickle.dumps(strut)), held(1.6, 5.0))
+    solution = pickle.loads(pickle.dumps(again))
+    assert (solution.position["wheel_centre"] == again.position["wheel_centre"]).all()
+
+
+def test_results_and_descriptions_cannot_be_changed(
+    strut: absolute.Model, held: Callable[[float, float], dict[str, Array]]
+) -> None:
+    motion = absolute.solve(strut, held(1.6, 0.0), conditions=True)
+    for array in (
+        motion.position["strut_top"],
+        motion.velocity["wheel_centre"],
+        motion.residual,
+        motion.iterations,
+    ):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    with pytest.raises(TypeError):
+        strut.points["strut_top"] = (0, 0, 0)
+
+
+def test_rates_too_large_for_floating_point_are_refused(strut: absolute.Model) -> None:
+    inputs = {"arm_angle": np.array([[1.6, 1e200, 0.0]]), "rack": np.zeros((1, 3))}
+    with pytest.raises(InputError, match="instant 0"):
+        absolute.solve(strut, inputs)

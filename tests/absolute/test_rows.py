@@ -1,0 +1,170 @@
+"""Rows, their Jacobian and their drift, against differences and against Pinocchio's own anchors."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import absolute
+from absolute.assembly import Mechanism
+from absolute.drawing import Drawing
+from absolute.newton import accelerations
+from absolute.rows import joint_frames
+from absolute.solve import assemble, travel
+
+EPS = np.finfo(float).eps
+
+# Rows [translation; rotation] of a frame anchor that each joint keeps, and the sign of its rotation.
+ANCHOR_ROWS = {"spherical": [0, 1, 2], "revolute": [0, 1, 2, 3, 4], "prismatic": [0, 1, 3, 4, 5]}
+
+
+def configuration(mechanism: Mechanism, seed: int, far: float) -> np.ndarray:
+    step = np.random.default_rng(seed).normal(size=mechanism.pin_model.nv) * far
+    return mechanism.moved(mechanism.drawn, mechanism.poses(mechanism.drawn).rotation, step)
+
+
+def body_rates(
+    velocity: np.ndarray, acceleration: np.ndarray, rotation: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rates [o', w], [o'', w'] in world axes as Pinocchio's, in body axes and spatial: o'' - w x o'."""
+    twist, spatial = velocity.reshape(-1, 2, 3), acceleration.reshape(-1, 2, 3).copy()
+    spatial[:, 0] -= np.cross(twist[:, 1], twist[:, 0])
+    return (twist @ rotation).ravel(), (spatial @ rotation).ravel()
+
+
+def placement_error(placement: pin.SE3) -> np.ndarray:
+    """Translation and (-R12, R02, R10): what the rows of an anchor measure."""
+    turn = placement.rotation
+    return np.array([*placement.translation, -turn[1, 2], turn[0, 2], turn[1, 0]])
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_jacobian_is_the_derivative_of_the_rows_on_the_manifold(strut: absolute.Model, seed: int) -> None:
+    mechanism = Mechanism(strut)
+    q = configuration(mechanism, seed, 0.5)
+    poses = mechanism.poses(q)
+    jacobian = mechanism.stack.jacobian(mechanism.stack.place(*poses))
+    direction = np.random.default_rng(seed + 1).normal(size=mechanism.pin_model.nv)
+    direction /= np.linalg.norm(direction)
+    h = 1e-5
+
+    def values(step: float) -> np.ndarray:
+        return mechanism.stack.place(
+            *mechanism.poses(mechanism.moved(q, poses.rotation, step * direction))
+        ).values
+
+    slope = (values(h) - values(-h)) / (2 * h)
+    # Truncation h^2 / 6 times a third derivative below 100, and rounding of two values over 2 h.
+    assert np.abs(slope - jacobian @ direction).max() < 100 * h**2 / 6 + 8 * EPS / h
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_drift_is_the_second_derivative_along_a_steady_turn(strut: absolute.Model, seed: int) -> None:
+    # Origins move straight, bodies turn steadily: no body accelerates, so the rows' second
+    # derivative over time is the drift alone.
+    mechanism = Mechanism(strut)
+    poses = mechanism.poses(configuration(mechanism, seed, 0.5))
+    rng = np.random.default_rng(seed + 1)
+    velocity, spin = rng.normal(size=(2, len(poses.origin), 3)) / 3
+    velocity[0] = spin[0] = 0.0
+    stack = mechanism.stack
+    h = 1e-4
+
+    def values(t: float) -> np.ndarray:
+        turned = np.array([pin.exp3(t * w) @ r for w, r in zip(spin, poses.rotation, strict=True)])
+        return stack.place(turned, poses.origin + t * velocity).values
+
+    bend = (values(h) - 2 * values(0.0) + values(-h)) / h**2
+    drift = stack.drift(stack.place(*poses), velocity, spin)
+    # Truncation h^2 / 12 times a fourth derivative below 1000, and rounding of four values over h^2.
+    assert np.abs(bend - drift).max() < 1000 * h**2 / 12 + 8 * EPS / h**2
+
+
+@pytest.mark.parametrize("goal", [(1.0, 0.0), (1.6, 40.0), (2.2, -30.0)])
+def test_joint_rows_are_those_of_pinocchio_frame_anchors(
+    strut: absolute.Model, goal: tuple[float, float]
+) -> None:
+    mechanism = Mechanism(strut)
+    pose, _ = assemble(mechanism)
+    pose, _ = travel(mechanism, pose, mechanism.drawn_inputs.tolist(), list(goal), 0)
+    model, drawing = mechanism.pin_model, Drawing(strut)
+    rate = np.zeros(mechanism.stack.count)
+    rate[mechanism.joint_rows :] = 0.3, -0.2
+    velocity, acceleration = accelerations(mechanism, pose, rate, np.zeros_like(rate))
+    local, local_acceleration = body_rates(velocity, acceleration, pose.poses.rotation[1:])
+    data = model.createData()
+    pin.forwardKinematics(model, data, pose.q, local, local_acceleration)
+    pin.computeJointJacobians(model, data, pose.q)
+    checked = set()
+    for name, joint in strut.joints.items():
+        if joint.kind not in ANCHOR_ROWS:
+            continue
+        placements = []
+        for body, axis, frame in zip(
+            (joint.first, joint.second),
+            (joint.on_first, joint.on_second),
+            joint_frames(name, joint, drawing),
+            strict=True,
+        ):
+            placements += [drawing.bodies[body], pin.SE3(frame.T.copy(), drawing.arm(body, axis.through))]
+        anchor = pin.FrameAnchorConstraintModel(model, *placements)
+        anchor_data = anchor.createData()
+        anchor.calc(model, data, anchor_data)
+        rows = ANCHOR_ROWS[joint.kind]
+        jacobian = anchor.jacobian(model, data, anchor_data)[rows]
+        # The rows hold to rounding at an assembled pose; then so do their first and second rates,
+        # whose terms are larger by the speeds of the bodies.
+        fast = max(1.0, float(np.abs(local).max()))
+        furious = max(fast**2, float(np.abs(local_acceleration).max()))
+        assert np.abs(placement_error(anchor_data.c1Mc2)[rows]).max() < 64 * EPS
+        assert np.abs(jacobian @ local).max() < 64 * EPS * fast
+        assert np.abs(anchor_data.constraint_velocity_error[rows]).max() < 64 * EPS * fast
+        assert np.abs(anchor_data.constraint_acceleration_error[rows]).max() < 64 * EPS * furious
+        own = [k for k, owner in enumerate(mechanism.stack.owners) if owner == name]
+        mine = mechanism.stack.jacobian(pose.placed)[own]
+        back = np.zeros((len(local), len(local)))
+        for k, turn in enumerate(pose.poses.rotation[1:]):
+            back[6 * k : 6 * k + 3, 6 * k : 6 * k + 3] = back[
+                6 * k + 3 : 6 * k + 6, 6 * k + 3 : 6 * k + 6
+            ] = turn
+        # The same constraints: the two sets of rows span the same space.
+        stacked = np.vstack([jacobian, mine @ back])
+        singular = np.linalg.svd(stacked, compute_uv=False)
+        assert singular[len(rows) - 1] > 1e-3
+        assert singular[len(rows)] < 64 * EPS * singular[0]
+        checked.add(joint.kind)
+    assert checked == set(ANCHOR_ROWS)
+
+
+def test_point_rates_are_those_of_pinocchio(strut: absolute.Model) -> None:
+    angle, rack = (1.3, 0.4, -0.7), (20.0, -60.0, 90.0)
+    motion = absolute.solve(strut, {"arm_angle": np.array([angle]), "rack": np.array([rack])})
+    mechanism = Mechanism(strut)
+    drawing = mechanism.drawing
+    pose, _ = assemble(mechanism)
+    pose, _ = travel(mechanism, pose, mechanism.drawn_inputs.tolist(), [angle[0], rack[0]], 0)
+    _, rate, second = mechanism.targets([angle[0], rack[0]], [angle[1], rack[1]], [angle[2], rack[2]])
+    velocity, acceleration = accelerations(mechanism, pose, rate, second)
+    local, local_acceleration = body_rates(velocity, acceleration, pose.poses.rotation[1:])
+    model = mechanism.pin_model
+    frames = {
+        point: model.addFrame(
+            pin.Frame(point, drawing.bodies[body], pin.SE3(np.eye(3), drawing.arm(body, point)), pin.OP_FRAME)
+        )
+        for body in strut.moving
+        for point in strut.bodies[body]
+        if point not in strut.bodies[strut.chassis]
+    }
+    data = model.createData()
+    pin.forwardKinematics(model, data, pose.q, local, local_acceleration)
+    for point, frame in frames.items():
+        world = pin.LOCAL_WORLD_ALIGNED
+        moved = pin.getFrameVelocity(model, data, frame, world).linear * drawing.size
+        bent = pin.getFrameClassicalAcceleration(model, data, frame, world).linear * drawing.size
+        # A few products of numbers of the size of the mechanism; points shared by two bodies
+        # differ by the rounding of the solver, condition number below 60.
+        assert np.allclose(moved, motion.velocity[point][0], rtol=0, atol=60 * EPS * 500)
+        assert np.allclose(bent, motion.acceleration[point][0], rtol=0, atol=60 * EPS * 500)
