@@ -50,8 +50,8 @@ class Pose:
         residual: largest row of C(y), shape (...,), in the mechanism's units (squared for links).
         iterations: Newton steps that the last correction took, shape (...,).
         condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
-        bound: proven distance of every coordinate of every point to the exact assembly, shape (...,),
-            mm; infinite where nothing is proven. See `certificate` for what it covers.
+        bound: proven distance of every coordinate of the solved points to the exact assembly, shape
+            (...,), mm; infinite where nothing is proven. See `certificate` for what it covers.
         work: what it cost.
     """
 

@@ -30,8 +30,8 @@ BLOCK = 1024
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
 SHORTEST = 1e-11
-# Trial lengths of a segment, in units of where the last terms equal the first.
-TRIALS = np.geomspace(1.0, 1e-4, 120)
+# Trial lengths of a segment, in units of where its last terms grow as large as earlier ones.
+TRIALS = np.geomspace(1.0, 1e-5, 160)
 
 
 @dataclass(frozen=True)
@@ -205,13 +205,16 @@ def _length(series: Array, settings: Settings) -> float:
     max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
     """
     size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
+    size[:, 0] = 1.0
+    logs = np.log(np.maximum(size, np.finfo(float).tiny))
     orders = np.arange(size.shape[-1], dtype=float)
-    last = size[:, -2:].max(axis=-1)
-    if not (last > 0.0).any():
+    if not (size[:, -2:] > 0.0).any():
         return np.inf
-    # Where the larger of the last terms is 1: any useful segment is shorter.
     with np.errstate(divide="ignore", over="ignore"):
-        reach = np.min(np.where(size[:, -2:] > 0.0, size[:, -2:] ** (-1.0 / orders[-2:]), np.inf))
+        # Where the last terms grow as large as any earlier one: any useful segment is shorter.
+        first = min(settings.derivative, 1)
+        equal = (logs[:, None, first:-2] - logs[:, -2:, None]) / (orders[-2:, None] - orders[first:-2])
+        reach = float(np.exp(np.min(equal.max(axis=-1))))
         trials = reach * TRIALS
         fits = np.ones(len(trials), dtype=bool)
         falling = np.ones_like(orders)

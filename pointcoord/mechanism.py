@@ -52,17 +52,6 @@ class Mechanism:
         """The constraints."""
         return self.topology.map
 
-    @property
-    def carried_reach(self) -> Array:
-        """How many times as far as its carriers a carried point can move, at most; shape (...,)."""
-        reach = np.zeros(self.drawn.shape[:-1])
-        for name, carriers in self.topology.carried.items():
-            base, first, second = (self.drawing.vectors[point] for point in carriers)
-            edges = np.linalg.norm(first - base, axis=-1) + np.linalg.norm(second - base, axis=-1)
-            a, b, c = np.moveaxis(np.abs(self.carrier_weights[name]), -1, 0)
-            reach = np.maximum(reach, 1.0 + 2.0 * (a + b) + 4.0 * c * edges)
-        return reach
-
     def known_series(self, inputs: Mapping[str, Array]) -> Array:
         """Series of all known coordinates from the series of the inputs.
 

@@ -57,6 +57,7 @@ class AbsoluteCoordinates:
             accuracy=Accuracy(
                 # The last term: a result far from the origin is rounded once more when it is stored.
                 pose_error=ROUNDINGS * EPS * condition * size + EPS * distance,
+                carried_gain=np.ones(len(times)),  # every point rides on its body alike
                 proven=False,
                 condition=condition,
                 velocity_sensitivity=np.zeros(len(times)),
@@ -70,18 +71,13 @@ def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> d
 
 
 def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, Array]:
-    """Camber (17) and kingpin (16) as the paper prints them, after turning the car into its axes.
+    """Camber (17) and kingpin (16) as arguments of complex numbers in the car's transverse plane.
 
-    A right wheel is first mirrored to the left, where the paper's formulas hold.
+    A right wheel is first mirrored to the left, where the paper's formulas hold. The argument tells an
+    inboard wheel or a strut that hangs upside down apart, which the printed quotients cannot.
     """
     right, up = np.array(part.right), np.array(part.up)
     side = 1.0 if part.side == "left" else -1.0
-    y = {
-        name: side * (position[name] @ right) for name in ("lower_ball_joint", "strut_lower", "wheel_centre")
-    }
-    z = {name: position[name] @ up for name in y}
-    p5, p7, p10 = "lower_ball_joint", "strut_lower", "wheel_centre"
-    return {
-        "kingpin": np.arctan((y[p7] - y[p5]) / (z[p7] - z[p5])),
-        "camber": np.arctan((z[p7] - z[p10]) / (y[p7] - y[p10])),
-    }
+    names = ("lower_ball_joint", "strut_lower", "wheel_centre")
+    p5, p7, p10 = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
+    return {"kingpin": np.pi / 2 - np.angle(p7 - p5), "camber": np.angle(p7 - p10)}

@@ -13,10 +13,12 @@ from pointcoord.scene import Scene
 from validate.formulation import Formulation, Solution
 from validate.formulations import formulation
 from validate.tolerance import (
+    CARRIED,
     KNUCKLE,
     Factors,
     angle_tolerance,
     body_tolerances,
+    carried_tolerances,
     factors,
     point_tolerances,
 )
@@ -142,12 +144,13 @@ def _pairs(
     scene: Scene, one: Solution, two: Solution, f: Factors
 ) -> Iterator[tuple[str, str, Array, Array, Array]]:
     """Quantity, name, both arrays and the tolerance of everything that the scene asks for."""
-    tolerances = point_tolerances(f)
+    tolerances, carried = point_tolerances(f), carried_tolerances(f)
     quantities = ["position", *(e for e in ("velocity", "acceleration") if e in scene.effects)]
     for quantity in quantities:
         mine, other = _same_names(quantity, getattr(one, quantity), getattr(two, quantity))
         for point in mine:
-            yield quantity, point, mine[point], other[point], tolerances[quantity]
+            held_to = (carried if point in CARRIED else tolerances)[quantity]
+            yield quantity, point, mine[point], other[point], held_to
     if "knuckle_rates" in scene.effects:
         spin, spin_rate = (
             min(_largest(s[quantity]) for s in (_rates(one), _rates(two)))
@@ -161,7 +164,7 @@ def _pairs(
     if "wheel_angles" in scene.effects:
         mine, other = _same_names("wheel", one.wheel, two.wheel)
         for name in mine:
-            yield "wheel", name, mine[name], other[name], angle_tolerance(name, one.position, f.position)
+            yield "wheel", name, mine[name], other[name], angle_tolerance(name, one.position, f)
 
 
 def _rates(solution: Solution) -> dict[str, Mapping[str, Array]]:

@@ -20,6 +20,7 @@ class Accuracy:
 
     Attributes:
         pose_error: error of each coordinate of each point, at most, shape (N,), mm.
+        carried_gain: how many times as large it is for a point that rides on a body, shape (N,).
         proven: whether `pose_error` is a proven bound or an estimate.
         condition: condition number of the matrix that gives the rates, shape (N,).
         velocity_sensitivity: change of a velocity per displacement of the pose, shape (N,), 1/s.
@@ -29,6 +30,7 @@ class Accuracy:
     """
 
     pose_error: Array
+    carried_gain: Array
     proven: bool
     condition: Array
     velocity_sensitivity: Array

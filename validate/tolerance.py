@@ -14,6 +14,10 @@ The pose error of pointcoord is a proven bound; of the absolute model it is C ep
 solves C_u v = -C_w w', so a pose displaced by d changes it by C_u^-1 2 B(d, v), at most s1 |d|. The
 acceleration solves C_u a = -C_w w'' - 2 B(v, v), where a velocity error enters as 4 B(v, .).
 
+A point that rides on a body, the wheel centre, moves g times as much as the points that carry it, and
+its velocity and acceleration have these tolerances times g with s1 T(position), and s1 T(velocity) added
+once more for the turning of its arm.
+
 The rates of a body with points r_i about their centroid, |r_i| <= R, smallest eigenvalue m of its
 inertia tensor, and w, a its largest angular velocity and acceleration, are least squares, so
 
@@ -39,6 +43,7 @@ EPS = float(np.finfo(float).eps)
 ROUNDINGS = 8.0
 
 KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
+CARRIED = ("wheel_centre",)
 ANGLE_LINES = {
     "camber": ("strut_lower", "wheel_centre"),
     "kingpin": ("lower_ball_joint", "strut_lower"),
@@ -50,6 +55,7 @@ class Factors:
     """The factors of a pair's tolerances, for the report; arrays over the instants where they vary."""
 
     position: Array
+    carried_gain: Array
     condition: Array
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
@@ -66,6 +72,7 @@ def factors(first: Solution, second: Solution) -> Factors:
     a, b = first.accuracy, second.accuracy
     return Factors(
         position=a.pose_error + b.pose_error,
+        carried_gain=np.maximum(a.carried_gain, b.carried_gain),
         condition=a.condition + b.condition,
         velocity_sensitivity=np.maximum(a.velocity_sensitivity, b.velocity_sensitivity),
         acceleration_sensitivity=np.maximum(a.acceleration_sensitivity, b.acceleration_sensitivity),
@@ -93,6 +100,17 @@ def point_tolerances(f: Factors) -> dict[str, Array]:
     return {"position": f.position, "velocity": velocity, "acceleration": acceleration}
 
 
+def carried_tolerances(f: Factors) -> dict[str, Array]:
+    """The same for a point that rides on a body."""
+    own = point_tolerances(f)
+    turned = own["velocity"] + f.velocity_sensitivity * own["position"]
+    return {
+        "position": f.carried_gain * own["position"],
+        "velocity": f.carried_gain * turned,
+        "acceleration": f.carried_gain * (own["acceleration"] + f.velocity_sensitivity * turned),
+    }
+
+
 def body_tolerances(
     points: Mapping[str, Array], tolerances: Mapping[str, Array], spin: float, spin_rate: float
 ) -> dict[str, Array]:
@@ -117,8 +135,9 @@ def body_tolerances(
     }
 
 
-def angle_tolerance(name: str, position: Mapping[str, Array], tolerance: Array) -> Array:
+def angle_tolerance(name: str, position: Mapping[str, Array], f: Factors) -> Array:
     """Tolerance of camber or kingpin angle, shape (N,), rad."""
     start, end = ANGLE_LINES[name]
+    tolerance = f.position * (f.carried_gain if end in CARRIED else 1.0)
     length = np.linalg.norm(position[end] - position[start], axis=-1)
     return np.asarray(4.0 * tolerance / length + 4.0 * EPS)

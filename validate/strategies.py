@@ -1,0 +1,130 @@
+"""Random cars and motions for property-based tests, built so that most of them can be assembled.
+
+Hardpoints move by up to two hundred millimetres in every coordinate from the paper's, which changes link
+lengths and proportions by half; the strut's two inner points stay near the line of its outer two, as
+they do in any drawing of a strut, but not on it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+
+Array = NDArray[np.float64]
+Points = dict[str, tuple[float, float, float]]
+
+PAPER: Points = {
+    "lower_arm_front": (270.0, -5.0, -10.0),
+    "lower_arm_rear": (540.0, -10.0, -20.0),
+    "rack_centre": (570.0, 60.0, 90.0),
+    "strut_top": (460.0, -180.0, 470.0),
+    "lower_ball_joint": (450.0, -330.0, -40.0),
+    "tie_rod_outer": (560.0, -300.0, 60.0),
+    "strut_lower": (452.0, -320.0, 20.0),
+    "strut_rod_end": (456.0, -250.0, 246.0),
+    "tie_rod_inner": (570.0, 60.0, 90.0),
+    "wheel_centre": (452.0, -410.0, 20.0),
+}
+FREE = tuple(name for name in PAPER if name not in ("strut_lower", "strut_rod_end", "tie_rod_inner"))
+EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
+
+
+def _floats(reach: float) -> st.SearchStrategy[float]:
+    return st.floats(-reach, reach, allow_nan=False, allow_subnormal=False)
+
+
+def _vectors(reach: float) -> st.SearchStrategy[Array]:
+    return st.tuples(_floats(reach), _floats(reach), _floats(reach)).map(np.array)
+
+
+@st.composite
+def hardpoints(draw: st.DrawFn, reach: float = 200.0) -> Points:
+    """Points of a random left-hand strut, each free coordinate up to `reach` mm from the paper's."""
+    points = {name: np.array(PAPER[name]) + draw(_vectors(reach)) for name in FREE}
+    top, ball = points["strut_top"], points["lower_ball_joint"]
+    for name, low, high in (("strut_lower", 0.55, 0.95), ("strut_rod_end", 0.2, 0.5)):
+        place = draw(st.floats(low, high))
+        points[name] = top + place * (ball - top) + draw(_vectors(20.0))
+    points["tie_rod_inner"] = points["rack_centre"] + draw(_vectors(5.0))
+    return {name: _triple(points[name]) for name in PAPER}
+
+
+def _triple(vector: Array) -> tuple[float, float, float]:
+    x, y, z = (float(component) for component in vector)
+    return x, y, z
+
+
+@st.composite
+def scenes(draw: st.DrawFn, reach: float = 200.0, samples: int = 5) -> Scene:
+    """A random car, on either side, with random inputs and rates about its own drawing.
+
+    The arm turns and the rack slides by polynomials or sines, and the chassis may heave. Whether the
+    mechanism can follow is not known beforehand.
+    """
+    points = draw(hardpoints(reach))
+    side = draw(st.sampled_from(["left", "right"]))
+    if side == "right":
+        points = mirrored(points)
+    arm = np.subtract(points["lower_ball_joint"], points["lower_arm_front"])
+    drawn_angle = math.acos(arm[2] / float(np.linalg.norm(arm)))
+    inputs: dict[str, Any] = {
+        "arm_angle": draw(_law(drawn_angle, 0.25, 0.6)),
+        "rack": draw(_law(0.0, 20.0, 60.0)),
+    }
+    if draw(st.booleans()):
+        inputs["heave"] = draw(_law(0.0, 30.0, 200.0))
+    return make_scene(
+        points, inputs, side=side, stop=draw(st.sampled_from([0.05, 0.2, 0.5])), samples=samples
+    )
+
+
+@st.composite
+def _law(draw: st.DrawFn, middle: float, reach: float, rate: float) -> dict[str, Any]:
+    offset = middle + draw(_floats(reach))
+    if draw(st.booleans()):
+        return {"polynomial": [offset, draw(_floats(rate)), draw(_floats(rate))]}
+    speed = draw(st.floats(0.5, 8.0))
+    wave = {"amplitude": draw(_floats(rate)) / speed, "angular_frequency": speed}
+    return {"sine": {**wave, "phase": draw(_floats(3.0)), "offset": offset}}
+
+
+def make_scene(
+    points: Points,
+    inputs: dict[str, Any],
+    *,
+    side: str = "left",
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    right: tuple[float, float, float] = (0.0, 1.0, 0.0),
+    stop: float = 0.2,
+    samples: int = 5,
+    tolerance: float = 1e-9,
+    effects: tuple[str, ...] = EFFECTS,
+) -> Scene:
+    """A scene from plain data, checked like a file."""
+    return Scene.from_mapping(
+        {
+            "title": "random scene",
+            "effects": list(effects),
+            "tolerance": tolerance,
+            "mechanism": {
+                "type": "macpherson",
+                "side": side,
+                "up": list(up),
+                "right": list(right),
+                "points": {name: list(point) for name, point in points.items()},
+            },
+            "inputs": inputs,
+            "time": {"start": 0.0, "stop": stop, "samples": samples},
+        }
+    )
+
+
+def mirrored(points: Points) -> Points:
+    """The same car's other side: y changes its sign."""
+    return {name: (x, -y, z) for name, (x, y, z) in points.items()}
