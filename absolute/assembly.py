@@ -53,11 +53,7 @@ class Mechanism:
         self._rotations = [np.eye(3)] + [placement.rotation for placement in placements]
         self._origins = [np.zeros(3)] + [placement.translation for placement in placements]
         self._laws = [
-            (
-                LAWS[drive.law].expand,
-                drive.factor / drawing.size,
-            )
-            for drive in model.inputs.values()
+            (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
         ]
         coordinates = self.stack.place(*self.poses(self.drawn)).values[self.joint_rows :]
         self.drawn_inputs = np.array(
@@ -80,14 +76,19 @@ class Mechanism:
         moved: Array = pin.normalize(self.pin_model, pin.integrate(self.pin_model, q, local.ravel()))
         return moved
 
-    def targets(
-        self, values: list[float], rates: list[float], seconds: list[float]
-    ) -> tuple[Array, Array, Array]:
-        """What the rows shall equal, and its first and second rate, for inputs and their rates."""
+    def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> Array:
+        """(3, rows): what the rows shall equal, and its first and second rate, for inputs and their rates."""
         driven = []
         for (law, factor), value, speed, second in zip(self._laws, values, rates, seconds, strict=True):
             f, f1, f2 = law(value)
             driven.append((factor * f, factor * f1 * speed, factor * (f2 * speed * speed + f1 * second)))
         targets = np.zeros((3, self.stack.count))
         targets[:, self.joint_rows :] = np.array(driven).T
-        return targets[0], targets[1], targets[2]
+        return targets
+
+    def target_series(self, series: Array) -> Array:
+        """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
+        targets = np.empty((3, len(series), self.stack.count))
+        for instant, (values, speeds, seconds) in enumerate(series.tolist()):
+            targets[:, instant] = self.targets(values, speeds, seconds)
+        return targets

@@ -8,18 +8,18 @@ from absolute.newton import EPS, SMALLEST_RCOND, Pose, accelerations, correct
 from absolute.solution import Array
 from absolute.vectors import cross
 
-# A path: share of the way in [0, 1] -> target of the rows, its first and second derivative.
-Path = Callable[[float], tuple[Array, Array, Array]]
+# A path: share of the way in [0, 1] -> (3, rows) target of the rows, its first and second derivative.
+Path = Callable[[float], Array]
 
-# No body turns or moves further than a quarter (rad, or units of size) in one step: over that
-# distance the second-order prediction holds for any rigid mechanism that is not near a fold.
-LONGEST_STEP = 0.25
+# All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
+# over that distance the second-order prediction holds for any linkage that is not near a fold.
+LONGEST_STEP = 0.5
 # The curved part of a step, and what Newton adds, must be small against its straight part.
 LARGEST_CURVE = 0.5
 LARGEST_CORRECTION = 0.1
 # A step below sqrt(eps) that still bends this much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
-# Steps of a quarter at most: thousands would be many turns around. A guard against endless work.
+# Thousands of the longest steps would be many turns around. A guard against endless work.
 MOST_STEPS = 2000
 
 

@@ -3,17 +3,17 @@
 import numpy as np
 
 from absolute.assembly import Mechanism
+from absolute.finish import Finished
 from absolute.mapping import ReadOnly
-from absolute.newton import Pose
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
-# Jacobians per batch when condition numbers are asked for: a few megabytes at a time.
+# Jacobians at once when condition numbers are asked for: a few megabytes.
 BATCH = 256
 
 
 class Record:
-    """Body poses and rates instant by instant, in units of size."""
+    """Body poses and rates of the instants solved so far, in units of size."""
 
     def __init__(self, mechanism: Mechanism, count: int, rates: bool, conditions: bool) -> None:
         bodies = len(mechanism.drawing.bodies)
@@ -29,16 +29,19 @@ class Record:
         self._residual = np.zeros(count)
         self.written = 0
 
-    def write(self, instant: int, pose: Pose, motion: tuple[Array, Array] | None, iterations: int) -> None:
-        """Keep one solved instant."""
-        self._rotation[instant] = pose.poses.rotation
-        self._origin[instant] = pose.poses.origin
-        if motion is not None:
-            self._velocity[instant, 1:] = motion[0].reshape(-1, 2, 3)
-            self._acceleration[instant, 1:] = motion[1].reshape(-1, 2, 3)
-        self._iterations[instant] = iterations
-        self._residual[instant] = pose.residual
-        self.written = instant + 1
+    def store(self, finished: Finished, count: int) -> None:
+        """Keep the first `count` of some finished instants, after those kept before."""
+        part = slice(self.written, self.written + count)
+        self._rotation[part] = finished.rotation[:count]
+        self._origin[part] = finished.origin[:count]
+        if self._rates:
+            self._velocity[part, 1:] = finished.velocity[:count].reshape(self._velocity[part, 1:].shape)
+            self._acceleration[part, 1:] = finished.acceleration[:count].reshape(
+                self._velocity[part, 1:].shape
+            )
+        self._iterations[part] = finished.corrections[:count]
+        self._residual[part] = finished.residual[:count]
+        self.written += count
 
     def solution(self, count: int, chassis: Array) -> Solution:
         """The first `count` instants in mm, carried by the chassis motion (N, 3, 3)."""

@@ -19,7 +19,7 @@ SMALLEST_RCOND = float(np.sqrt(EPS))
 # A factorisation serves further corrections as long as each shrinks at least a hundredfold.
 GOOD_CONTRACTION = 1e-2
 
-# Quadratic convergence from a correction of 0.25 needs about 6 corrections; 25 is a stall.
+# Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 is a stall.
 MOST_CORRECTIONS = 25
 
 
@@ -46,14 +46,21 @@ class Pose(NamedTuple):
     floor: float
 
 
+def rounding_of(rcond: float) -> float:
+    """The largest correction that rounding explains.
+
+    Each row is rounded like a few products of order 1, and the inverse of the Jacobian magnifies
+    that; columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
+    """
+    return 64 * EPS / rcond if rcond > 0 else math.inf
+
+
 def pose_at(
     mechanism: Mechanism, q: Array, poses: Poses, placed: Placed, target: Array, factors: eigenpy.PartialPivLU
 ) -> Pose:
     """The pose at a configuration whose Jacobian is factorised."""
     rcond = factors.rcond()
-    # Rounding of a few products of order 1 in each row, as the inverse of the Jacobian sees it.
-    # Its columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
-    floor = 64 * EPS / rcond if rcond > 0 else np.inf
+    floor = rounding_of(rcond)
     sign = math.copysign(1.0, factors.determinant())
     return Pose(q, poses, placed, factors, rcond, sign, float(np.abs(target - placed.values).max()), floor)
 

@@ -11,7 +11,7 @@ from absolute.assembly import Mechanism
 from absolute.drawing import Drawing
 from absolute.newton import accelerations
 from absolute.rows import joint_frames
-from absolute.solve import assemble, travel
+from absolute.travel import assemble, travel
 
 EPS = np.finfo(float).eps
 
