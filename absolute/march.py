@@ -18,8 +18,8 @@ from absolute.travel import assemble, travel
 # Poses nearer to a fold than this are left to the careful continuation: branches are at least
 # about this far apart elsewhere.
 SAFE_RCOND = 1e-4
-# A correction of c leaves an error of about c^2. Up to this one, what is left is 1e-4 at most, a
-# tenth of a percent of a step, and the correction says nothing about other branches.
+# A correction of c leaves an error of about c^2: 1e-4 at most, from where Newton doubles the
+# digits with every correction that `finish` makes.
 ROUGH = 1e-2
 # Corrections below this are always fine: held inputs step by nothing, but the pose before was
 # left rough. A hundredth of the distance of branches.

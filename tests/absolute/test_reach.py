@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import absolute
@@ -82,6 +84,26 @@ def test_coarse_and_fine_sweeps_stay_on_one_branch(strut: absolute.Model) -> Non
         assert np.allclose(
             sweep(240 // every + 1), fine[::every], rtol=0, atol=2 * np.finfo(float).eps * 500 * 400
         )
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    poses=st.lists(st.tuples(st.floats(45.0, 145.0), st.floats(-20.0, 30.0)), min_size=2, max_size=6),
+)
+def test_jumping_about_gives_the_pose_that_going_there_directly_gives(
+    strut: absolute.Model, held: Held, poses: list[tuple[float, float]]
+) -> None:
+    angles, racks = np.radians([p[0] for p in poses]), np.array([p[1] for p in poses])
+    still = np.zeros_like(racks)
+    inputs = {"arm_angle": np.stack([angles, still, still], -1), "rack": np.stack([racks, still, still], -1)}
+    jumping = absolute.solve(strut, inputs, rates=False)
+    for k, (angle, rack) in enumerate(zip(angles, racks, strict=True)):
+        direct = absolute.solve(strut, held(float(angle), float(rack)), rates=False, conditions=True)
+        assert direct.condition is not None
+        # Two roundings of a pose of size 500 mm.
+        tolerance = 2 * np.finfo(float).eps * 500 * max(60.0, direct.condition[0])
+        for name in strut.points:
+            assert np.allclose(jumping.position[name][k], direct.position[name][0], rtol=0, atol=tolerance)
 
 
 def test_a_failing_sweep_keeps_what_was_solved(strut: absolute.Model) -> None:

@@ -97,10 +97,10 @@ def test_steering_arm_on_the_strut_axis_is_refused(
         absolute.solve(absolute.macpherson(straight), held(1.6, 0.0))
 
 
-def test_exact_limit_of_the_motion_is_refused_as_singular(
-    table: Table, strut: absolute.Model, held: Callable[[float, float], dict[str, Array]]
+def test_exact_limit_of_the_motion_is_refused(
+    table: Table, held: Callable[[float, float], dict[str, Array]]
 ) -> None:
-    # A level pivot axis through the origin side: the ball joint is at its highest straight above.
+    # With a pivot axis along x the ball joint is highest straight above it, and goes no further.
     level = {**table, "lower_arm_rear": (540.0, -5.0, -10.0)}
     d = np.subtract(level["lower_ball_joint"], level["lower_arm_front"])
     angle = float(np.arccos(np.hypot(d[1], d[2]) / np.linalg.norm(d)))
