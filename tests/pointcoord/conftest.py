@@ -1,0 +1,83 @@
+"""The strut of the paper's table 1 and scenes of it, for all tests here."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from pointcoord.hardpoints import build_mechanism
+from pointcoord.mechanism import Mechanism
+from pointcoord.suspensions.macpherson import MACPHERSON
+
+Points = dict[str, tuple[float, float, float]]
+EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
+
+
+@pytest.fixture(scope="session")
+def table() -> Points:
+    """Table 1 of the paper, mm."""
+    return {
+        "lower_arm_front": (270.0, -5.0, -10.0),
+        "lower_arm_rear": (540.0, -10.0, -20.0),
+        "rack_centre": (570.0, 60.0, 90.0),
+        "strut_top": (460.0, -180.0, 470.0),
+        "lower_ball_joint": (450.0, -330.0, -40.0),
+        "tie_rod_outer": (560.0, -300.0, 60.0),
+        "strut_lower": (452.0, -320.0, 20.0),
+        "strut_rod_end": (456.0, -250.0, 246.0),
+        "tie_rod_inner": (570.0, 60.0, 90.0),
+        "wheel_centre": (452.0, -410.0, 20.0),
+    }
+
+
+@pytest.fixture(scope="session")
+def strut(table: Points) -> Mechanism:
+    """The strut of table 1, axes x rearward, y right, z up."""
+    return build_mechanism(MACPHERSON, table, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
+
+
+@pytest.fixture(scope="session")
+def make_scene(table: Points) -> Callable[..., Scene]:
+    """A scene of the strut; an input is a mapping as in a scene file, or the numbers of a polynomial."""
+
+    def as_input(value: Any) -> Any:
+        return value if isinstance(value, Mapping) else {"polynomial": [float(c) for c in value]}
+
+    def make(
+        arm_angle: Any = (0.8, 0.25, 0.0625),
+        rack: Any = (0.0,),
+        *,
+        heave: Any = None,
+        start: float = 0.0,
+        stop: float = 2.0,
+        samples: int = 9,
+        effects: tuple[str, ...] = EVERYTHING,
+        tolerance: float = 1e-9,
+        points: Mapping[str, Any] | None = None,
+        up: Any = (0.0, 0.0, 1.0),
+        right: Any = (0.0, 1.0, 0.0),
+        side: str = "left",
+    ) -> Scene:
+        inputs = {"arm_angle": as_input(arm_angle), "rack": as_input(rack)}
+        if heave is not None:
+            inputs["heave"] = as_input(heave)
+        located = {name: tuple(np.asarray(p, float).tolist()) for name, p in (points or table).items()}
+        return Scene.from_mapping(
+            {
+                "effects": effects,
+                "tolerance": tolerance,
+                "mechanism": {
+                    "type": "macpherson",
+                    "side": side,
+                    "points": located,
+                    "up": tuple(np.asarray(up, float).tolist()),
+                    "right": tuple(np.asarray(right, float).tolist()),
+                },
+                "inputs": inputs,
+                "time": {"start": float(start), "stop": float(stop), "samples": samples},
+            }
+        )
+
+    return make

@@ -1,0 +1,169 @@
+"""Inputs as power series, against evaluations that share nothing with them."""
+
+from math import factorial
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction, cosine
+
+Array = NDArray[np.float64]
+EPS = np.finfo(float).eps
+ORDER = 12
+plain = settings(deadline=None)
+numbers = st.floats(-3.0, 3.0, allow_subnormal=False)
+
+
+def multiply(a: Array, b: Array) -> Array:
+    """Product of two series, cut at their length."""
+    return np.convolve(a, b)[: len(a)]
+
+
+def majorant(angle: Array) -> Array:
+    """Series of exp(sum_{k>0} |a_k| h^k): larger than that of the sine and the cosine, term by term."""
+    size = np.abs(angle) * np.arange(len(angle))
+    result = np.zeros(len(angle))
+    result[0] = 1.0
+    for k in range(1, len(angle)):
+        result[k] = sum(size[i] * result[k - i] for i in range(1, k + 1)) / k
+    return result
+
+
+@plain
+@given(coefficients=st.lists(numbers, min_size=1, max_size=7), t=numbers)
+def test_polynomial_series_holds_the_derivatives_over_factorials(coefficients: list[float], t: float) -> None:
+    function = np.polynomial.Polynomial(coefficients)
+    size = np.polynomial.Polynomial(np.abs(coefficients))
+    series = Polynomial(tuple(coefficients)).series(t, ORDER)
+    for k in range(ORDER + 1):
+        exact, whole = (f.deriv(k) if k else f for f in (function, size))
+        # Horner's rule: 2 n roundings of the polynomial of magnitudes, in both evaluations, n = 6; and
+        # the binomials or factorials before it.
+        tolerance = 2 * (2 * 6 + 4) * EPS * whole(abs(t)) / factorial(k)
+        assert abs(series[k] - exact(t) / factorial(k)) <= tolerance
+
+
+@plain
+@given(amplitude=numbers, frequency=numbers, phase=numbers, offset=numbers, t=numbers, h=st.floats(-1.0, 1.0))
+def test_sine_series_sums_to_the_sine(
+    amplitude: float, frequency: float, phase: float, offset: float, t: float, h: float
+) -> None:
+    order = 30
+    series = Sine(amplitude, frequency, phase, offset).series(t, order)
+    exact = offset + amplitude * np.sin(frequency * (t + h) + phase)
+    # Remainder of Taylor's formula; rounding of an angle up to 18 and of terms that sum to exp(|w h|).
+    remainder = abs(amplitude) * abs(frequency * h) ** (order + 1) / factorial(order + 1)
+    rounding = EPS * (abs(offset) + abs(amplitude)) * (18 + (order + 8) * np.exp(abs(frequency * h)))
+    assert abs(np.polynomial.polynomial.polyval(h, series) - exact) <= remainder + rounding
+
+
+@plain
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(4, 9))
+def test_table_is_the_not_a_knot_spline(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    times = np.cumsum(rng.uniform(0.5, 1.5, size=count))
+    values = rng.uniform(-1.0, 1.0, size=count)
+    table = Table(tuple(times.tolist()), tuple(values.tolist()))
+    other = make_interp_spline(times, values, k=3)  # B-splines; not-a-knot is its default
+    # Strictly inside the pieces, where the third derivative is single-valued too.
+    instants = np.concatenate([times[:-1] + share * np.diff(times) for share in (0.1, 0.5, 0.9)])
+    series = table.series(instants, ORDER)
+    # Two solves of a system of condition number below 100, steps above 0.5: the k-th derivative is
+    # below 50 * 2^k times the values.
+    for k in range(4):
+        tolerance = 100 * 2**k * 50 * EPS * 20
+        assert np.abs(series[:, k] - other(instants, nu=k) / factorial(k)).max() <= tolerance
+    assert not series[:, 4:].any()
+    assert np.abs(table.series(times, 0)[:, 0] - values).max() <= 100 * 50 * EPS
+
+
+@plain
+@given(coefficients=st.tuples(numbers, numbers, numbers, numbers), seed=st.integers(0, 2**32 - 1))
+def test_table_of_a_cubic_is_the_cubic(coefficients: tuple[float, ...], seed: int) -> None:
+    times = np.cumsum(np.random.default_rng(seed).uniform(0.5, 1.5, size=6))
+    cubic = Polynomial(coefficients)
+    table = Table(tuple(times.tolist()), tuple(cubic.series(times, 0)[:, 0].tolist()))
+    instants = np.linspace(times[0], times[-1], 11)
+    # Values up to 3 * (1 + 9 + 81 + 729) are rounded and differenced three times over steps of 0.5 and
+    # more in a system of condition number below 100.
+    tolerance = 100 * 2**3 * 8 * EPS * 3 * 820
+    assert np.abs(table.series(instants, 3) - cubic.series(instants, 3)).max() <= tolerance
+
+
+def test_only_the_third_derivative_of_a_table_jumps_and_only_at_its_breaks() -> None:
+    times, values = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0), (0.0, 1.0, 0.0, 2.0, -1.0, 0.5)
+    table = Table(times, values)
+    assert table.breaks == times[1:-1]
+    gap = 2.0**-30
+    for instant in (0.5, *table.breaks, 4.3):
+        before, after = table.series([instant - gap, instant], 3)
+        # Derivatives stay below 6 times values up to 2 on unit steps, 50 in all: over the gap they
+        # change by no more than the next one times it.
+        assert np.abs(after - before)[:3].max() <= 50 * gap + 1e3 * EPS
+    jumps = [abs(np.diff(table.series([b - gap, b], 3)[:, 3])[0]) for b in table.breaks]
+    assert max(jumps) > 0.5
+    # Not-a-knot: the first and the last inner time carry no jump.
+    assert max(jumps[0], jumps[-1]) <= 1e3 * EPS
+
+
+@pytest.mark.parametrize("function", [Polynomial((1.0, 2.0)), Sine(1.0, 2.0)])
+def test_analytic_functions_have_no_breaks(function: TimeFunction) -> None:
+    assert function.breaks == ()
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        Polynomial((1.0, -2.0, 0.5)),
+        Sine(1.0, 2.0, 0.3, 4.0),
+        Table((0.0, 1.0, 2.0, 3.0), (0.0, 1.0, 1.0, 4.0)),
+    ],
+)
+def test_series_of_many_instants_are_those_of_each(function: TimeFunction) -> None:
+    instants = np.array([[0.0, 0.4, 1.0], [1.7, 2.0, 3.0]])
+    together = function.series(instants, 5)
+    assert together.shape == (2, 3, 6)
+    for place in np.ndindex(2, 3):
+        assert np.array_equal(together[place], function.series(float(instants[place]), 5))
+
+
+@plain
+@given(start=numbers, slope=numbers)
+def test_cosine_of_a_straight_line_is_its_taylor_series(start: float, slope: float) -> None:
+    angle = np.zeros(ORDER + 1)
+    angle[:2] = start, slope
+    derivatives = [np.cos(start), -np.sin(start), -np.cos(start), np.sin(start)]
+    exact = [slope**k * derivatives[k % 4] / factorial(k) for k in range(ORDER + 1)]
+    # Each order adds fewer than 4 roundings, of terms no larger than the majorant's.
+    assert (np.abs(cosine(angle) - exact) <= 4 * (ORDER + 2) * EPS * majorant(angle)).all()
+
+
+@plain
+@given(angle=st.lists(numbers, min_size=ORDER + 1, max_size=ORDER + 1).map(np.array))
+def test_squares_of_cosine_and_sine_series_sum_to_one_and_their_rates_fit(angle: Array) -> None:
+    shifted = angle.copy()
+    shifted[0] -= np.pi / 2
+    c, s = cosine(angle), cosine(shifted)
+    size = majorant(angle)
+    one = np.zeros(ORDER + 1)
+    one[0] = 1.0
+    # The shift by pi / 2 rounds an angle below 5; each order then adds a sum of up to ORDER products.
+    rounding = (5 + 4 * (ORDER + 2)) * EPS
+    assert (np.abs(multiply(c, c) + multiply(s, s) - one) <= 4 * rounding * multiply(size, size)).all()
+    rate = (angle * np.arange(ORDER + 1))[1:]
+    grown = multiply(size[:-1], np.abs(rate))
+    assert (np.abs((c * np.arange(ORDER + 1))[1:] + multiply(s[:-1], rate)) <= 4 * rounding * grown).all()
+
+
+def test_cosine_of_a_batch_is_the_cosine_of_each() -> None:
+    angle = np.random.default_rng(3).normal(size=(2, 3, 6))
+    together = cosine(angle)
+    # Sums of six products may be taken in another order.
+    for place in np.ndindex(2, 3):
+        assert np.allclose(
+            together[place], cosine(angle[place]), rtol=0, atol=16 * EPS * majorant(angle[place]).max()
+        )
