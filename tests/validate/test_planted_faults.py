@@ -1,0 +1,262 @@
+"""A comparison is worth what it catches: each single fault, planted in one formulation, must be seen."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import absolute
+import pointcoord.chain
+import pointcoord.instants
+import pointcoord.readout
+import pointcoord.rigid
+import pointcoord.wheel
+import validate.absolute_coordinates
+from pointcoord import Scene
+from pointcoord.mechanism import Mechanism
+from validate.compare import compare
+from validate.formulation import Solution
+from validate.formulations import formulation
+
+# The module; the package's attribute of this name is the function.
+solver = import_module("pointcoord.simulate")
+
+Plant = Callable[[pytest.MonkeyPatch], None]
+
+
+def _in_mechanism(change: Callable[[Mechanism], Mechanism]) -> Plant:
+    build = solver.build_mechanism
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(solver, "build_mechanism", lambda *a: change(build(*a)))
+
+    return plant
+
+
+def _link_too_long(mechanism: Mechanism) -> Mechanism:
+    """The tie rod 1e-7 mm longer than drawn."""
+    place = mechanism.layout.squared_length("tie_rod_inner", "tie_rod_outer")
+    drawn = mechanism.drawn.copy()
+    drawn[place] = (np.sqrt(drawn[place]) + 1e-7 / mechanism.unit) ** 2
+    return replace(mechanism, drawn=drawn)
+
+
+def _mirrored_wheel(mechanism: Mechanism) -> Mechanism:
+    """The wheel centre on the wrong side of the knuckle's plane: one sign."""
+    weights = mechanism.carrier_weights["wheel_centre"] * np.array([1.0, 1.0, -1.0])
+    return replace(mechanism, carrier_weights={"wheel_centre": weights})
+
+
+def _half_square_term(patch: pytest.MonkeyPatch) -> None:
+    """The factor 2 of eq. (23) dropped in every row."""
+    term = pointcoord.instants.square_velocity_term
+    patch.setattr(solver, "square_velocity_term", lambda s, v: 0.5 * term(s, v))
+
+
+def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
+    """The second derivative of s^k taken as k^2 s^(k-2)."""
+    table = pointcoord.chain._derivative_table
+
+    def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> np.ndarray:
+        result = table(coefficients, scale, derivatives)
+        if derivatives < 2:
+            return result
+        width, k = coefficients.shape[-1], np.arange(coefficients.shape[-2], dtype=float)[:, None]
+        result[:-2, 2 * width :] = (coefficients * k * k)[2:] / scale**2
+        return result
+
+    patch.setattr(pointcoord.chain, "_derivative_table", wrong)
+
+
+def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
+    """omega x (omega x r) left out of the angular acceleration."""
+    alpha = pointcoord.rigid.angular_acceleration
+    patch.setattr(pointcoord.rigid, "angular_acceleration", lambda p, a, w: alpha(p, a, 0.0 * w))
+
+
+def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
+    angle = pointcoord.wheel.kingpin_angle
+    patch.setattr(pointcoord.readout.wheel, "kingpin_angle", lambda *a: -angle(*a))
+
+
+def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
+    rates = validate.absolute_coordinates.rates
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: change(rates(part, t)))
+
+    return plant
+
+
+def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
+    build = absolute.macpherson
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        def wrong(points: dict, up: tuple, right: tuple) -> absolute.Model:
+            return build(change(dict(points)), up=axes.get("up", up), right=axes.get("right", right))
+
+        patch.setattr(absolute, "macpherson", wrong)
+
+    return plant
+
+
+def _moved(name: str, *shift: float) -> Callable[[dict], dict]:
+    return lambda points: points | {name: tuple(np.add(points[name], shift))}
+
+
+def _body_frame(patch: pytest.MonkeyPatch) -> None:
+    """The absolute model's angular velocity given in the knuckle's axes instead of the world's."""
+    solve = absolute.solve
+
+    def wrong(*args: object, **options: object) -> absolute.Solution:
+        solved = solve(*args, **options)
+        p = [solved.position[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower")]
+        e1 = p[1] - p[0]
+        e3 = np.cross(e1, p[2] - p[0])
+        axes = np.stack([v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (e1, np.cross(e3, e1), e3)], -1)
+        to_body = np.swapaxes(axes[:1], -2, -1) @ axes  # identity at the first instant
+        turned = np.einsum("nji,nj->ni", to_body, solved.angular_velocity["knuckle"])
+        return replace(solved, angular_velocity={**solved.angular_velocity, "knuckle": turned})
+
+    patch.setattr(absolute, "solve", wrong)
+
+
+def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rates: rates * [0.0 if order in orders else 1.0 for order in range(3)]
+
+
+def _shifted(by: float) -> Plant:
+    """The absolute model sees its inputs a little late."""
+    rates = validate.absolute_coordinates.rates
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: rates(part, t - by))
+
+    return plant
+
+
+def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
+    """The heaving chassis moves the absolute model, but its velocity and acceleration are forgotten."""
+    solve = absolute.solve
+
+    def wrong(model: absolute.Model, inputs: dict, chassis: np.ndarray, **options: bool) -> absolute.Solution:
+        return solve(model, inputs, chassis=chassis * np.array([1.0, 0.0, 0.0])[None, :, None], **options)
+
+    patch.setattr(absolute, "solve", wrong)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Where a fault goes, the scene that shows it, and the quantity that it spoils."""
+
+    plant: Plant
+    scene: str
+    spoils: str
+    first: str = "pointcoord"
+
+
+FAULTS = {
+    "a link 1e-7 mm too long": Fault(_in_mechanism(_link_too_long), "bounce", "position"),
+    "the wheel on the wrong side of the knuckle": Fault(_in_mechanism(_mirrored_wheel), "steer", "position"),
+    "the factor 2 of eq. (23) dropped": Fault(_half_square_term, "bounce", "acceleration", "pointcoord-newton"),
+    "a derivative k^2 for k (k-1)": Fault(_wrong_derivative, "steer", "acceleration"),
+    "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
+    "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
+    "theta'' forgotten": Fault(_in_absolute_inputs(_without(2)), "bounce", "acceleration"),
+    "theta' and S' forgotten": Fault(_in_absolute_inputs(_without(1)), "steer", "velocity"),
+    "inputs late by 1e-10 s": Fault(_shifted(1e-10), "bounce", "position"),
+    "an input rounded to single precision": Fault(
+        _in_absolute_inputs(lambda r: r.astype(np.float32).astype(float)), "bounce", "position"
+    ),
+    "the rack's direction reversed": Fault(
+        _in_absolute_model(lambda p: p, right=(0.0, -1.0, 0.0)), "steer", "position"
+    ),
+    "the tie rod 1e-7 mm too short": Fault(
+        _in_absolute_model(_moved("tie_rod_inner", 0.0, -1e-7, 0.0)), "bounce", "position"
+    ),
+    "the strut's axis off by 1e-9 mm": Fault(
+        _in_absolute_model(_moved("strut_lower", 1e-9, 0.0, 0.0)), "steer", "position"
+    ),
+    "a wrong point: the wheel at the rod's end": Fault(
+        _in_absolute_model(lambda p: p | {"wheel_centre": p["strut_rod_end"]}), "bounce", "position"
+    ),
+    "y and z of a point exchanged": Fault(
+        _in_absolute_model(lambda p: p | {"lower_arm_rear": (540, -20, -10)}), "bounce", "position"
+    ),
+    "the vertical tilted by 1e-9 rad": Fault(
+        _in_absolute_model(lambda p: p, up=(1e-9, 0.0, 1.0)), "bounce", "position"
+    ),
+    "omega in the body's axes": Fault(_body_frame, "bounce-and-steer", "angular_velocity"),
+    "the chassis' rates forgotten": Fault(_chassis_at_rest, "bounce-on-a-heaving-chassis", "velocity"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_single_fault_makes_the_comparison_fail(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    fault = FAULTS[name]
+    scene = Scene.load(fault.scene)
+    assert compare(scene, fault.first, "absolute").agreed
+    fault.plant(monkeypatch)
+    outcome = compare(scene, fault.first, "absolute")
+    assert fault.spoils in {row.quantity for row in outcome.disagreements}
+
+
+class _Stretched:
+    """A formulation whose result of one name is a relative 1e-7 off at one instant."""
+
+    name = "stretched"
+
+    def __init__(self, quantity: str, part: str) -> None:
+        self.quantity, self.part = quantity, part
+
+    def solve(self, scene: Scene) -> Solution:
+        solution = formulation("absolute").solve(scene)
+        arrays = dict(getattr(solution, self.quantity))
+        wrong = arrays[self.part].copy()
+        wrong[len(wrong) // 2] *= 1.0 + 1e-7
+        return replace(solution, **{self.quantity: arrays | {self.part: wrong}})
+
+
+@pytest.mark.parametrize(
+    ("quantity", "part"),
+    [
+        ("position", "strut_lower"),
+        ("position", "rack_centre"),
+        ("velocity", "tie_rod_inner"),
+        ("acceleration", "wheel_centre"),
+        ("angular_velocity", "knuckle"),
+        ("angular_acceleration", "knuckle"),
+        ("wheel", "camber"),
+        ("wheel", "kingpin"),
+    ],
+)
+def test_one_number_at_one_instant_a_ten_millionth_off_is_seen(quantity: str, part: str) -> None:
+    outcome = compare(Scene.load("steer"), "pointcoord", _Stretched(quantity, part))
+    assert [(row.quantity, row.name) for row in outcome.disagreements] == [(quantity, part)]
+
+
+def test_not_a_number_is_a_disagreement() -> None:
+    class Holes:
+        name = "holes"
+
+        def solve(self, scene: Scene) -> Solution:
+            solution = formulation("absolute").solve(scene)
+            wrong = solution.velocity["wheel_centre"].copy()
+            wrong[3, 1] = np.nan
+            return replace(solution, velocity={**solution.velocity, "wheel_centre": wrong})
+
+    outcome = compare(Scene.load("steer"), "pointcoord", Holes())
+    assert [(row.quantity, row.name) for row in outcome.disagreements] == [("velocity", "wheel_centre")]
+
+
+def test_a_missing_result_cannot_pass_for_agreement() -> None:
+    class Silent:
+        name = "silent"
+
+        def solve(self, scene: Scene) -> Solution:
+            return replace(formulation("absolute").solve(scene), angular_velocity={})
+
+    with pytest.raises(ValueError, match="angular_velocity"):
+        compare(Scene.load("steer"), "pointcoord", Silent())
