@@ -2,7 +2,8 @@
 
 Hardpoints move by up to two hundred millimetres in every coordinate from the paper's, which changes link
 lengths and proportions by half; the strut's two inner points stay near the line of its outer two, as
-they do in any drawing of a strut, but not on it.
+they do in any drawing of a strut, but not on it: its two halves are bent by up to 8 degrees each, as in
+the paper's own Table 1.
 """
 
 from __future__ import annotations
@@ -48,9 +49,11 @@ def hardpoints(draw: st.DrawFn, reach: float = 200.0) -> Points:
     """Points of a random left-hand strut, each free coordinate up to `reach` mm from the paper's."""
     points = {name: np.array(PAPER[name]) + draw(_vectors(reach)) for name in FREE}
     top, ball = points["strut_top"], points["lower_ball_joint"]
+    length = float(np.linalg.norm(ball - top))
     for name, low, high in (("strut_lower", 0.55, 0.95), ("strut_rod_end", 0.2, 0.5)):
         place = draw(st.floats(low, high))
-        points[name] = top + place * (ball - top) + draw(_vectors(20.0))
+        nearer = min(place, 1.0 - place) * length
+        points[name] = top + place * (ball - top) + 0.08 * nearer * draw(_vectors(1.0))
     points["tie_rod_inner"] = points["rack_centre"] + draw(_vectors(5.0))
     return {name: _triple(points[name]) for name in PAPER}
 

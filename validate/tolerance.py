@@ -18,11 +18,11 @@ A point that rides on a body, the wheel centre, moves g times as much as the poi
 its velocity and acceleration have these tolerances times g with s1 T(position), and s1 T(velocity) added
 once more for the turning of its arm.
 
-The rates of a body with points r_i about their centroid, |r_i| <= R, smallest eigenvalue m of its
-inertia tensor, and w, a its largest angular velocity and acceleration, are least squares, so
+The rates of a body with points r_i about their centroid, |r_i| <= R, are least squares with the inertia
+tensor J = sum (|r_i|^2 I - r_i r_i^T); with w, a its largest angular velocity and acceleration,
 
-    T(omega) = g [T(velocity) + w T(position)],    g = 2 sum |r_i| / m
-    T(alpha) = g [T(acceleration) + (a + 2 w^2) T(position) + 2 w R T(omega)]
+    T(omega) = b [T(velocity) + w T(position)],    b = max row sum of |J^-1 [r_1]x ... J^-1 [r_k]x|
+    T(alpha) = b [T(acceleration) + (a + 2 w^2) T(position) + 2 w R T(omega)]
 
 and an angle of a line of length l turns by at most T(angle) = 4 T(position) / l + 4 eps.
 """
@@ -125,7 +125,9 @@ def body_tolerances(
     r = stack - stack.mean(axis=-2, keepdims=True)
     lengths = np.linalg.norm(r, axis=-1)
     inertia = np.sum(lengths**2, axis=-1)[:, None, None] * np.eye(3) - np.swapaxes(r, -2, -1) @ r
-    gain = 2.0 * lengths.sum(axis=-1) / np.linalg.eigvalsh(inertia)[:, 0]
+    moments = np.cross(r[..., None, :], np.eye(3))  # row j of matrix i: r_i x e_j
+    solved = np.linalg.solve(inertia[:, None], np.swapaxes(moments, -2, -1))
+    gain = np.abs(solved).sum(axis=(-3, -1)).max(axis=-1)
     omega = gain * (tolerances["velocity"] + spin * tolerances["position"])
     pulled = (spin_rate + 2.0 * spin**2) * tolerances["position"]
     turned = 2.0 * spin * lengths.max(axis=-1) * omega

@@ -115,7 +115,9 @@ def _body_frame(patch: pytest.MonkeyPatch) -> None:
         p = [solved.position[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower")]
         e1 = p[1] - p[0]
         e3 = np.cross(e1, p[2] - p[0])
-        axes = np.stack([v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (e1, np.cross(e3, e1), e3)], -1)
+        axes = np.stack(
+            [v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (e1, np.cross(e3, e1), e3)], -1
+        )
         to_body = np.swapaxes(axes[:1], -2, -1) @ axes  # identity at the first instant
         turned = np.einsum("nji,nj->ni", to_body, solved.angular_velocity["knuckle"])
         return replace(solved, angular_velocity={**solved.angular_velocity, "knuckle": turned})
@@ -160,7 +162,9 @@ class Fault:
 FAULTS = {
     "a link 1e-7 mm too long": Fault(_in_mechanism(_link_too_long), "bounce", "position"),
     "the wheel on the wrong side of the knuckle": Fault(_in_mechanism(_mirrored_wheel), "steer", "position"),
-    "the factor 2 of eq. (23) dropped": Fault(_half_square_term, "bounce", "acceleration", "pointcoord-newton"),
+    "the factor 2 of eq. (23) dropped": Fault(
+        _half_square_term, "bounce", "acceleration", "pointcoord-newton"
+    ),
     "a derivative k^2 for k (k-1)": Fault(_wrong_derivative, "steer", "acceleration"),
     "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
     "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
