@@ -137,41 +137,37 @@ def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: i
         instants: in any order, inside the chain, shape (N,), s.
         derivatives: highest time derivative wanted.
     Returns:
-        Shape (..., derivatives + 1, N, m), per s**derivative.
+        Shape (derivatives + 1, ..., N, m), per s**derivative.
     """
-    batch, width = columns[0].shape[:-2], columns[0].shape[-1]
-    result = np.empty((*batch, derivatives + 1, len(instants), width))
     order = np.argsort(instants, kind="stable")
-    sorted_instants = instants[order]
-    is_sorted = bool((order == np.arange(len(order))).all())
+    ordered = instants[order]
+    result = np.empty((derivatives + 1, *columns[0].shape[:-2], len(instants), columns[0].shape[-1]))
     starts = [segment.start for segment in chain.segments]
-    edges = [0, *np.searchsorted(sorted_instants, starts[1:], side="left").tolist(), len(instants)]
+    edges = [0, *np.searchsorted(ordered, starts[1:], side="left").tolist(), len(instants)]
     for segment, piece, first, last in zip(chain.segments, columns, edges[:-1], edges[1:], strict=True):
-        if first == last:
-            continue
-        table = _derivative_table(piece, segment.scale, derivatives)
+        tables = _derivative_tables(piece, segment.scale, derivatives) if first < last else []
         for low in range(first, last, BLOCK):
             high = min(low + BLOCK, last)
-            s = (sorted_instants[low:high] - segment.start) / segment.scale
-            powers = np.vander(s, table.shape[-2], increasing=True)
-            block = (powers @ table).reshape(*batch, high - low, derivatives + 1, width)
-            block = np.moveaxis(block, -2, -3)
-            if is_sorted:
-                result[..., low:high, :] = block
-            else:
-                result[..., order[low:high], :] = block
-    return result
+            s = (ordered[low:high] - segment.start) / segment.scale
+            powers = np.vander(s, piece.shape[-2], increasing=True)
+            for values, table in zip(result, tables, strict=True):
+                np.matmul(powers, table, out=values[..., low:high, :])
+    if (order[1:] > order[:-1]).all():
+        return result
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    return result[..., back, :]
 
 
-def _derivative_table(coefficients: Array, scale: float, derivatives: int) -> Array:
-    """Coefficients of a series and of its time derivatives side by side, (..., order + 1, (d + 1) m)."""
-    parts = [coefficients]
+def _derivative_tables(coefficients: Array, scale: float, derivatives: int) -> list[Array]:
+    """Coefficients of a series and of its time derivatives, each of shape (..., order + 1, m)."""
+    tables = [coefficients]
     powers = np.arange(coefficients.shape[-2], dtype=float)[:, None]
     for _ in range(derivatives):
         lower = np.zeros_like(coefficients)
-        lower[..., :-1, :] = (parts[-1] * powers)[..., 1:, :] / scale
-        parts.append(lower)
-    return np.concatenate(parts, axis=-1)
+        lower[..., :-1, :] = (tables[-1] * powers)[..., 1:, :] / scale
+        tables.append(lower)
+    return tables
 
 
 def _expand(

@@ -15,7 +15,7 @@ from pointcoord.motion import Channel, Samples
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
-"""For each time derivative, the points' states of shape (..., N, 3) in the mechanism's units."""
+"""For each time derivative, the points' states of shape (..., N, 3), mm, from the mechanism's origin."""
 
 BodyRates = Callable[[Mapping[str, Array], Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array]]
 
@@ -36,13 +36,12 @@ class Readout:
     body_rates: BodyRates
 
     def samples(self, times: Array, states: States) -> Samples:
-        """Name the states, in mm, and compute the effects of the plan from them."""
+        """Name the states and compute the effects of the plan from them."""
         asked = self.plan.effects
-        unit = np.asarray(self.mechanism.unit)[..., None, None]
         origin = self.mechanism.origin[..., None, :]
-        position = {name: p * unit + origin for name, p in states[0].items()}
+        position = {name: p + origin for name, p in states[0].items()} if origin.any() else states[0]
         derivatives = {
-            quantity: {name: p * unit for name, p in states[order].items()} if quantity in asked else None
+            quantity: states[order] if quantity in asked else None
             for order, quantity in ((1, "velocity"), (2, "acceleration"))
         }
         omegas: dict[str, Array] | None = None
@@ -76,6 +75,6 @@ def least_squares_rates(
     position: Mapping[str, Array], velocity: Mapping[str, Array], acceleration: Mapping[str, Array]
 ) -> tuple[Array, Array]:
     """Angular velocity and acceleration of a body from all its points."""
-    places, rates, second = (rigid.stack_points(list(s.values())) for s in (position, velocity, acceleration))
-    omega = rigid.angular_velocity(places, rates)
-    return omega, rigid.angular_acceleration(places, second, omega)
+    return rigid.body_rates(
+        *(rigid.stack_points(list(s.values())) for s in (position, velocity, acceleration))
+    )

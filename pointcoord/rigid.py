@@ -36,45 +36,61 @@ def carried_series(weights: Array, base: Array, first: Array, second: Array) -> 
     return np.asarray(base + a * e1 + b * e2 + c * cross_series(e1, e2))
 
 
-def angular_velocity(position: Array, velocity: Array) -> Array:
-    """Angular velocity of a body from its points, shapes (..., points, 3) to (..., 3), rad/s.
+def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:
+    """Angular velocity and acceleration of a body from its points.
 
+    Args:
+        position, velocity, acceleration: shape (..., points, 3); lengths in any unit.
+    Returns:
+        omega, rad/s, and alpha, rad/s^2, each of shape (..., 3).
     Raises:
         SingularConfiguration: the points are in one line; the turn about it is free.
     """
-    r, v = _about_centroid(position), _about_centroid(velocity)
-    return _solve_inertia(r, np.cross(r, v).sum(axis=-2))
+    r, v, a = (about_centroid(vectors) for vectors in (position, velocity, acceleration))
+    compliance = _inverse_inertia(r)
+    omega = _apply(compliance, _moment(r, v))
+    # omega x (omega x r) = omega (omega . r) - r |omega|^2, and r x r = 0.
+    pull = omega[..., None, :] * np.sum(r * omega[..., None, :], axis=-1, keepdims=True)
+    return omega, _apply(compliance, _moment(r, a - pull))
 
 
-def angular_acceleration(position: Array, acceleration: Array, omega: Array) -> Array:
-    """Angular acceleration of a body, shapes (..., points, 3) and (..., 3) to (..., 3), rad/s^2.
-
-    Raises:
-        SingularConfiguration: the points are in one line; the turn about it is free.
-    """
-    r, a = _about_centroid(position), _about_centroid(acceleration)
-    spin = omega[..., None, :]
-    tangential = a - np.cross(spin, np.cross(spin, r))
-    return _solve_inertia(r, np.cross(r, tangential).sum(axis=-2))
-
-
-def _about_centroid(vectors: Array) -> Array:
+def about_centroid(vectors: Array) -> Array:
+    """Vectors of points, shape (..., points, 3), less their mean."""
     return np.asarray(vectors - vectors.mean(axis=-2, keepdims=True))
 
 
-def _solve_inertia(r: Array, moment: Array) -> Array:
-    square = np.sum(r * r, axis=(-2, -1))
-    inertia = square[..., None, None] * np.eye(3) - np.swapaxes(r, -2, -1) @ r
-    values = np.linalg.eigvalsh(inertia)
-    condition = np.divide(
-        values[..., 2], values[..., 0], out=np.full(square.shape, np.inf), where=values[..., 0] > 0
-    )
-    if not (condition * 8 * EPS < 1.0).all():
+def _moment(r: Array, f: Array) -> Array:
+    """sum r x f over points, shapes (..., points, 3) to (..., 3)."""
+    rx, ry, rz = np.moveaxis(r, -1, 0)
+    fx, fy, fz = np.moveaxis(f, -1, 0)
+    parts = (ry * fz - rz * fy, rz * fx - rx * fz, rx * fy - ry * fx)
+    return np.stack([part.sum(axis=-1) for part in parts], axis=-1)
+
+
+def _inverse_inertia(r: Array) -> tuple[Array, ...]:
+    """The six different elements of J^-1, from cofactors: xx, yy, zz, yz, xz, xy; each of shape (...)."""
+    x, y, z = np.moveaxis(r, -1, 0)
+    xx, yy, zz = ((c * c).sum(axis=-1) for c in (x, y, z))
+    f, e, d = -(y * z).sum(axis=-1), -(x * z).sum(axis=-1), -(x * y).sum(axis=-1)
+    a, b, c = yy + zz, xx + zz, xx + yy
+    cofactors = (b * c - f * f, a * c - e * e, a * b - d * d, d * e - a * f, d * f - b * e, e * f - c * d)
+    determinant = a * cofactors[0] + d * cofactors[5] + e * cofactors[4]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        elements = tuple(cofactor / determinant for cofactor in cofactors)
+        # Largest eigenvalue <= trace, of J and of its inverse, which are positive definite.
+        condition = (a + b + c) * (elements[0] + elements[1] + elements[2])
+    if not ((condition > 0.0) & (condition * 8 * EPS < 1.0)).all():
         raise SingularConfiguration(
             "the points of a body are in one line, so its turn about that line is free",
-            float(np.max(condition)),
+            float(np.max(np.abs(condition))),
         )
-    return np.asarray(np.linalg.solve(inertia, moment[..., None])[..., 0])
+    return elements
+
+
+def _apply(elements: tuple[Array, ...], vector: Array) -> Array:
+    xx, yy, zz, yz, xz, xy = elements
+    x, y, z = np.moveaxis(vector, -1, 0)
+    return np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], axis=-1)
 
 
 def stack_points(points: Sequence[Array]) -> Array:

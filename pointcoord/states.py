@@ -36,7 +36,11 @@ def solved_states(readout: Readout, solved: Solved) -> list[dict[str, Array]]:
         series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
     names = [set(topology.points)] + [_points_at(mechanism, plan, d) for d in range(1, plan.derivative + 1)]
     return [
-        {name: series[name][..., order, :] * max(order, 1) for name in topology.points if name in wanted}
+        {
+            name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
+            for name in topology.points
+            if name in wanted
+        }
         for order, wanted in enumerate(names)
     ]
 
@@ -76,7 +80,7 @@ class Sampler:
             values = evaluate(self.chain, columns, instants, derivatives)
             for order in range(derivatives + 1):
                 for i, name in enumerate(names):
-                    states[order][name] = values[..., order, :, 3 * i : 3 * i + 3]
+                    states[order][name] = values[order, ..., 3 * i : 3 * i + 3]
         ordered = [{name: state[name] for name in topology.points if name in state} for state in states]
         return self.readout.samples(instants, ordered)
 
@@ -110,7 +114,7 @@ class Sampler:
 
     @cached_property
     def _point_series(self) -> list[dict[str, Array]]:
-        """For each segment the series of every moving and carried point, (..., order + 1, 3)."""
+        """For each segment the series of every moving and carried point, (..., order + 1, 3), mm."""
         mechanism = self.readout.mechanism
         layout, topology = mechanism.layout, mechanism.topology
         result = []
@@ -118,7 +122,8 @@ class Sampler:
             series = {name: segment.coefficients[..., list(layout.vector(name))] for name in topology.moving}
             for name, carriers in topology.carried.items():
                 series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
-            result.append(series)
+            unit = np.asarray(mechanism.unit)[..., None, None]
+            result.append({name: points * unit for name, points in series.items()})
         return result
 
     def _chassis(self, instants: Array, derivatives: int) -> list[dict[str, Array]]:
@@ -131,13 +136,16 @@ class Sampler:
             if name in topology.chassis_motion
         }
         shift = mechanism.chassis_shift(inputs)
-        if shift is None:
-            shift = np.zeros((len(instants), derivatives + 1, 3))
-        return [
-            {
-                name: shift[..., order, :] * max(order, 1)
-                + (mechanism.drawing.vectors[name][..., None, :] if order == 0 else 0.0)
+        unit = np.asarray(mechanism.unit)[..., None, None]
+        batch = self.chain.segments[0].coefficients.shape[:-2]
+        still = np.zeros((*batch, 1, 3))
+        states = []
+        for order in range(derivatives + 1):
+            moved = still if shift is None else shift[..., order, :] * (max(order, 1) * unit)
+            drawn = {
+                name: mechanism.drawing.vectors[name][..., None, :] * unit if order == 0 else still
                 for name in topology.chassis
             }
-            for order in range(derivatives + 1)
-        ]
+            shape = (*batch, len(instants), 3)
+            states.append({name: np.broadcast_to(place + moved, shape) for name, place in drawn.items()})
+        return states

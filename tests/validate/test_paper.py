@@ -26,7 +26,7 @@ def test_the_tables_are_ten_millimetres_off_and_for_one_reason() -> None:
 
 
 def test_table_2_reproduces_the_knuckle_rates_but_for_a_sign() -> None:
-    """Printed to one or two digits: 0.1 rad/s and 0.15 rad/s^2, the row with a slipped sign of omega_x apart."""
+    """Printed to one or two digits: 0.1 rad/s and 0.15 rad/s^2, but for a slipped sign of omega_x."""
     slipped = [row for row in ROWS if row.printed.table == 2 and row.omega_gap > 0.1]
     assert [row.printed.time for row in slipped] == [0.6]
     mended = np.abs(np.subtract(slipped[0].omega, (-0.2, -0.04, -0.1))).max()  # as the rows around it

@@ -57,23 +57,21 @@ def _half_square_term(patch: pytest.MonkeyPatch) -> None:
 
 def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
     """The second derivative of s^k taken as k^2 s^(k-2)."""
-    table = pointcoord.chain._derivative_table
+    right = pointcoord.chain._derivative_tables
 
-    def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> np.ndarray:
-        result = table(coefficients, scale, derivatives)
-        if derivatives < 2:
-            return result
-        width, k = coefficients.shape[-1], np.arange(coefficients.shape[-2], dtype=float)[:, None]
-        result[:-2, 2 * width :] = (coefficients * k * k)[2:] / scale**2
-        return result
+    def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
+        tables = right(coefficients, scale, derivatives)
+        k = np.arange(coefficients.shape[-2], dtype=float)[:, None]
+        tables[2][:-2] = (coefficients * k * k)[2:] / scale**2
+        return tables
 
-    patch.setattr(pointcoord.chain, "_derivative_table", wrong)
+    patch.setattr(pointcoord.chain, "_derivative_tables", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
-    """omega x (omega x r) left out of the angular acceleration."""
-    alpha = pointcoord.rigid.angular_acceleration
-    patch.setattr(pointcoord.rigid, "angular_acceleration", lambda p, a, w: alpha(p, a, 0.0 * w))
+    """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
+    rates = pointcoord.rigid.body_rates
+    patch.setattr(pointcoord.rigid, "body_rates", lambda p, v, a: (rates(p, v, a)[0], rates(p, a, a)[0]))
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
