@@ -216,3 +216,15 @@ def test_proven_step_stays_within_newtons_reach_of_the_path(
     shares = np.linspace(0.0, 0.999 * step, 40)
     signs = np.linalg.slogdet(strut.map.jacobian(pose.y + shares[:, None] * tangent))[0]
     assert (signs == signs[0]).all()
+
+
+def test_branch_is_kept_past_the_near_singular_place_at_35_degrees(strut: Mechanism) -> None:
+    # With the rack in the middle two branches nearly meet at 35.15 degrees. A branch cannot be left
+    # without the determinant of C_u passing zero.
+    walk = at(
+        strut, np.deg2rad(np.array([90.0, 60.0, 40.0, 36.0, 35.5, 35.2, 34.8, 34.0, 32.5])), np.zeros(9)
+    )
+    signs = np.linalg.slogdet(strut.map.jacobian(walk.y))[0]
+    assert (signs == signs[0]).all()
+    assert walk.condition[5] > walk.condition[:5].max()
+    assert walk.condition[5] > walk.condition[6:].max()

@@ -138,7 +138,7 @@ def exact_positions(mechanism: Mechanism, points: Points, u: list[Fraction]) -> 
     return result
 
 
-@settings(deadline=None, max_examples=max(8, settings.default.max_examples // 6))
+@settings(deadline=None, max_examples=max(8, settings.default.max_examples // 2))
 @given(
     angle=st.floats(0.6, 2.6),
     rack=st.floats(-80.0, 120.0),
@@ -157,20 +157,20 @@ def test_every_point_of_a_pose_lies_within_its_proven_bound(
         motion = simulate(scene)
     except AssemblyError:
         assume(False)
+    proof = motion.proof()
     # Proven twice, with factors of two poses that differ by rounding: both must hold.
-    bound = min(float(motion.proof().bound[0]), float(motion.start.bound))
+    solved = min(float(proof.bound[0]), float(motion.start.bound))
+    carried = float(proof.carried_bound[0])
     mechanism = scene_mechanism(scene)
     u = refine(mechanism, motion.start.y, exact_known(mechanism, points, angle, rack))
-    worst = max(
-        abs(Fraction(float(motion.position[name][0, i])) - exact[i])
-        for name, exact in exact_positions(mechanism, points, u).items()
-        for i in range(3)
-    )
-    assert worst <= Fraction(bound)
+    for name, exact in exact_positions(mechanism, points, u).items():
+        for i in range(3):
+            error = abs(Fraction(float(motion.position[name][0, i])) - exact[i])
+            assert error <= Fraction(carried if name == "wheel_centre" else solved)
     # A bound that is of use: a few thousand roundings of the size of the car and of its distance, unless
     # the pose is near a singular one.
     if float(motion.start.condition) < 1e3:
-        assert bound <= 1e5 * np.finfo(float).eps * (1000.0 + shift)
+        assert max(solved, carried) <= 1e5 * np.finfo(float).eps * (1000.0 + shift)
 
 
 @plain
