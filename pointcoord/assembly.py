@@ -191,29 +191,44 @@ def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float |
 
 
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
-    if (path.done >= 1.0).all():
-        return
-    first = tuple(np.argwhere(path.done < 1.0)[0])
-    known = path.y[first][mechanism.map.unknowns :]
-    goal = np.broadcast_to(target, (*path.done.shape, target.shape[-1]))[first]
-    raise stopped(mechanism, problem, known, goal, float(path.factors.condition[first]), instant)
+    unfinished = path.done < 1.0
+    if unfinished.any():
+        known = path.y[..., mechanism.map.unknowns :]
+        raise stopped(mechanism, problem, known, target, path.factors.condition, unfinished, instant)
 
 
 def stopped(
-    mechanism: Mechanism, problem: str, known: Array, goal: Array, condition: float, instant: float | None
+    mechanism: Mechanism,
+    problem: str,
+    known: Array,
+    goal: Array,
+    condition: Array,
+    unfinished: NDArray[np.bool_],
+    instant: float | None,
 ) -> AssemblyError:
-    """The error for a path that ends at `known` on its way to `goal` (each of shape (known,))."""
-    first = mechanism.map.unknowns
+    """The error for paths that end at `known` on their way to `goal`, told for the first unfinished one.
+
+    Args:
+        known, goal: known coordinates, shape (..., known coordinates).
+        condition, unfinished: shape (...).
+    """
+    member = tuple(np.argwhere(unfinished)[0])
+
+    def told(coordinates: Array) -> dict[str, float]:
+        values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
+        return {name: float(value[member]) for name, value in values.items()}
+
     change = {
-        drive.input: abs(goal[p] - known[p])
+        drive.input: np.abs(goal - known)[
+            ..., mechanism.layout.scalar(drive.coordinate) - mechanism.map.unknowns
+        ]
         for drive in mechanism.topology.drives
-        for p in [mechanism.layout.scalar(drive.coordinate) - first]
     }
     return AssemblyError(
         problem,
-        reached=mechanism.input_values(known),
-        wanted=mechanism.input_values(goal),
-        condition=condition,
-        reduce=max(change, key=lambda name: change[name]),
+        reached=told(known),
+        wanted=told(goal),
+        condition=float(condition[member]),
+        reduce=max(change, key=lambda name: float(change[name][member])),
         instant=instant,
     )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pointcoord.assembly import Pose, stopped
 from pointcoord.errors import AssemblyError
 from pointcoord.inputs import TimeFunction
-from pointcoord.linear import Factors
+from pointcoord.linear import EPS, Factors
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import Converged, polish
 from pointcoord.series import expand
@@ -30,6 +30,8 @@ BLOCK = 1024
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
 SHORTEST = 1e-11
+# A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
+ROUNDING = 4.0 * EPS
 # Trial lengths of a segment, in units of where its last terms grow as large as earlier ones.
 TRIALS = np.geomspace(1.0, 1e-5, 160)
 
@@ -99,6 +101,8 @@ def build_chain(
     scale = _power_of_two(stop - start)
     segments: list[Segment] = []
     instant = start
+    # Shorter steps in time than this are lost in the rounding of the instant itself.
+    shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
         limit = next((b for b in breaks if b > instant), stop)
         series = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
@@ -109,20 +113,19 @@ def build_chain(
             segments.append(Segment(instant, stop, scale, series))
             break
         length = _length(series[..., : mechanism.map.unknowns], settings) * scale
-        while True:
+        good = np.zeros(y.shape[:-1], dtype=bool)
+        while length >= shortest or instant + length >= limit:
             end = limit if instant + length >= limit else instant + length
             reached = _end(mechanism, functions, series, end, (end - instant) / scale)
             work += reached.work
-            good = reached.converged & (reached.first_step <= settings.tolerance)
+            # What rounding alone makes of a step is no truncation, however small the tolerance.
+            good = reached.converged & (reached.first_step <= settings.tolerance + 2.0 * reached.noise)
             if good.all():
                 break
             length = 0.5 * (end - instant)
-            if length < SHORTEST * (stop - start):
-                member = tuple(np.argwhere(~good)[0])
-                partial = Chain(tuple(segments), work) if segments else None
-                raise _cannot_pass(
-                    mechanism, functions, y[member], factors.condition[member], instant, stop, partial
-                )
+        else:
+            partial = Chain(tuple(segments), work) if segments else None
+            raise _cannot_pass(mechanism, functions, y, factors.condition, ~good, instant, stop, partial)
         segments.append(Segment(instant, end, scale, series))
         instant, y, factors = end, reached.y, reached.factors
         scale = _power_of_two(length)
@@ -202,6 +205,7 @@ def _length(series: Array, settings: Settings) -> float:
     """
     size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
     size[:, 0] = 1.0
+    tolerance = max(settings.tolerance, ROUNDING)
     logs = np.log(np.maximum(size, np.finfo(float).tiny))
     orders = np.arange(size.shape[-1], dtype=float)
     if not (size[:, -2:] > 0.0).any():
@@ -218,7 +222,7 @@ def _length(series: Array, settings: Settings) -> float:
             powers = trials[:, None] ** np.maximum(orders - d, 0.0)
             terms = size[:, None, :] * (falling * powers)[None]
             whole = np.ones(terms.shape[:2]) if d == 0 else terms[..., d:].max(axis=-1)
-            fits &= (terms[..., -2:].sum(axis=-1) <= settings.tolerance * whole).all(axis=0)
+            fits &= (terms[..., -2:].sum(axis=-1) <= tolerance * whole).all(axis=0)
             falling = falling * np.maximum(orders - d, 0.0)
     return float(trials[np.argmax(fits)]) if fits.any() else float(trials[-1])
 
@@ -232,21 +236,15 @@ def _cannot_pass(
     mechanism: Mechanism,
     functions: Mapping[str, TimeFunction],
     y: Array,
-    condition: float,
+    condition: Array,
+    unfinished: NDArray[np.bool_],
     instant: float,
     stop: float,
     partial: Chain | None,
 ) -> AssemblyError:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
-    goal = goal.reshape(-1, goal.shape[-1])[0]
-    error = stopped(
-        mechanism,
-        "the motion cannot pass a singular pose",
-        y[mechanism.map.unknowns :],
-        goal,
-        float(condition),
-        instant,
-    )
+    problem, known = "the motion cannot pass a singular pose", y[..., mechanism.map.unknowns :]
+    error = stopped(mechanism, problem, known, goal, condition, unfinished, instant)
     error.partial = partial
     return error

@@ -114,9 +114,8 @@ def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadr
 def _unreached(
     mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float, partial: Solved
 ) -> AssemblyError:
-    known = y[mechanism.map.unknowns :]
-    error = stopped(
-        mechanism, "the mechanism cannot be assembled", known, goal, float(factors.condition), float(instant)
-    )
+    problem, known = "the mechanism cannot be assembled", y[mechanism.map.unknowns :]
+    unfinished = np.array(True)
+    error = stopped(mechanism, problem, known, goal, factors.condition, unfinished, float(instant))
     error.partial = partial
     return error

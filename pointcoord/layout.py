@@ -75,8 +75,9 @@ class Layout:
 
     def squared_length(self, start: str, end: str) -> int:
         """Index of the squared length of the link from start to end."""
-        place = self.squared_lengths.index((start, end))
-        return self.size - len(self.squared_lengths) + place
+        if (start, end) not in self.squared_lengths:
+            raise UnknownName("link", f"{start} - {end}", (f"{a} - {b}" for a, b in self.squared_lengths))
+        return self.size - len(self.squared_lengths) + self.squared_lengths.index((start, end))
 
     def describe(self, index: int) -> str:
         """An unknown coordinate in words, such as 'y of tie_rod_outer'."""

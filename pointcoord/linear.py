@@ -82,22 +82,27 @@ def factorise(matrix: Array) -> Factors:
     """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
     largest = np.abs(matrix).max(axis=-1)
     usable = np.isfinite(largest) & (largest > 0.0)
-    exponent = np.frexp(np.where(usable, largest, 1.0))[1]
-    row_scale = np.ldexp(1.0, 1 - exponent)
+    row_scale = np.ldexp(1.0, 1 - np.frexp(np.where(usable, largest, 1.0))[1])
     scaled = matrix * row_scale[..., None]
     sound = usable.all(axis=-1)
+    safe = scaled if sound.all() else _with_identity(scaled, sound)
     try:
-        if not sound.all():
-            raise np.linalg.LinAlgError
-        inverse = np.linalg.inv(scaled)
+        inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:
         # One member with an exact zero pivot stops the whole batch: set such members aside.
-        safe = np.where(sound[..., None, None], scaled, np.eye(matrix.shape[-1]))
         sound &= np.linalg.slogdet(safe)[0] != 0.0
-        inverse = np.linalg.inv(np.where(sound[..., None, None], scaled, np.eye(matrix.shape[-1])))
+        inverse = np.linalg.inv(_with_identity(safe, sound))
+    with np.errstate(invalid="ignore", over="ignore"):
+        condition = np.abs(scaled).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
+    if not sound.all():
         inverse = np.where(sound[..., None, None], inverse, np.inf)
-    condition = np.abs(scaled).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
+        condition = np.where(sound, condition, np.inf)
     return Factors(scaled, inverse, row_scale, condition)
+
+
+def _with_identity(matrix: Array, sound: NDArray[np.bool_]) -> Array:
+    """The identity in place of members that have no inverse."""
+    return np.where(sound[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
 
 def null_directions(matrix: Array) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.drives import Drawing
-from pointcoord.errors import UnknownName
+from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.layout import Layout
 from pointcoord.linear import EPS
 from pointcoord.quadratic import QuadraticMap
@@ -62,6 +62,7 @@ class Mechanism:
             Coefficients, shape (..., order + 1, known coordinates), in the mechanism's units.
         Raises:
             UnknownName: an input that this topology does not have, or one that is missing.
+            InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
         """
         topology, layout = self.topology, self.layout
         for name in inputs:
@@ -70,13 +71,16 @@ class Mechanism:
         for name in topology.required_inputs:
             if name not in inputs:
                 raise UnknownName("given input", name, inputs)
-        sample = inputs[topology.required_inputs[0]]
-        batch = np.broadcast_shapes(sample.shape[:-1], self.drawn.shape[:-1])
-        known = np.zeros((*batch, sample.shape[-1], layout.size - layout.unknowns))
+        batch = np.broadcast_shapes(*(s.shape[:-1] for s in inputs.values()), self.drawn.shape[:-1])
+        orders = inputs[topology.required_inputs[0]].shape[-1]
+        known = np.zeros((*batch, orders, layout.size - layout.unknowns))
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive in topology.drives:
             place = layout.scalar(drive.coordinate) - layout.unknowns
             known[..., place] = drive.series(inputs[drive.input], self.drawing)
+        for name, series in inputs.items():
+            if not np.isfinite(series).all():
+                raise InputOutOfRange(name, float(series[~np.isfinite(series)][0]), "finite numbers")
         shift = self.chassis_shift(inputs)
         if shift is not None:
             for point in topology.chassis:
@@ -93,12 +97,12 @@ class Mechanism:
                 shift = moved if shift is None else shift + moved
         return shift
 
-    def input_values(self, known: Array) -> dict[str, float]:
-        """The inputs that belong to known coordinates of one pose, shape (known coordinates,)."""
+    def input_values(self, known: Array) -> dict[str, Array]:
+        """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""
         first = self.layout.unknowns
         return {
-            drive.input: float(
-                drive.input_value(known[self.layout.scalar(drive.coordinate) - first], self.drawing)
+            drive.input: drive.input_value(
+                known[..., self.layout.scalar(drive.coordinate) - first], self.drawing
             )
             for drive in self.topology.drives
         }

@@ -34,6 +34,7 @@ class Converged:
         converged: whether the last step was noise, shape (...,).
         iterations: steps taken by each member, shape (...,).
         first_step: largest component of the first step, shape (...,).
+        noise: largest component of the rounding error of the last step, shape (...,).
         work: what it cost.
     """
 
@@ -42,6 +43,7 @@ class Converged:
     converged: NDArray[np.bool_]
     iterations: NDArray[np.int64]
     first_step: Array
+    noise: Array
     work: Work
 
 
@@ -61,6 +63,7 @@ def polish(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Conve
     converged = np.zeros(members, dtype=bool)
     iterations = np.zeros(members, dtype=np.int64)
     first_step = np.full(members, np.nan)
+    last_noise = np.full(members, np.inf)
     previous = np.full(members, np.inf)
     exact_data = np.zeros(y.shape[-1])
     active = np.arange(members)
@@ -68,10 +71,11 @@ def polish(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Conve
     evaluations = 0
     for _ in range(LIMIT):
         here = y[active]
-        local = factorise(system.jacobian(here))
-        factors = local if factors is None else factors.replaced(active, local)
         evaluations += len(active)
+        # A start that is not finite shows as a step that is not, which is checked below.
         with np.errstate(invalid="ignore", over="ignore"):
+            local = factorise(system.jacobian(here))
+            factors = local if factors is None else factors.replaced(active, local)
             step = -local.solve(system.residual(here) - offset[active])
             noise = (np.abs(local.preconditioner) @ system.uncertainty(here, exact_data)[..., None])[..., 0]
         size = np.abs(step).max(axis=-1)
@@ -82,6 +86,7 @@ def polish(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Conve
         small = (np.abs(step) <= noise).all(axis=-1) | stalled
         iterations[active] += 1
         first_step[active] = np.where(np.isnan(first_step[active]), size, first_step[active])
+        last_noise[active] = noise.max(axis=-1)
         previous[active] = size
         y[active, :n] += np.where(usable[:, None], step, 0.0)
         converged[active] = usable & small
@@ -96,5 +101,6 @@ def polish(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Conve
         converged=converged.reshape(batch),
         iterations=iterations.reshape(batch),
         first_step=first_step.reshape(batch),
+        noise=last_noise.reshape(batch),
         work=Work(residuals=evaluations, factorisations=evaluations),
     )

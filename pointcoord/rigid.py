@@ -47,6 +47,10 @@ def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[A
         SingularConfiguration: the points are in one line; the turn about it is free.
     """
     r, v, a = (about_centroid(vectors) for vectors in (position, velocity, acceleration))
+    # A power of two near the body's size, so that no product of lengths over- or underflows.
+    size = np.abs(r).max(axis=(-2, -1), keepdims=True)
+    scale = np.ldexp(1.0, -np.frexp(np.where(size > 0.0, size, 1.0))[1])
+    r, v, a = r * scale, v * scale, a * scale
     compliance = _inverse_inertia(r)
     omega = _apply(compliance, _moment(r, v))
     # omega x (omega x r) = omega (omega . r) - r |omega|^2, and r x r = 0.
