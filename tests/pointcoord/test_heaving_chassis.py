@@ -1,0 +1,76 @@
+"""A chassis that moves up and down carries the whole motion with it."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, simulate
+
+EPS = np.finfo(float).eps
+AMPLITUDE, FREQUENCY = 12.0, 3.0
+
+
+@pytest.mark.parametrize("method", ["series", "newton", "printed"])
+@pytest.mark.parametrize("tilted", [False, True])
+def test_heave_adds_itself_to_positions_and_its_rates_to_rates(
+    make_scene: Callable[..., Scene], table: dict[str, tuple[float, ...]], method: str, tilted: bool
+) -> None:
+    # Heave is along the car's own up: a car turned about x by 30 degrees shows that.
+    c, s = (np.cos(np.pi / 6), 0.5) if tilted else (1.0, 0.0)
+    about = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    car = {
+        "points": {name: about @ p for name, p in table.items()},
+        "up": about[:, 2],
+        "right": about[:, 1],
+        "rack": (0.0, 20.0),
+        "samples": 21,
+    }
+    still = simulate(make_scene(**car), method)
+    sine = {"sine": {"amplitude": AMPLITUDE, "angular_frequency": FREQUENCY}}
+    moved = simulate(make_scene(**car, heave=sine), method)
+    one, other = still.proof(), moved.proof()
+    t = still.times[:, None]
+    up = about[:, 2]
+    added = {
+        "position": AMPLITUDE * np.sin(FREQUENCY * t) * up,
+        "velocity": AMPLITUDE * FREQUENCY * np.cos(FREQUENCY * t) * up,
+        "acceleration": -AMPLITUDE * FREQUENCY**2 * np.sin(FREQUENCY * t) * up,
+    }
+    # Poses: both proven bounds; for the series the truncation of both, 1e-9 mm each.
+    pose = (
+        (one.carried_bound + other.carried_bound).max()
+        + (2e-9 if method == "series" else 0.0)
+        + 16 * EPS * 600
+    )
+    # Rates: a pose's error times its proven effect, and the rounding of one solve, condition number times
+    # eps of the largest rate; for the series the same share of the rate as the tolerance is of the car.
+    # Carried points are multiplied by their weights, up to 30.
+    condition = max(one.condition.max(), other.condition.max())
+    share = 64 * EPS * condition + (1e-9 / 256 if method == "series" else 0.0)
+    fast, hard = (
+        max(np.abs(v).max() for v in getattr(moved, q).values()) for q in ("velocity", "acceleration")
+    )
+    sense, bend = (
+        max(getattr(p, f"{q}_sensitivity").max() for p in (one, other)) for q in ("velocity", "acceleration")
+    )
+    speed = 30 * (sense * pose + share * fast)
+    second = 30 * (bend * pose + 2 * sense * speed + share * (hard + fast * sense))
+    for quantity, tolerance in (("position", pose), ("velocity", speed), ("acceleration", second)):
+        for name in table:
+            gap = getattr(moved, quantity)[name] - getattr(still, quantity)[name] - added[quantity]
+            assert np.abs(gap).max() <= tolerance
+        assert tolerance < 1e-3 * np.abs(added[quantity]).max()  # small enough to see a lost heave
+    # The knuckle's spin and the angles do not change: shortest lever of its triangle 50 mm.
+    for quantity, tolerance in (("angular_velocity", speed), ("angular_acceleration", second)):
+        gap = getattr(moved, quantity)["knuckle"] - getattr(still, quantity)["knuckle"]
+        assert method == "printed" or np.abs(gap).max() <= 12 * tolerance / 50
+    for angle in still.wheel:
+        assert np.abs(moved.wheel[angle] - still.wheel[angle]).max() <= 8 * pose / 50
+
+
+def test_heave_that_is_not_given_is_no_heave(make_scene: Callable[..., Scene]) -> None:
+    without, zero = simulate(make_scene(), "newton"), simulate(make_scene(heave=(0.0,)), "newton")
+    for quantity in ("position", "velocity", "acceleration"):
+        for name in without.position:
+            assert np.array_equal(getattr(without, quantity)[name], getattr(zero, quantity)[name])
