@@ -105,7 +105,7 @@ def build_chain(
     shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
         limit = next((b for b in breaks if b > instant), stop)
-        series = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
+        series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
         work += Work(
             segments=1, series_orders=settings.order, rate_solves=settings.order * int(np.prod(y.shape[:-1]))
         )
@@ -181,9 +181,19 @@ def _expand(
     instant: float,
     scale: float,
     order: int,
-) -> Array:
+) -> tuple[Array, float]:
+    """The series about an instant and its unit of time, at most `scale`.
+
+    The unit is small enough for no known coefficient to exceed the mechanism's size, so that no product
+    of two series overflows however fast the inputs are.
+    """
     known = mechanism.known_series({name: f.series(instant, order) for name, f in functions.items()})
-    return expand(mechanism.map, factors, y, known * (scale ** np.arange(order + 1.0))[:, None])
+    size = np.abs(known[..., 1:, :]).max(axis=tuple(i for i in range(known.ndim) if i != known.ndim - 2))
+    orders = np.arange(order + 1.0)
+    if size.any():
+        fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
+        scale = min(scale, _power_of_two(fastest))
+    return expand(mechanism.map, factors, y, known * (scale**orders)[:, None]), scale
 
 
 def _end(

@@ -84,7 +84,8 @@ class ArmAngle:
         if outside.any():
             worst = float(np.atleast_1d(angle[outside])[0])
             raise InputOutOfRange(self.input, worst, "0 to pi rad, measured from the upward vertical")
-        return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
 
     def drawn(self, drawing: Drawing) -> Array:
         """Height of the drawn point over its pivot."""

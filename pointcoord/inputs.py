@@ -21,7 +21,10 @@ Array = NDArray[np.float64]
 
 
 class TimeFunction(Protocol):
-    """A scalar function of time that is analytic between its breaks."""
+    """A scalar function of time that is analytic between its breaks.
+
+    A coefficient too large for the arithmetic comes out infinite; whoever uses it must check.
+    """
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
@@ -43,9 +46,10 @@ class Polynomial:
         """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k)."""
         t = np.asarray(instants, dtype=float)
         result = np.zeros((*t.shape, order + 1))
-        for k in range(min(order + 1, len(self.coefficients))):
-            shifted = [comb(j, k) * self.coefficients[j] for j in range(k, len(self.coefficients))]
-            result[..., k] = np.polynomial.polynomial.polyval(t, np.array(shifted))
+        with np.errstate(over="ignore", invalid="ignore"):
+            for k in range(min(order + 1, len(self.coefficients))):
+                shifted = [comb(j, k) * self.coefficients[j] for j in range(k, len(self.coefficients))]
+                result[..., k] = np.polynomial.polynomial.polyval(t, np.array(shifted))
         return result
 
     @property
@@ -65,12 +69,14 @@ class Sine:
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
-        angle = self.angular_frequency * np.asarray(instants, dtype=float) + self.phase
-        sine, cosine = np.sin(angle), np.cos(angle)
-        quarter_turns = (sine, cosine, -sine, -cosine)
-        factors = [self.amplitude * self.angular_frequency**k / factorial(k) for k in range(order + 1)]
-        result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
-        result[..., 0] += self.offset
+        with np.errstate(over="ignore", invalid="ignore"):
+            angle = self.angular_frequency * np.asarray(instants, dtype=float) + self.phase
+            sine, cosine = np.sin(angle), np.cos(angle)
+            quarter_turns = (sine, cosine, -sine, -cosine)
+            powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
+            factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
+            result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
+            result[..., 0] += self.offset
         return result
 
     @property

@@ -80,11 +80,16 @@ class Mechanism:
             known[..., place] = drive.series(inputs[drive.input], self.drawing)
         for name, series in inputs.items():
             if not np.isfinite(series).all():
-                raise InputOutOfRange(name, float(series[~np.isfinite(series)][0]), "finite numbers")
+                worst = float(series[~np.isfinite(series)][0])
+                raise InputOutOfRange(name, worst, "finite values and rates of every order")
         shift = self.chassis_shift(inputs)
         if shift is not None:
             for point in topology.chassis:
                 known[..., [i - layout.unknowns for i in layout.vector(point)]] += shift
+        if not np.isfinite(known).all():
+            largest = max(inputs, key=lambda name: float(np.abs(inputs[name]).max()))
+            worst = float(np.abs(inputs[largest]).max())
+            raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
         return known
 
     def chassis_shift(self, inputs: Mapping[str, Array]) -> Array | None:

@@ -103,7 +103,7 @@ class Motion(Samples):
         Args:
             instants: a number or an array of them, s.
         Returns:
-            Arrays of shape (N, 3); for a single number (3,).
+            Arrays of the instants' shape, vectors with a last dimension of 3.
         Raises:
             OutsideMotion: an instant before the start, after the stop, or not a number.
             NotComputed: the method knows the motion at the scene's instants only.
@@ -111,23 +111,24 @@ class Motion(Samples):
         if self.resample is None:
             raise NotComputed(f"a motion between instants (method {self.method!r})", "method 'series'")
         asked = np.asarray(instants, dtype=float)
-        samples = self.resample(np.atleast_1d(asked))
-        return samples if asked.ndim else _only(samples)
+        samples = self.resample(asked.ravel())
+        return samples if asked.ndim == 1 else _reshaped(samples, asked.shape)
 
 
-def _only(samples: Samples) -> Samples:
-    def first(channel: Channel) -> Channel:
-        arrays = {name: channel[name][..., 0, :] for name in channel} if channel.computed else None
-        return Channel(channel.quantity, channel.effect, arrays)
+def _reshaped(samples: Samples, shape: tuple[int, ...]) -> Samples:
+    def reshape(channel: Channel, rank: int) -> Channel:
+        arrays = {}
+        for name, array in channel.items():
+            batch, vector = array.shape[: array.ndim - 1 - rank], array.shape[array.ndim - rank :]
+            arrays[name] = array.reshape((*batch, *shape, *vector))
+        return Channel(channel.quantity, channel.effect, arrays if channel.computed else None)
 
-    wheel = samples.wheel
-    angles = {name: wheel[name][..., 0] for name in wheel} if wheel.computed else None
     return Samples(
-        times=samples.times[0],
-        position=first(samples.position),
-        velocity=first(samples.velocity),
-        acceleration=first(samples.acceleration),
-        angular_velocity=first(samples.angular_velocity),
-        angular_acceleration=first(samples.angular_acceleration),
-        wheel=Channel(wheel.quantity, wheel.effect, angles),
+        times=samples.times.reshape(shape),
+        position=reshape(samples.position, 1),
+        velocity=reshape(samples.velocity, 1),
+        acceleration=reshape(samples.acceleration, 1),
+        angular_velocity=reshape(samples.angular_velocity, 1),
+        angular_acceleration=reshape(samples.angular_acceleration, 1),
+        wheel=reshape(samples.wheel, 0),
     )

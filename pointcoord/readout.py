@@ -53,6 +53,8 @@ class Readout:
                     *({point: states[order][point] for point in points} for order in range(3))
                 )
         angles = self._wheel_angles(states[0]) if "wheel_angles" in asked else None
+        times = times.copy()
+        times.setflags(write=False)
         return Samples(
             times=times,
             position=Channel("position", "", position),

@@ -5,6 +5,7 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from importlib import resources
@@ -133,6 +134,10 @@ class TimePart(_Part):
 
     @model_validator(mode="after")
     def _forwards(self) -> Self:
+        if not math.isfinite(self.stop - self.start):
+            raise ValueError(
+                f"from {self.start} to {self.stop} s is no finite time; allowed: less than 1e308 s"
+            )
         if self.samples == 1 and self.start != self.stop:
             raise ValueError(
                 f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
@@ -239,15 +244,28 @@ def _scene_error(source: str, error: ValidationError) -> PointcoordError:
     faults = error.errors(include_url=False)
     first = faults[0]
     key = ".".join(str(part) for part in first["loc"])
-    problem = first["msg"].removeprefix("Value error, ")
+    problem, allowed = first["msg"].removeprefix("Value error, "), ""
     given = first["input"]
     if first["type"] == "missing":
         problem = "this key is missing"
     elif first["type"] == "extra_forbidden":
-        problem = "there is no such key"
+        problem, allowed = "there is no such key", ", ".join(_keys_at(first["loc"][:-1]))
     elif not isinstance(given, dict | BaseModel) and first["type"] != "value_error":
         shown = repr(given)
         problem = f"{problem}, not {shown if len(shown) <= 60 else shown[:57] + '...'}"
     if len(faults) > 1:
         problem += f" (and {len(faults) - 1} more)"
-    return SceneError(source, key, problem)
+    return SceneError(source, key, problem, allowed)
+
+
+def _keys_at(place: tuple[int | str, ...]) -> tuple[str, ...]:
+    """The keys that a scene may have at a place, for the parts that have fixed keys."""
+    parts: dict[str, type[BaseModel]] = {
+        "mechanism": MechanismPart,
+        "time": TimePart,
+        "sine": SinePart,
+        "table": TablePart,
+    }
+    if not place:
+        return tuple(Scene.model_fields)
+    return tuple(parts.get(str(place[-1]), InputPart).model_fields)
