@@ -1,1 +1,10 @@
-"""Runs the formulations on the same scenes and says how far they agree."""
+"""Runs the formulations on the same scenes and says how far they agree.
+
+from validate import compare
+outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
+"""
+
+from validate.compare import Comparison, Outcome, compare
+from validate.formulation import Accuracy, Formulation, FormulationError, Solution
+
+__all__ = ["Accuracy", "Comparison", "Formulation", "FormulationError", "Outcome", "Solution", "compare"]

@@ -1,0 +1,48 @@
+"""What the README shows is what its commands print."""
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.cli import DEFAULT_SCENES
+from validate.compare import compare
+
+README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_python_lines_print_what_the_readme_shows() -> None:
+    code, shown = re.findall(r"```(?:python|text)\n(.*?)```", README, flags=re.S)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(code, "README.md", "exec"), {})
+    lines, expected = printed.getvalue().splitlines(), shown.splitlines()
+    assert len(lines) == len(expected)
+    for line, want in zip(lines, expected, strict=True):
+        numbers = [[float(n) for n in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", text)] for text in (line, want)]
+        # Eight decimals are shown.
+        np.testing.assert_allclose(*numbers, rtol=0, atol=1.01e-8)
+        assert re.sub(r"[-\d. \[\]]", "", line) == re.sub(r"[-\d. \[\]]", "", want)
+
+
+@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+def test_the_agreement_table_is_what_the_comparison_finds(scene: str) -> None:
+    head, _, *body = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in README.splitlines()
+        if line.startswith("|")
+    ]
+    outcome = compare(Scene.load(scene), "pointcoord", "absolute", scene)
+    for line in body:
+        name = line[0].split(",")[0].replace(" ", "_")
+        rows = [row for row in outcome.rows if name in (row.quantity, row.name)]
+        shown = float(line[head.index(scene)])
+        found = max(row.difference for row in rows)
+        # Differences are rounding: another machine rounds otherwise, but not by an order of magnitude.
+        assert shown / 10 < found < shown * 10
+        # A tolerance is known at the instant of the largest difference, which rounding may move.
+        assert max(row.tolerance for row in rows) < 1.5 * float(line[-1])
