@@ -1,0 +1,186 @@
+"""The given points as exact fractions, in a frame of their own size."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import arb
+
+from validate.truth.equations import CHASSIS, LINKS, NUMBER_OF, Known
+from validate.truth.errors import BadInputError
+from validate.truth.exact import as_ball, as_fraction
+from validate.truth.jet import Jet
+from validate.truth.vectors import Vector, cross, dot, minus, plus, times
+
+DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
+INPUTS = ("arm_angle", "rack", "heave")
+
+
+@dataclass(frozen=True)
+class Driven:
+    """The three inputs at one instant, each (value, rate, acceleration) as fractions; rad, mm, mm."""
+
+    arm_angle: Jet
+    rack: Jet
+    heave: Jet
+
+    @classmethod
+    def from_mapping(cls, inputs: Mapping[str, Sequence[object]]) -> Driven:
+        """Inputs by name; an input that is not named rests at zero.
+
+        Raises:
+            BadInputError: an unknown name, or not three finite numbers.
+        """
+        for name, triple in inputs.items():
+            if name not in INPUTS:
+                raise BadInputError(f"inputs[{name!r}]", triple, f"one of {', '.join(INPUTS)}")
+            if len(triple) != 3:
+                raise BadInputError(f"inputs[{name!r}]", triple, "three numbers: value, rate, acceleration")
+        if "arm_angle" not in inputs:
+            raise BadInputError("inputs", sorted(inputs), "a mapping that names at least arm_angle")
+        jets = {
+            name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0, 0, 0))))
+            for name in INPUTS
+        }
+        return cls(**jets)
+
+
+@dataclass(frozen=True)
+class Design:
+    """The mechanism as given. Local coordinates are (p - origin) / unit, exact.
+
+    The shift and the unit keep balls tight whether the points lie 1e9 mm from the frame's origin or
+    the mechanism is 1e-3 or 1e6 mm in size.
+
+    Attributes:
+        table: points 1 to 10, local.
+        origin: point 1, mm.
+        unit: a power of two near the mechanism's size, mm.
+        up: direction of z.
+        right: direction of y.
+        outboard: +1 where outboard is `right`, -1 where it is the opposite.
+        squared_length: d_ij^2 of every link, local.
+        wheel: (a, b, c) with p10 = p5 + a r6 + b r7 + c r6 x r7, r_i = p_i - p5.
+    """
+
+    table: Mapping[int, Vector]
+    origin: Vector
+    unit: Fraction
+    up: Vector
+    right: Vector
+    outboard: int
+    squared_length: Mapping[tuple[int, int], Fraction]
+    wheel: tuple[Fraction, Fraction, Fraction]
+
+    @classmethod
+    def from_points(
+        cls,
+        points: Mapping[str, Sequence[object]],
+        up: Sequence[object],
+        right: Sequence[object],
+        side: str,
+    ) -> Design:
+        """Take over the ten named points, mm.
+
+        Raises:
+            BadInputError: a point is missing or unknown, a number is not finite, `up` and `right` are not
+                unit vectors at right angles, a link or the knuckle's triangle has no extent, or the arm's
+                axis is upright (then theta does not move the arm).
+        """
+        if set(points) != set(NUMBER_OF):
+            raise BadInputError("points", sorted(points), f"exactly the names {', '.join(NUMBER_OF)}")
+        given = {NUMBER_OF[name]: exact_vector(p, f"points[{name!r}]") for name, p in points.items()}
+        z, y = exact_vector(up, "up"), exact_vector(right, "right")
+        if abs(dot(z, z) - 1) > DIRECTION_SLACK or abs(dot(y, y) - 1) > DIRECTION_SLACK:
+            raise BadInputError("up and right", (up, right), "unit vectors, to 1e-12")
+        if abs(dot(z, y)) > DIRECTION_SLACK:
+            raise BadInputError("up and right", (up, right), "vectors at right angles, to 1e-12")
+        if side not in ("left", "right"):
+            raise BadInputError("side", side, "'left' or 'right'")
+        unit = _unit(given)
+        table = {n: times(minus(p, given[1]), 1 / unit) for n, p in given.items()}
+        lengths = {}
+        for i, j in LINKS:
+            link = minus(table[i], table[j])
+            lengths[i, j] = dot(link, link)
+            if lengths[i, j] == 0:
+                raise BadInputError(f"the length between points {i} and {j}", 0, "more than 0")
+        upright = cross(minus(table[2], table[1]), z)
+        if dot(upright, upright) == 0:
+            raise BadInputError("the arm's axis 1-2", "upright or without length", "an axis not along up")
+        outboard = -1 if side == "left" else 1
+        return cls(table, given[1], unit, z, y, outboard, lengths, _carried_by_knuckle(table))
+
+    def known(self, driven: Driven) -> Known:
+        """What the equations take as given, as jets of balls at the present precision, local.
+
+        Heave moves points 1 to 4 by heave(t) up. With h = d_51 cos(theta):
+        h' = -d_51 sin(theta) theta',  h'' = -d_51 (cos(theta) theta'^2 + sin(theta) theta'').
+        """
+        rise = balls(driven.heave) * as_ball(1 / self.unit)
+        up = ball_vector(self.up)
+        lift = (rise * up[0], rise * up[1], rise * up[2])
+        theta = balls(driven.arm_angle)
+        sine, cosine = theta.value.sin_cos()
+        d51 = as_ball(self.squared_length[5, 1]).sqrt()
+        bend = cosine * theta.rate * theta.rate + sine * theta.acceleration
+        return Known(
+            chassis={n: plus(ball_vector(self.table[n]), lift) for n in CHASSIS},
+            up=up,
+            right=ball_vector(self.right),
+            squared_length={link: as_ball(squared) for link, squared in self.squared_length.items()},
+            arm_height=Jet(d51 * cosine, -d51 * sine * theta.rate, -d51 * bend),
+            rack=balls(driven.rack) * as_ball(1 / self.unit),
+        )
+
+
+def values_only(known: Known) -> Known:
+    """The same with the values of the jets, for the position equations."""
+    return Known(
+        chassis={n: (p[0].value, p[1].value, p[2].value) for n, p in known.chassis.items()},
+        up=known.up,
+        right=known.right,
+        squared_length=known.squared_length,
+        arm_height=known.arm_height.value,
+        rack=known.rack.value,
+    )
+
+
+def exact_vector(numbers: Sequence[object], what: str) -> Vector:
+    """Three numbers as fractions; `BadInputError` if there are not three."""
+    if len(numbers) != 3:
+        raise BadInputError(what, numbers, "three numbers")
+    x, y, z = (as_fraction(number, what) for number in numbers)
+    return x, y, z
+
+
+def ball_vector(vector: Vector) -> tuple[arb, arb, arb]:
+    """Three fractions as balls."""
+    return as_ball(vector[0]), as_ball(vector[1]), as_ball(vector[2])
+
+
+def balls(jet: Jet) -> Jet:
+    """A jet of fractions as a jet of balls."""
+    return Jet(as_ball(jet.value), as_ball(jet.rate), as_ball(jet.acceleration))
+
+
+def _unit(points: Mapping[int, Vector]) -> Fraction:
+    size = max(abs(x) for p in points.values() for x in minus(p, points[1]))
+    if size == 0:
+        raise BadInputError("points", "all in one place", "points with some distance between them")
+    power = size.numerator.bit_length() - size.denominator.bit_length()
+    return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
+
+
+def _carried_by_knuckle(table: Mapping[int, Vector]) -> tuple[Fraction, Fraction, Fraction]:
+    """Exact since the triangle keeps its side lengths: (a, b) solve a Gram system of those lengths."""
+    r6, r7, r10 = (minus(table[n], table[5]) for n in (6, 7, 10))
+    normal = cross(r6, r7)
+    area = dot(normal, normal)  # also the Gram determinant |r6|^2 |r7|^2 - (r6 . r7)^2
+    if area == 0:
+        raise BadInputError("the knuckle", "points 5, 6 and 7 on one line", "a triangle 5, 6, 7")
+    a = dot(cross(r10, r7), normal) / area
+    b = dot(cross(r6, r10), normal) / area
+    return a, b, dot(r10, normal) / area
