@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import AssemblyError
-from pointcoord.linear import Factors, factorise
+from pointcoord.linear import Factors, factorise, weakest_balance
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import polish
 from pointcoord.proof import pose_bound
@@ -193,42 +193,46 @@ def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float |
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
     unfinished = path.done < 1.0
     if unfinished.any():
-        known = path.y[..., mechanism.map.unknowns :]
-        raise stopped(mechanism, problem, known, target, path.factors.condition, unfinished, instant)
+        raise stopped(mechanism, problem, path.y, target, path.factors, unfinished, instant)
 
 
 def stopped(
     mechanism: Mechanism,
     problem: str,
-    known: Array,
+    y: Array,
     goal: Array,
-    condition: Array,
+    factors: Factors,
     unfinished: NDArray[np.bool_],
     instant: float | None,
 ) -> AssemblyError:
-    """The error for paths that end at `known` on their way to `goal`, told for the first unfinished one.
+    """The error for paths that end at y on their way to `goal`, told for the first unfinished one.
+
+    Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
+    each other in balance: the rows that take part are what limits the motion.
 
     Args:
-        known, goal: known coordinates, shape (..., known coordinates).
-        condition, unfinished: shape (...).
+        y: coordinates, shape (..., size).
+        goal: known coordinates, shape (..., known coordinates).
+        unfinished: shape (...).
     """
     member = tuple(np.argwhere(unfinished)[0])
+    known = y[..., mechanism.map.unknowns :]
 
     def told(coordinates: Array) -> dict[str, float]:
         values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
         return {name: float(value[member]) for name, value in values.items()}
 
+    first = mechanism.map.unknowns
     change = {
-        drive.input: np.abs(goal - known)[
-            ..., mechanism.layout.scalar(drive.coordinate) - mechanism.map.unknowns
-        ]
+        drive.input: np.abs(goal - known)[..., mechanism.layout.scalar(drive.coordinate) - first][member]
         for drive in mechanism.topology.drives
     }
     return AssemblyError(
         problem,
         reached=told(known),
         wanted=told(goal),
-        condition=float(condition[member]),
-        reduce=max(change, key=lambda name: float(change[name][member])),
+        condition=float(factors.condition[member]),
+        reduce=max(change, key=lambda name: float(change[name])),
+        limits=mechanism.topology.strongest(weakest_balance(factors.matrix[member])),
         instant=instant,
     )

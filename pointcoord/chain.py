@@ -9,13 +9,13 @@ segment without inherited error and shows what the error was; a segment that mis
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.assembly import Pose, stopped
-from pointcoord.errors import AssemblyError
+from pointcoord.errors import AssemblyError, MotionTooLong
 from pointcoord.inputs import TimeFunction
 from pointcoord.linear import EPS, Factors
 from pointcoord.mechanism import Mechanism
@@ -31,7 +31,11 @@ BLOCK = 1024
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
 SHORTEST = 1e-11
 # A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
-ROUNDING = 4.0 * EPS
+FINEST = 4.0 * EPS
+# A larger one could take a neighbouring branch for the same motion, and would hardly save a segment.
+COARSEST = 1e-6
+# A motion of more segments would take more than some ten seconds; it is refused with that reason.
+MOST_SEGMENTS = 5000
 # Trial lengths of a segment, in units of where its last terms grow as large as earlier ones.
 TRIALS = np.geomspace(1.0, 1e-5, 160)
 
@@ -69,8 +73,8 @@ class Settings:
     """How a chain is cut.
 
     Attributes:
-        tolerance: allowed truncation, in the mechanism's units; for a derivative the same fraction of
-            that derivative's size.
+        tolerance: allowed truncation, in the mechanism's units, between 4 eps and 1e-6; for a derivative
+            the same fraction of that derivative's size.
         derivative: highest time derivative that will be evaluated.
         order: of each series.
     """
@@ -95,7 +99,9 @@ def build_chain(
         pose: assembled at `start`, any leading batch dimensions.
     Raises:
         AssemblyError: the motion meets a pose that it cannot pass; `partial` is the chain up to there.
+        MotionTooLong: it takes more than MOST_SEGMENTS segments; likewise.
     """
+    settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
     breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
     y, factors, work = pose.y, pose.factors, Work()
     scale = _power_of_two(stop - start)
@@ -104,6 +110,8 @@ def build_chain(
     # Shorter steps in time than this are lost in the rounding of the instant itself.
     shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
+        if len(segments) == MOST_SEGMENTS:
+            raise MotionTooLong(MOST_SEGMENTS, instant, start, stop, Chain(tuple(segments), work))
         limit = next((b for b in breaks if b > instant), stop)
         series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
         work += Work(
@@ -125,7 +133,7 @@ def build_chain(
             length = 0.5 * (end - instant)
         else:
             partial = Chain(tuple(segments), work) if segments else None
-            raise _cannot_pass(mechanism, functions, y, factors.condition, ~good, instant, stop, partial)
+            raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial)
         segments.append(Segment(instant, end, scale, series))
         instant, y, factors = end, reached.y, reached.factors
         scale = _power_of_two(length)
@@ -215,7 +223,6 @@ def _length(series: Array, settings: Settings) -> float:
     """
     size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
     size[:, 0] = 1.0
-    tolerance = max(settings.tolerance, ROUNDING)
     logs = np.log(np.maximum(size, np.finfo(float).tiny))
     orders = np.arange(size.shape[-1], dtype=float)
     if not (size[:, -2:] > 0.0).any():
@@ -232,7 +239,7 @@ def _length(series: Array, settings: Settings) -> float:
             powers = trials[:, None] ** np.maximum(orders - d, 0.0)
             terms = size[:, None, :] * (falling * powers)[None]
             whole = np.ones(terms.shape[:2]) if d == 0 else terms[..., d:].max(axis=-1)
-            fits &= (terms[..., -2:].sum(axis=-1) <= tolerance * whole).all(axis=0)
+            fits &= (terms[..., -2:].sum(axis=-1) <= settings.tolerance * whole).all(axis=0)
             falling = falling * np.maximum(orders - d, 0.0)
     return float(trials[np.argmax(fits)]) if fits.any() else float(trials[-1])
 
@@ -246,7 +253,7 @@ def _cannot_pass(
     mechanism: Mechanism,
     functions: Mapping[str, TimeFunction],
     y: Array,
-    condition: Array,
+    factors: Factors,
     unfinished: NDArray[np.bool_],
     instant: float,
     stop: float,
@@ -254,7 +261,8 @@ def _cannot_pass(
 ) -> AssemblyError:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
-    problem, known = "the motion cannot pass a singular pose", y[..., mechanism.map.unknowns :]
-    error = stopped(mechanism, problem, known, goal, condition, unfinished, instant)
+    error = stopped(
+        mechanism, "the motion cannot pass a singular pose", y, goal, factors, unfinished, instant
+    )
     error.partial = partial
     return error

@@ -88,7 +88,8 @@ class AssemblyError(PointcoordError):
         wanted: value of every input that was asked for.
         instant: time of the wanted pose, s, if it belongs to a motion.
         condition: condition number at the last assembled pose.
-        reduce: the input that moved the most, measured as the change of its driven coordinate.
+        reduce: the input with the most still to go, measured as its driven coordinate.
+        limits: the links and joints that hold each other there, the strongest first.
         partial: the motion up to the last assembled instant, if any.
     """
 
@@ -100,6 +101,7 @@ class AssemblyError(PointcoordError):
         wanted: dict[str, float],
         condition: float,
         reduce: str,
+        limits: tuple[str, ...] = (),
         instant: float | None = None,
         partial: object = None,
     ) -> None:
@@ -108,6 +110,7 @@ class AssemblyError(PointcoordError):
         self.wanted = wanted
         self.condition = condition
         self.reduce = reduce
+        self.limits = limits
         self.instant = instant
         self.partial = partial
         when = "" if instant is None else f" at t = {instant:.6g} s"
@@ -115,7 +118,29 @@ class AssemblyError(PointcoordError):
         stops = ", ".join(f"{name} = {value:.10g}" for name, value in reached.items())
         super().__init__(
             f"{problem}{when}: wanted {goals}; assembly stopped at {stops} "
-            f"(condition number {condition:.2g}); bring {reduce!r} back towards its value there"
+            f"(condition number {condition:.2g}), limited by {', '.join(limits[:3]) or 'an unknown link'}; "
+            f"bring {reduce!r} back towards its value there"
+        )
+
+
+class MotionTooLong(PointcoordError):
+    """A motion that would take more segments than the limit.
+
+    Args:
+        limit: most segments. instant: how far they reached, s. start, stop: of the motion, s.
+        partial: the motion up to the instant.
+    """
+
+    def __init__(self, limit: int, instant: float, start: float, stop: float, partial: object) -> None:
+        self.limit = limit
+        self.instant = instant
+        self.stop = stop
+        self.partial = partial
+        expected = limit * (stop - start) / (instant - start)
+        super().__init__(
+            f"the motion from {start:.6g} to {stop:.6g} s takes about {expected:.2g} segments; allowed: "
+            f"{limit}, which reach t = {instant:.6g} s; shorten the time, slow the inputs down, or use the "
+            "method 'newton', which solves at the scene's instants only"
         )
 
 

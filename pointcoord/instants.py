@@ -114,8 +114,7 @@ def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadr
 def _unreached(
     mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float, partial: Solved
 ) -> AssemblyError:
-    problem, known = "the mechanism cannot be assembled", y[mechanism.map.unknowns :]
-    unfinished = np.array(True)
-    error = stopped(mechanism, problem, known, goal, factors.condition, unfinished, float(instant))
+    problem, unfinished = "the mechanism cannot be assembled", np.array(True)
+    error = stopped(mechanism, problem, y, goal, factors, unfinished, float(instant))
     error.partial = partial
     return error

@@ -115,15 +115,16 @@ class Mechanism:
     def known_uncertainty(self, y: Array) -> Array:
         """Rounding of the known coordinates when inputs become coordinates, shape (..., size).
 
-        Driven coordinates take a cosine or a quotient and a product (4 units of rounding cover them),
-        moved chassis points a product and a sum, squared lengths one rounding; the rest is exact.
+        Driven coordinates take at most a norm (3.5 units of rounding), a cosine (2) and a product (1), which
+        4 eps = 8 units cover; moved chassis points a product and a sum, squared lengths their sum; the
+        rest is exact.
         """
         layout = self.layout
         uncertainty = np.zeros_like(y)
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
             reach = np.abs(y[..., place])
-            uncertainty[..., place] = 2 * EPS * np.maximum(reach, np.abs(self.drawn[..., place]))
+            uncertainty[..., place] = 4 * EPS * np.maximum(reach, np.abs(self.drawn[..., place]))
         for point in self.topology.chassis:
             places = list(layout.vector(point))
             moved = np.abs(y[..., places] - self.drawn[..., places])

@@ -15,6 +15,7 @@ from pointcoord.errors import (
     AssemblyError,
     InputOutOfRange,
     MechanismError,
+    MotionTooLong,
     SceneError,
     UnknownName,
 )
@@ -49,6 +50,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         SceneError: the hardpoints do not make a mechanism.
         InputOutOfRange: an input leaves the values for which it has a meaning.
         AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there.
+        MotionTooLong: the motion takes too many series; likewise.
     """
     if method not in ("series", "newton", "printed"):
         raise UnknownName("method", method, ("series", "newton", "printed"))
@@ -107,7 +109,7 @@ def _by_series(
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
-    except AssemblyError as error:
+    except (AssemblyError, MotionTooLong) as error:
         if isinstance(error.partial, Chain):
             error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
         raise

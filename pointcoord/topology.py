@@ -6,10 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pointcoord.constraints import Constraint, Link, OnLine
 from pointcoord.drives import Drive
 from pointcoord.layout import Layout
 from pointcoord.quadratic import QuadraticMap, quadratic_map
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,22 @@ class Topology:
     def labels(self) -> tuple[str, ...]:
         """A name for each row of the map."""
         return tuple(label for constraint in self.constraints for label in constraint.labels)
+
+    def strongest(self, forces: Array) -> tuple[str, ...]:
+        """Names of the constraints that take part in a balance of forces, links first.
+
+        Args:
+            forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
+                part from a tenth of the largest of all.
+        """
+        first = 0
+        sizes: dict[str, float] = {}
+        for constraint in self.constraints:
+            last = first + len(constraint.labels)
+            sizes[constraint.labels[0].removesuffix(" (x)")] = float(np.abs(forces[first:last]).max())
+            first = last
+        acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
+        return tuple(sorted(acting, key=lambda name: (not name.startswith("link"), -sizes[name])))
 
     @cached_property
     def layout(self) -> Layout:

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pointcoord import AssemblyError, Motion, PointcoordError, Scene, built_in_scenes, simulate
+from pointcoord import AssemblyError, Motion, MotionTooLong, PointcoordError, Scene, built_in_scenes, simulate
 from pointcoord.effects import EFFECTS, plan_effects
 from validate import report
 from validate.compare import Outcome, compare
@@ -141,7 +141,7 @@ def _simulate(options: argparse.Namespace) -> int:
     scene = Scene.load(options.scene)
     try:
         write_motion(options.output, simulate(scene))
-    except AssemblyError as error:
+    except (AssemblyError, MotionTooLong) as error:
         # What was solved before the motion stopped is kept, and the status says that it is not all.
         if isinstance(error.partial, Motion):
             write_motion(options.output, error.partial)
