@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.reach import arm_limits, rack_limits
+from validate.locks import arm_limits, rack_limits
 from validate.strategies import EFFECTS, FREE, PAPER, Points, mirrored
 
 Array = NDArray[np.float64]
 Kind = Literal["regular", "dead arm", "toggle", "singular drawing"]
 KINDS: tuple[Kind, ...] = ("regular", "dead arm", "toggle", "singular drawing")
-SHARES = (0.7, 0.1, 0.1, 0.1)
+SHARES = (0.86, 0.06, 0.06, 0.02)
 
 SEED = 20250101
 REACH = 200.0  # mm, from the paper's hardpoints

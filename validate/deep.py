@@ -1,0 +1,190 @@
+"""Random scenes by the hundred thousand through both models: python -m validate.deep --store FILE.
+
+Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
+in a way it should not. Nothing is folded away: the table at the end counts them all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import sys
+import time
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pointcoord import SceneError
+from validate.compare import Outcome, compare_solutions
+from validate.deep_store import CHUNK, Chunk, Store, StoreError
+from validate.deep_table import table_text
+from validate.formulation import FormulationError, Solution
+from validate.formulations import formulation
+from validate.random_cars import KINDS, RandomCar, random_car
+from validate.refusals import same_reason, why_refused
+from validate.verdicts import judged, judged_alone, obstacle
+
+MODELS = ("pointcoord", "absolute")
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of one scene.
+
+    Attributes:
+        outcome: the class that it is counted in.
+        reason: what there is to say of this scene alone; empty if nothing.
+        shares: per quantity, the largest share of its tolerance, where both models answered.
+        kept: whether the scene is written down.
+    """
+
+    outcome: str
+    reason: str
+    shares: dict[str, float]
+    kept: bool
+
+
+def examine(car: RandomCar) -> Result:
+    """Solve one scene by both models and say what came of it."""
+    answers: list[Solution | FormulationError] = []
+    for name in MODELS:
+        try:
+            answers.append(_solved(name, car))
+        except FormulationError as error:
+            answers.append(error)
+        # Any other error is a defect of a model: it is counted and written down, and the run goes on.
+        except Exception as error:
+            return Result(f"{name} fails: {type(error).__name__}", " ".join(str(error).split()), {}, True)
+    first, second = answers
+    if isinstance(first, Solution) and isinstance(second, Solution):
+        return _compared(car, first, second)
+    if isinstance(first, FormulationError) and isinstance(second, FormulationError):
+        reasons = why_refused(first), why_refused(second)
+        shown = reasons[0] if reasons[0] == reasons[1] else " | ".join(reasons)
+        alike = "same reason" if same_reason(*reasons) else "different reasons"
+        return Result(f"both refuse, {alike}: {shown}", "", {}, False)
+    return _one_sided(car, answers)
+
+
+def _solved(name: str, car: RandomCar) -> Solution:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            return formulation(name).solve(car.scene)
+        except SceneError as error:
+            raise FormulationError(name, error) from error
+
+
+def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
+    outcome = compare_solutions(car.scene, first, second, car.scene.title)
+    if outcome.agreed:
+        return Result("agreed", "", _shares(outcome), False)
+    worst = outcome.disagreements[0]
+    reason = (
+        f"{worst.quantity} of {worst.name} differs by {worst.difference:.3g} {worst.unit}, "
+        f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
+    )
+    kind = f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}"
+    return Result(kind, reason, {}, True)
+
+
+def _one_sided(car: RandomCar, answers: Sequence[Solution | FormulationError]) -> Result:
+    (error,) = (a for a in answers if isinstance(a, FormulationError))
+    (answer,) = (a for a in answers if isinstance(a, Solution))
+    verdict = judged_alone(car.scene, answer)
+    if verdict == "answer right":
+        verdict += f", {obstacle(car.scene)}"
+    outcome = f"only {error.formulation} refuses, {why_refused(error)}: {verdict}"
+    return Result(outcome, " ".join(str(error.reason).split()), {}, True)
+
+
+def _shares(outcome: Outcome) -> dict[str, float]:
+    largest: dict[str, float] = {}
+    for row in outcome.rows:
+        largest[row.quantity] = max(largest.get(row.quantity, 0.0), row.share)
+    return largest
+
+
+def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
+    """Do the scenes of one chunk and record it; findings of the scenes in `known` are there already."""
+    began = time.perf_counter()
+    outcomes: Counter[str] = Counter()
+    shares: dict[str, tuple[float, int]] = {}
+    found = []
+    for index in range(number * CHUNK, (number + 1) * CHUNK):
+        car = random_car(index)
+        result = examine(car)
+        outcomes[f"{car.kind}/{result.outcome}"] += 1
+        for quantity, share in result.shares.items():
+            shares[quantity] = max(shares.get(quantity, (share, index)), (share, index))
+        if result.kept:
+            found.append(index)
+            if index not in known:
+                data = car.scene.model_dump(mode="json", exclude_none=True)
+                line = {"kind": car.kind, "outcome": result.outcome, "reason": result.reason, "content": data}
+                store.finding(index, line)
+    chunk = Chunk(number, dict(outcomes), shares, tuple(found), time.perf_counter() - began)
+    store.chunk(chunk)
+    return chunk
+
+
+def _work(numbers: Sequence[int], path: Path, known: frozenset[int], parent: int) -> None:
+    for number in numbers:
+        run_chunk(number, Store(path), known)
+        # A worker whose parent was killed would go on unseen, beside the run that is started next.
+        if os.getppid() != parent:
+            return
+
+
+def run(count: int, path: Path, workers: int = 1) -> int:
+    """Do what is missing of the first `count` scenes, print the table, return the exit status.
+
+    Raises:
+        StoreError: the store cannot be used, or a worker died.
+    """
+    store = Store(path)
+    record = store.read()
+    wanted = range(-(-count // CHUNK))
+    missing = [n for n in wanted if n not in record.chunks]
+    known = frozenset(record.findings)
+    if workers == 1:
+        for number in missing:
+            run_chunk(number, store, known)
+    else:
+        context = multiprocessing.get_context("spawn")
+        crew = [
+            context.Process(target=_work, args=(missing[i::workers], path, known, os.getpid()), daemon=True)
+            for i in range(workers)
+        ]
+        for process in crew:
+            process.start()
+        for process in crew:
+            process.join()
+        if any(process.exitcode for process in crew):
+            raise StoreError(f"{path}: a worker died; start again, and it goes on from what is recorded")
+    record = store.read()
+    print(table_text(record, KINDS), flush=True)
+    return 1 if any("disagreed" in o or " fails: " in o for o in record.outcomes()) else 0
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(prog="python -m validate.deep", description=__doc__)
+    parser.add_argument("--count", type=int, default=100_000, help=f"scenes, rounded up to {CHUNK}")
+    parser.add_argument("--store", type=Path, required=True, help="file of JSON lines; goes on where it ends")
+    parser.add_argument("--workers", type=int, default=1, help="processes")
+    options = parser.parse_args(arguments)
+    if options.count < 1 or options.workers < 1:
+        parser.error(f"--count {options.count} --workers {options.workers}: allowed: 1 and more")
+    try:
+        return run(options.count, options.store, options.workers)
+    except StoreError as error:
+        print(f"validate.deep: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

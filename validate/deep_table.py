@@ -1,0 +1,38 @@
+"""What a deep run found, as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from validate.deep_store import CHUNK, Record
+from validate.report import table
+
+
+def table_text(record: Record, kinds: Sequence[str]) -> str:
+    """Every outcome by kind of scene, and the largest share of each tolerance that was used."""
+    total = record.outcomes()
+    outcomes = sorted({key.split("/", 1)[1] for key in total}, key=_order)
+    rows = []
+    for outcome in outcomes:
+        counts = [total[f"{kind}/{outcome}"] for kind in kinds]
+        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
+    tried = [sum(n for key, n in total.items() if key.startswith(f"{kind}/")) for kind in kinds]
+    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
+    blocks = [table(("outcome", "all", *kinds), rows)]
+    shares = record.shares()
+    if shares:
+        lines = [(q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items()]
+        blocks.append(
+            "Where both agreed:\n" + table(("quantity", "largest share of tolerance", "scene"), lines)
+        )
+    seconds = sum(chunk.seconds for chunk in record.chunks.values())
+    blocks.append(
+        f"{len(record.chunks)} chunks of {CHUNK} scenes, {len(record.findings)} scenes written down, "
+        f"{record.torn} torn lines ignored, {seconds:.0f} s."
+    )
+    return "\n\n".join(blocks)
+
+
+def _order(outcome: str) -> tuple[int, str]:
+    places = ("agreed", "both refuse", "only", "disagreed")
+    return next((i for i, head in enumerate(places) if outcome.startswith(head)), len(places)), outcome
