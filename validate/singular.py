@@ -1,6 +1,6 @@
 """Random cars driven close to a pose where the mechanism locks, each reproducible by its number.
 
-With the links given, an input can go only so far (see `reach`). Here it is driven to such an end of a
+With the links given, an input can go only so far (see `input_ends`). Here it is driven to such an end of a
 random car and steps back by a drawn share of its whole range.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.reach import DRIVEN, Car, Inputs, Linkage
+from validate.input_ends import DRIVEN, Car, Inputs, Linkage
 
 Array = NDArray[np.float64]
 
