@@ -2,6 +2,9 @@
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
 in a way it should not. Nothing is folded away: the table at the end counts them all.
+
+The store goes on where it ended, whatever ended it. It belongs to one state of the models: after a change to
+them give another file.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from validate.deep_store import CHUNK, Chunk, Store, StoreError
 from validate.deep_table import table_text
 from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
-from validate.random_cars import KINDS, RandomCar, random_car
+from validate.random_cars import KINDS, SEED, RandomCar, random_car
 from validate.refusals import same_reason, why_refused
 from validate.verdicts import judged, judged_alone, obstacle
 
@@ -133,7 +136,7 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
 
 def _work(numbers: Sequence[int], path: Path, known: frozenset[int], parent: int) -> None:
     for number in numbers:
-        run_chunk(number, Store(path), known)
+        run_chunk(number, Store(path, SEED), known)
         # A worker whose parent was killed would go on unseen, beside the run that is started next.
         if os.getppid() != parent:
             return
@@ -145,7 +148,7 @@ def run(count: int, path: Path, workers: int = 1) -> int:
     Raises:
         StoreError: the store cannot be used, or a worker died.
     """
-    store = Store(path)
+    store = Store(path, SEED)
     record = store.read()
     wanted = range(-(-count // CHUNK))
     missing = [n for n in wanted if n not in record.chunks]

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-CHUNK = 50  # scenes: a few seconds of work, which is all that a kill can cost
+CHUNK = 20  # scenes: a few seconds of work, which is all that a kill can cost
 
 
 class StoreError(Exception):
@@ -67,8 +67,9 @@ class Record:
 class Store:
     """A file of JSON lines; several processes may append to it at once."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, seed: int) -> None:
         self.path = path
+        self.seed = seed
 
     def append(self, line: Mapping[str, Any]) -> None:
         """Write one line by a single write at the end of the file.
@@ -100,6 +101,7 @@ class Store:
         self.append(
             {
                 "chunk": chunk.number,
+                "seed": self.seed,
                 "outcomes": dict(chunk.outcomes),
                 "shares": {name: list(share) for name, share in chunk.shares.items()},
                 "found": list(chunk.found),
@@ -130,6 +132,11 @@ class Store:
                 continue
             if isinstance(line, dict) and "chunk" in line:
                 chunk = _chunk(line)
+                if line["seed"] != self.seed:
+                    raise StoreError(
+                        f"{self.path}: line {number} has scenes of seed {line['seed']}, this program makes "
+                        f"those of seed {self.seed}; give another file"
+                    )
                 record.chunks[chunk.number] = chunk
             elif isinstance(line, dict) and "scene" in line:
                 record.findings.setdefault(int(line["scene"]), line)

@@ -22,9 +22,9 @@ from validate.strategies import EFFECTS, FREE, PAPER, Points, mirrored
 Array = NDArray[np.float64]
 Kind = Literal["regular", "dead arm", "toggle", "singular drawing"]
 KINDS: tuple[Kind, ...] = ("regular", "dead arm", "toggle", "singular drawing")
-SHARES = (0.86, 0.06, 0.06, 0.02)
+SHARES = (0.9, 0.04, 0.04, 0.02)
 
-SEED = 20250101
+SEED = 20250101  # another recipe for the scenes takes another seed: a store of results keeps it
 REACH = 200.0  # mm, from the paper's hardpoints
 NEAREST = -12.0  # decades: how near to a singular pose, as a share of the whole way to it
 
@@ -139,12 +139,12 @@ def _law(
     if kind == "constant":
         return {"constant": middle}
     if kind == "polynomial":
-        moves = [reach * rng.uniform(-1.0, 1.0) / duration**k for k in range(1, int(rng.integers(2, 6)))]
+        moves = [reach * rng.uniform(-1.0, 1.0) / duration**k for k in range(1, int(rng.integers(2, 5)))]
         return {"polynomial": [middle, *moves]}
     if kind == "sine":
         wave = {"amplitude": reach * rng.uniform(-1.0, 1.0), "phase": rng.uniform(-3.0, 3.0)}
-        return {"sine": {**wave, "angular_frequency": rng.uniform(0.1, 8.0) / duration, "offset": middle}}
-    count = int(rng.integers(4, 9))
+        return {"sine": {**wave, "angular_frequency": rng.uniform(0.1, 4.0) / duration, "offset": middle}}
+    count = int(rng.integers(4, 7))
     inner = np.arange(1, count - 1) + rng.uniform(-0.3, 0.3, count - 2)
     times = [start, *(start + duration * inner / (count - 1)).tolist(), stop]
     return {"table": {"times": times, "values": (middle + reach * rng.uniform(-1.0, 1.0, count)).tolist()}}
