@@ -176,16 +176,21 @@ def run(count: int, path: Path, workers: int = 1) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
     parser = argparse.ArgumentParser(prog="python -m validate.deep", description=__doc__)
-    parser.add_argument("--count", type=int, default=100_000, help=f"scenes, rounded up to {CHUNK}")
+    parser.add_argument(
+        "--count", type=int, default=100_000, help=f"scenes, rounded up to {CHUNK}s; 0: the table only"
+    )
     parser.add_argument("--store", type=Path, required=True, help="file of JSON lines; goes on where it ends")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     options = parser.parse_args(arguments)
-    if options.count < 1 or options.workers < 1:
-        parser.error(f"--count {options.count} --workers {options.workers}: allowed: 1 and more")
+    if options.count < 0 or options.workers < 1:
+        parser.error(f"--count {options.count} --workers {options.workers}: allowed: from 0, from 1")
     try:
         return run(options.count, options.store, options.workers)
     except StoreError as error:
         print(f"validate.deep: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"validate.deep: stopped; start again with --store {options.store} to go on", file=sys.stderr)
         return 2
 
 
