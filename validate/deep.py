@@ -28,7 +28,7 @@ from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
 from validate.random_cars import KINDS, SEED, RandomCar, random_car
 from validate.refusals import same_reason, why_refused
-from validate.verdicts import judged, judged_alone, obstacle
+from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 
 MODELS = ("pointcoord", "absolute")
 
@@ -68,7 +68,9 @@ def examine(car: RandomCar) -> Result:
         reasons = why_refused(first), why_refused(second)
         shown = reasons[0] if reasons[0] == reasons[1] else " | ".join(reasons)
         alike = "same reason" if same_reason(*reasons) else "different reasons"
-        return Result(f"both refuse, {alike}: {shown}", "", {}, False)
+        why = unanswered(car.scene)
+        # A refusal that nothing explains is worth a look, even if both models agree in it.
+        return Result(f"both refuse, {alike}: {shown}: {why}", _told(first), {}, why == NO_OBSTACLE)
     return _one_sided(car, answers)
 
 
@@ -101,7 +103,11 @@ def _one_sided(car: RandomCar, answers: Sequence[Solution | FormulationError]) -
     if verdict == "answer right":
         verdict += f", {obstacle(car.scene)}"
     outcome = f"only {error.formulation} refuses, {why_refused(error)}: {verdict}"
-    return Result(outcome, " ".join(str(error.reason).split()), {}, True)
+    return Result(outcome, _told(error), {}, True)
+
+
+def _told(error: FormulationError) -> str:
+    return " ".join(str(error.reason).split())
 
 
 def _shares(outcome: Outcome) -> dict[str, float]:

@@ -18,6 +18,7 @@ from validate.truth.instant import Instant
 Array = NDArray[np.float64]
 
 EPS = float(np.finfo(float).eps)
+NO_OBSTACLE = "no obstacle found"
 BETWEEN = 24  # instants between the first and the last at which a pose is looked for
 
 
@@ -43,6 +44,18 @@ def judged_alone(scene: Scene, answer: Solution) -> str:
     return "answer right" if right else "answer wrong"
 
 
+def unanswered(scene: Scene) -> str:
+    """Why a scene that nobody answers has no answer, as far as the truth can say."""
+    try:
+        for time in scene.instants.tolist():
+            true_instant(scene, inputs_at(scene, time))
+    except InfeasibleError:
+        return "an instant has no pose"
+    except TruthError as error:
+        return _unproven(error)
+    return obstacle(scene)
+
+
 def obstacle(scene: Scene) -> str:
     """Where, between its drawing and its last instant, a scene has no pose: why a path cannot go on.
 
@@ -54,7 +67,7 @@ def obstacle(scene: Scene) -> str:
     times = np.linspace(time.start, time.stop, BETWEEN + 2)
     if (place := _first_without_pose(scene, [inputs_at(scene, t) for t in times.tolist()])) is not None:
         return f"{place} between the instants"
-    return "no obstacle found"
+    return NO_OBSTACLE
 
 
 def _first_without_pose(scene: Scene, way: list[dict[str, tuple[float, ...]]]) -> str | None:

@@ -19,7 +19,7 @@ from validate.formulation import Solution
 from validate.formulations import formulation
 from validate.locks import arm_limits, ball_joint, rack_limits, spare
 from validate.random_cars import KINDS, SEED, random_car
-from validate.verdicts import judged, judged_alone, obstacle, true_solution
+from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, true_solution, unanswered
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -121,6 +121,24 @@ def test_an_answer_that_stands_alone_is_held_to_the_truth() -> None:
     truth: Solution = true_solution(scene, zeros, zeros)
     assert truth.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
+
+
+def test_a_refused_scene_is_told_apart_from_one_that_need_not_be() -> None:
+    scene = Scene.load("bounce")
+    part = scene.inputs["arm_angle"]
+    assert unanswered(scene) == NO_OBSTACLE
+
+    def with_arm(law: tuple[float, ...]) -> Scene:
+        held = part.model_copy(update={"polynomial": law})
+        return scene.model_copy(update={"inputs": {**scene.inputs, "arm_angle": held}, "time": time})
+
+    time = scene.time.model_copy(update={"samples": 3})
+    assert unanswered(with_arm((0.05,))) == "an instant has no pose"
+    # From 0.8 past the dead point and back, while the instants themselves have poses.
+    stop = scene.time.stop
+    over = 4.0 * 0.75 / (0.5 * stop) ** 2
+    time = scene.time.model_copy(update={"samples": 2})
+    assert unanswered(with_arm((0.8, -over * stop / 2, over / 2))) == "no pose between the instants"
 
 
 def test_a_torn_line_is_ignored_and_its_chunk_is_done_again(tmp_path: Path) -> None:
