@@ -1,9 +1,10 @@
 """Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
-from absolute.description import Axis, Input, Joint, Model
+from absolute.description import Axis, Input, Joint, Model, Side
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
+    BranchError,
     DescriptionError,
     InputError,
     PoseError,
@@ -18,12 +19,14 @@ __all__ = [
     "AbsoluteError",
     "AssemblyError",
     "Axis",
+    "BranchError",
     "DescriptionError",
     "Input",
     "InputError",
     "Joint",
     "Model",
     "PoseError",
+    "Side",
     "SingularError",
     "Solution",
     "UnreachableError",

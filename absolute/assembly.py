@@ -1,5 +1,6 @@
 """The mechanism in Pinocchio: one free-flying body each, and the rows that join them."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ from absolute.description import Model
 from absolute.drawing import Drawing
 from absolute.laws import LAWS
 from absolute.rows import rows_of
+from absolute.sides import Sides
 from absolute.solution import Array
 from absolute.stack import RowStack
 
@@ -26,7 +28,7 @@ class Mechanism:
     The chassis is the universe: its motion is added to the solution afterwards.
 
     Attributes:
-        model, drawing, stack: what was described, its lengths, its rows.
+        model, drawing, stack, sides: what was described, its lengths, its rows, its branch.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
@@ -38,6 +40,7 @@ class Mechanism:
         self.drawing = drawing = Drawing(model)
         rows = rows_of(model, drawing)
         self.stack = RowStack(rows, len(drawing.bodies))
+        self.sides = Sides(model, drawing, rows.senses)
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         self._ids = [
@@ -75,6 +78,10 @@ class Mechanism:
         local = step.reshape(-1, 2, 3) @ rotation[1:]
         moved: Array = pin.normalize(self.pin_model, pin.integrate(self.pin_model, q, local.ravel()))
         return moved
+
+    def named(self, values: Sequence[float]) -> dict[str, float]:
+        """Values of the inputs by name."""
+        return dict(zip(self.model.inputs, values, strict=True))
 
     def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> Array:
         """(3, rows): what the rows shall equal, and its first and second rate, for inputs and their rates."""

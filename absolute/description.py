@@ -1,7 +1,7 @@
 """A linkage as plain data: points, the bodies that hold them, joints and inputs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -63,6 +63,18 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Side:
+    """A product of vectors whose sign tells the assemblies of a linkage apart.
+
+    Two vectors give a . b, three give (a x b) . c. Choose it so that it is zero where two assemblies
+    meet and nowhere else: then no regular motion changes its sign, and the drawing's sign is the
+    branch. Each vector leads from one point to another, or is a direction of the chassis.
+    """
+
+    vectors: tuple[tuple[str, str] | Vector, ...]
+
+
+@dataclass(frozen=True)
 class Model:
     """A linkage, checked on construction.
 
@@ -72,6 +84,7 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
+        sides: name -> Side, whose signs in the drawing every pose must keep; none by default.
     Raises:
         DescriptionError: a name is unknown, a number is not finite, an axis has no length, or
             joints and inputs do not give six rows per moving body.
@@ -82,6 +95,7 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
+    sides: Mapping[str, Side] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = {name: vector_of(f"point {name!r}", name, value) for name, value in self.points.items()}
@@ -89,6 +103,7 @@ class Model:
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
         object.__setattr__(self, "inputs", ReadOnly(self.inputs))
+        object.__setattr__(self, "sides", ReadOnly(self.sides))
         _check_bodies(self)
         for name, joint in self.joints.items():
             _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
@@ -106,6 +121,8 @@ class Model:
                     name,
                     drive.factor,
                 )
+        for name, side in self.sides.items():
+            _check_side(self, name, side)
         self._check_count()
 
     @property
@@ -178,8 +195,24 @@ def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs
     if needs_line and axis.toward is None:
         raise DescriptionError(f"{what} needs a direction at {axis.through!r}: give `toward`", name)
     if axis.toward is not None and not isinstance(axis.toward, str):
-        direction = vector_of(f"a direction of {what}", name, axis.toward)
-        if not 0 < np.linalg.norm(direction) < np.inf:
-            raise DescriptionError(
-                f"a direction of {what} is {direction}; it must not be zero", name, direction
-            )
+        _check_direction(what, name, axis.toward)
+
+
+def _check_side(model: Model, name: str, side: Side) -> None:
+    if len(side.vectors) not in (2, 3):
+        raise DescriptionError(
+            f"side {name!r} has {len(side.vectors)} vectors; a product of two or three is needed", name, side
+        )
+    held = {point for points in model.bodies.values() for point in points}
+    for vector in side.vectors:
+        if len(vector) == 2 and all(isinstance(end, str) for end in vector):
+            for end in vector:
+                _check_choice(f"a point of side {name!r}", name, str(end), dict.fromkeys(held))
+            continue
+        _check_direction(f"side {name!r}", name, vector)
+
+
+def _check_direction(what: str, name: str, value: object) -> None:
+    direction = vector_of(f"a direction of {what}", name, value)
+    if not 0 < np.linalg.norm(direction) < np.inf:
+        raise DescriptionError(f"a direction of {what} is {direction}; it must not be zero", name, direction)

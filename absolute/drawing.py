@@ -18,6 +18,7 @@ class Drawing:
         middle: mean of the drawn points, mm. Everything is measured from here, so that numbers do
             not depend on the distance of the car from its origin.
         size: largest distance of a drawn point from the middle, mm: the unit of length.
+        rounding: error of a drawn coordinate, in units of size.
         bodies: body name -> index; the chassis is 0.
         origins: (bodies, 3) origin of each body frame, in units of size. Body frames are parallel
             to the frame of the points in the drawing.
@@ -39,6 +40,7 @@ class Drawing:
                 "points",
                 self.size,
             )
+        self.rounding = float(np.finfo(float).eps) * max(1.0, largest / self.size)
         self._points = dict(zip(model.points, (coordinates - self.middle) / self.size, strict=True))
         self.bodies = {name: index for index, name in enumerate((model.chassis, *model.moving))}
         self.origins = np.array(

@@ -81,6 +81,30 @@ class AssemblyError(PoseError):
     """The bodies as drawn cannot be joined by a continuous change of the drawing."""
 
 
+class BranchError(PoseError):
+    """The branch of the drawing is not found, or the drawing has none.
+
+    Attributes:
+        side: the product whose sign is not that of the drawing.
+        drawn, found: its value in the drawing and where it was found otherwise, divided by the
+            lengths of its factors: between -1 and 1.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        instant: int | None = None,
+        inputs: Mapping[str, float] | None = None,
+        side: str = "",
+        drawn: float = float("nan"),
+        found: float = float("nan"),
+    ) -> None:
+        super().__init__(message, instant, inputs)
+        self.side = side
+        self.drawn = drawn
+        self.found = found
+
+
 class UnreachableError(PoseError):
     """No continuous motion of the assembled mechanism leads to these inputs."""
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import eigenpy
 import numpy as np
+from numpy.typing import NDArray
 
 from absolute.assembly import Mechanism
 from absolute.errors import SingularError
@@ -26,6 +27,7 @@ class Finished(NamedTuple):
         velocity, acceleration: (N, 6 * moving bodies) [o', w] and [o'', w'], empty without rates.
         corrections: (N,) Newton corrections in all.
         residual: (N,) largest violation of a row.
+        kept: (N,) whether the pose is on the branch of the drawing.
     """
 
     rotation: Array
@@ -34,6 +36,7 @@ class Finished(NamedTuple):
     acceleration: Array
     corrections: Counts
     residual: Array
+    kept: NDArray[np.bool_]
 
 
 def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int, rates: bool) -> Finished:
@@ -88,7 +91,8 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int,
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
         acceleration = solved(factors, targets[2] - drift)
     residual = np.abs(targets[0] - placed.values).max(axis=1)
-    return Finished(rotation, origin, velocity, acceleration, corrections, residual)
+    kept = mechanism.sides.kept(rotation, origin)
+    return Finished(rotation, origin, velocity, acceleration, corrections, residual, kept)
 
 
 def solved(factors: list[eigenpy.PartialPivLU], sides: Array) -> Array:

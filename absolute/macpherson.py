@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from absolute.description import Axis, Input, Joint, Model, Vector, vector_of
+from absolute.description import Axis, Input, Joint, Model, Side, Vector, vector_of
 from absolute.errors import DescriptionError
 
 BODIES = {
@@ -107,7 +107,23 @@ def macpherson(
         ),
         "rack": Input("chassis", Axis("rack_centre", slide), "rack", "tie_rod_inner", "linear", -1.0),
     }
-    return Model({name: _plain(drawn[name]) for name in POINTS}, "chassis", BODIES, joints, inputs)
+    front_to_ball = ("lower_arm_front", "lower_ball_joint")
+    kingpin = ("lower_ball_joint", "strut_top")
+    # Where the knuckle's own line is not the kingpin yet, it is the knuckle's line that counts: tie
+    # rod and steering arm stand in one plane with it where they are at their dead point as drawn.
+    knuckle_line = ("lower_ball_joint", "strut_lower")
+    sides = {
+        "ball joint beside the arm axis": Side(
+            (front_to_ball, ("lower_arm_front", "lower_arm_rear"), _plain(upward))
+        ),
+        "knuckle along the kingpin": Side((knuckle_line, kingpin)),
+        "strut rod along the kingpin": Side((("strut_rod_end", "strut_top"), kingpin)),
+        "tie rod beside the kingpin": Side(
+            (knuckle_line, ("lower_ball_joint", "tie_rod_inner"), ("lower_ball_joint", "tie_rod_outer"))
+        ),
+    }
+    drawn_points = {name: _plain(drawn[name]) for name in POINTS}
+    return Model(drawn_points, "chassis", BODIES, joints, inputs, sides)
 
 
 def _unit(name: str, vector: Vector) -> np.ndarray:

@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import eigenpy
 
+from absolute.assemble import assemble
 from absolute.assembly import Mechanism
 from absolute.continuation import LARGEST_CORRECTION, LONGEST_STEP
 from absolute.newton import Pose, correct
 from absolute.solution import Array
-from absolute.travel import assemble, travel
+from absolute.travel import travel
 
 # Poses nearer to a fold than this are left to the careful continuation: branches are at least
 # about this far apart elsewhere.
@@ -49,13 +50,24 @@ class March:
         self.mechanism = mechanism
         self.found: list[Found] = []
         pose, self._spent = assemble(mechanism)
+        self._drawn = pose
         self._instant = 0
-        self._values: list[float] = mechanism.drawn_inputs.tolist()
+        self._careful = False
+        self._begin()
+
+    def _begin(self) -> None:
+        self._values: list[float] = self.mechanism.drawn_inputs.tolist()
         zeros = [0.0] * len(self._values)
-        self._target = mechanism.targets(self._values, zeros, zeros)[0]
-        self._here = rough_of(pose)
+        self._target = self.mechanism.targets(self._values, zeros, zeros)[0]
+        self._here = rough_of(self._drawn)
         # The last exact pose, and its inputs.
-        self._exact, self._exact_values = pose, self._values
+        self._exact, self._exact_values = self._drawn, self._values
+
+    def back_to(self, instant: int) -> None:
+        """Go on with this instant, by the careful way from the assembled drawing."""
+        self._begin()
+        self._instant = instant
+        self._careful = True
 
     def advance(self, values: list[list[float]], targets: Array) -> list[Found]:
         """Configurations for further instants: inputs (N, inputs) and targets (N, rows).
@@ -66,13 +78,15 @@ class March:
         """
         self.found = []
         for value, target in zip(values, targets, strict=True):
-            there = glide(self.mechanism, self._here, target - self._target, target)
-            spent = 1
+            there, spent = None, 1
+            if not self._careful:
+                there = glide(self.mechanism, self._here, target - self._target, target)
             if there is None:
                 there, spent = self._travel(value)
             self.found.append(Found(there.q, spent + self._spent))
             self._here, self._values, self._target, self._spent = there, value, target, 0
             self._instant += 1
+            self._careful = False
         return self.found
 
     def _travel(self, goal: list[float]) -> tuple[Rough, int]:

@@ -22,6 +22,12 @@ GOOD_CONTRACTION = 1e-2
 # Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 is a stall.
 MOST_CORRECTIONS = 25
 
+# Newton's steps from far away (2-norm, rad and units of size): half a radian at most, and 24 of
+# them are nearly two turns; a correction of 0.1 is near enough to converge.
+SHORT_STEP = 0.5
+MOST_SHORT_STEPS = 24
+NEAR = 0.1
+
 
 class Pose(NamedTuple):
     """A configuration where the rows meet their target, with the factorised Jacobian there.
@@ -53,6 +59,11 @@ def rounding_of(rcond: float) -> float:
     that; columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
     """
     return 64 * EPS / rcond if rcond > 0 else math.inf
+
+
+def inverse(rcond: float) -> float:
+    """The condition number of a reciprocal one."""
+    return 1.0 / rcond if rcond > 0 else math.inf
 
 
 def pose_at(
@@ -112,6 +123,25 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
             factors = None
         previous = size
     return Corrected(None, count, added)
+
+
+def seek(mechanism: Mechanism, q: Array, target: Array) -> Pose | None:
+    """Any pose with  rows(q) = target,  by Newton's method with short steps from far away.
+
+    Nothing holds it to a branch: only the sides of the pose found tell which one it is.
+    """
+    for _ in range(MOST_SHORT_STEPS):
+        poses = mechanism.poses(q)
+        placed = mechanism.stack.place(*poses)
+        step = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed)).solve(target - placed.values)
+        size = math.sqrt(step @ step)
+        if not math.isfinite(size):
+            return None
+        if size <= NEAR:
+            pose = correct(mechanism, q, target, SMALLEST_RCOND).pose
+            return pose if pose is not None and pose.rcond >= SMALLEST_RCOND else None
+        q = mechanism.moved(q, poses.rotation, step * min(1.0, SHORT_STEP / size))
+    return None
 
 
 def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from absolute.assemble import branch_error
 from absolute.assembly import Mechanism
 from absolute.description import Model
 from absolute.errors import AbsoluteError, InputError
@@ -36,6 +37,7 @@ def solve(
         DescriptionError: an axis of the model has no length or its lines point apart.
         InputError: names, shapes or values of inputs or chassis.
         AssemblyError: the bodies as drawn do not fit together.
+        BranchError: the drawing stands where its branches meet, or a pose is on another branch.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
@@ -59,29 +61,46 @@ def solve(
 
 
 def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> None:
-    """March through some instants, then finish all that were reached, even if one was not."""
-    failure = None
-    targets = journey.mechanism.target_series(series)
-    try:
-        found = journey.advance(series[:, 0].tolist(), targets[0])
-    except AbsoluteError as error:
-        failure, found = error, journey.found
-    if found:
-        finished = finish(journey.mechanism, found, targets[:, : len(found)], record.written, rates)
-        good = len(found)
-        if rates:
-            finite = np.isfinite(finished.acceleration).all(axis=1)
-            good = good if finite.all() else int(np.argmin(finite))
-        bad = record.written + good
-        record.store(finished, good)
-        if good < len(found):
-            names = list(journey.mechanism.model.inputs)
-            raise InputError(
-                f"instant {bad}: rates and accelerations {series[good, 1:].tolist()} of the inputs {names} "
-                "overflow; give smaller ones",
-                names[0],
-                bad,
-                series[good, 1:].tolist(),
+    """March through some instants, then finish all that were reached, even if one was not.
+
+    An instant that ends on another branch is tried once more, from the assembled drawing.
+    """
+    begin, again = record.written, -1
+    values, targets = series[:, 0].tolist(), journey.mechanism.target_series(series)
+    while record.written < begin + len(series):
+        failure: AbsoluteError | None = None
+        done = record.written - begin
+        try:
+            found = journey.advance(values[done:], targets[0, done:])
+        except AbsoluteError as error:
+            failure, found = error, journey.found
+        if found:
+            finished = finish(
+                journey.mechanism, found, targets[:, done : done + len(found)], record.written, rates
             )
-    if failure is not None:
-        raise failure
+            good = finished.kept & (np.isfinite(finished.acceleration).all(axis=1) if rates else True)
+            count = len(found) if good.all() else int(np.argmin(good))
+            record.store(finished, count)
+            if count < len(found):
+                bad = record.written
+                if finished.kept[count]:
+                    raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
+                if again == bad:
+                    pose = finished.rotation[count], finished.origin[count]
+                    raise branch_error(journey.mechanism, bad, values[bad - begin], *pose)
+                again = bad
+                journey.back_to(bad)
+                continue
+        if failure is not None:
+            raise failure
+
+
+def _overflow(mechanism: Mechanism, instant: int, rates: list[list[float]]) -> InputError:
+    names = list(mechanism.model.inputs)
+    return InputError(
+        f"instant {instant}: rates and accelerations {rates} of the inputs {names} overflow; "
+        "give smaller ones",
+        names[0],
+        instant,
+        rates,
+    )

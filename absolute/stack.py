@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from absolute.features import Features
 from absolute.rows import Angle, Offset, Rows
 from absolute.solution import Array
 from absolute.vectors import LAST, NEXT
@@ -44,7 +45,7 @@ class RowStack:
         self.owners = tuple(row.owner for row in every)
         self.count = count = len(every)
         self._bodies = bodies
-        features = _Features(bodies)
+        features = Features(bodies)
         nothing = features.add(0, np.zeros(3), False)
         origins = [features.add(body, np.zeros(3), True) for body in range(bodies)]
         picks = [
@@ -78,16 +79,14 @@ class RowStack:
             if row >= angles:
                 source[row, of.second, 0] = 1 + 3 * (row - angles) + axis
                 source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
-        self._source = source[:, 1:].reshape(count, -1)
+        # Column by column, the order in which a factorisation reads without a copy.
+        self._source = source[:, 1:].reshape(count, -1).T.copy()
         # Numbers in the flat parts from which a x (f - c1) and (f - c2) x a are multiplied out.
         part = np.arange(5 * count * 3).reshape(5, count, 3)
         a, f, c1, c2 = part[0], part[1], part[3], part[4]
         self._turn_a = np.array([[a[:, NEXT], a[:, LAST]], [a[:, LAST], a[:, NEXT]]])
         self._turn_f = np.array([[f[:, LAST], f[:, NEXT]], [f[:, NEXT], f[:, LAST]]])
         self._turn_c = np.array([[c1[:, LAST], c1[:, NEXT]], [c2[:, NEXT], c2[:, LAST]]])
-        self._sense_bodies = [np.array([s[k] for s in rows.senses], dtype=int) for k in (1, 2)]
-        self._sense_vectors = [np.array([s[k] for s in rows.senses]).reshape(-1, 3, 1) for k in (3, 4)]
-        self.sense_owners = tuple(sense.owner for sense in rows.senses)
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
@@ -106,7 +105,7 @@ class RowStack:
         along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
         entries = np.concatenate((np.zeros((*lead, 1)), along, -along, turning), -1)
         matrix: Array = entries.take(self._source, -1)
-        return matrix
+        return matrix.swapaxes(-1, -2)
 
     def drift(self, placed: Placed, velocity: Array, spin: Array) -> Array:
         """Second rate of the rows when no body accelerates: a''.e + 2 a'.e' + a.e''.
@@ -123,45 +122,7 @@ class RowStack:
         drift += 2.0 * np.vecdot(first[..., 0, :, :], first[..., 1, :, :] - first[..., 2, :, :])
         return drift
 
-    def senses(self, rotation: Array) -> Array:
-        """(..., senses) products that stay positive while no joint is reversed."""
-        first, second = (
-            (rotation.take(body, -3) @ vector)[..., 0]
-            for body, vector in zip(self._sense_bodies, self._sense_vectors, strict=True)
-        )
-        products: Array = (first * second).sum(-1)
-        return products
-
     def _parts(self, features: Array) -> Array:
         flat = features.reshape(*features.shape[:-3], -1, 3)
         picked: Array = flat.take(self._picks, -2)
         return picked
-
-
-class _Features:
-    """Directions and points of each body, each kept once."""
-
-    def __init__(self, bodies: int) -> None:
-        self._of_body: list[dict[tuple[bytes, bool], tuple[Array, bool]]] = [{} for _ in range(bodies)]
-
-    def add(self, body: int, vector: Array, is_point: bool) -> tuple[int, int]:
-        """(body, place) of a feature given in body axes."""
-        features = self._of_body[body]
-        key = (vector.tobytes(), is_point)
-        features.setdefault(key, (vector, is_point))
-        return body, list(features).index(key)
-
-    def tables(self) -> tuple[Array, Array]:
-        """Vectors (bodies, places, 3), padded with zeros, and 1.0 where a feature is a point."""
-        places = max(len(features) for features in self._of_body)
-        vectors = np.zeros((len(self._of_body), places, 3))
-        is_point = np.zeros((len(self._of_body), places, 1))
-        for body, features in enumerate(self._of_body):
-            for place, (vector, point) in enumerate(features.values()):
-                vectors[body, place], is_point[body, place] = vector, float(point)
-        return vectors, is_point
-
-    def flat(self, picks: list[tuple[tuple[int, int], ...]]) -> list[list[int]]:
-        """Places in the flattened table."""
-        places = max(len(features) for features in self._of_body)
-        return [[body * places + place for body, place in pick] for pick in picks]

@@ -1,79 +1,14 @@
-"""Assembling the drawing, and going from the inputs of one pose to others, or saying why not."""
+"""Going from the inputs of one pose to others, or saying why not."""
 
 from collections.abc import Sequence
 
-import eigenpy
 import numpy as np
 
 from absolute.assembly import Mechanism
 from absolute.continuation import BlockedError, Path, follow
-from absolute.errors import AbsoluteError, AssemblyError, SingularError, UnreachableError
-from absolute.newton import SMALLEST_RCOND, Pose, pose_at
+from absolute.errors import AbsoluteError, SingularError, UnreachableError
+from absolute.newton import SMALLEST_RCOND, Pose, inverse
 from absolute.solution import Array
-
-
-def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
-    """The assembled pose nearest in continuation to the drawing, at the inputs of the drawing.
-
-    The rows keep a shrinking share of the violation they have in the drawing: rows(q) =
-    (1 - share) rows(drawn) + share * target. So the branch is that of the drawing.
-    """
-    poses = mechanism.poses(mechanism.drawn)
-    placed = mechanism.stack.place(*poses)
-    factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
-    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, factors)
-    size = mechanism.drawing.size
-    names = tuple(mechanism.model.inputs)
-    inputs = dict(zip(names, mechanism.drawn_inputs.tolist(), strict=True))
-    zeros = [0.0] * len(names)
-    target = mechanism.targets(mechanism.drawn_inputs.tolist(), zeros, zeros)[0]
-    gap = target - placed.values
-    worst = int(np.abs(gap).argmax())
-    owner = mechanism.stack.owners[worst]
-    if not drawn.rcond >= SMALLEST_RCOND:
-        raise SingularError(
-            f"the drawing is singular: condition number about {_inverse(drawn.rcond):.3g}, "
-            f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
-            "Look for points on one line that should not be (a steering arm on the strut axis, "
-            "an arm along its own axis) or an input at its dead point",
-            None,
-            inputs,
-            {},
-            float("nan"),
-            _inverse(drawn.rcond),
-        )
-
-    def path(share: float) -> Array:
-        return np.array([placed.values + share * gap, gap, np.zeros_like(gap)])
-
-    try:
-        pose, spent = follow(mechanism, drawn, path)
-    except BlockedError as blocked:
-        left = float(np.abs(gap).max()) * (1 - blocked.share) * size
-        raise AssemblyError(
-            f"the drawing cannot be assembled: rows are violated by up to {np.abs(gap).max() * size:.3g} mm "
-            f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
-            "draw the points closer to an assembled pose",
-            None,
-            inputs,
-            {},
-            left,
-            _inverse(blocked.pose.rcond),
-        ) from blocked
-
-    senses = mechanism.stack.senses(pose.poses.rotation)
-    if (senses <= 0).any():
-        reversed_joint = mechanism.stack.sense_owners[int(senses.argmin())]
-        raise AssemblyError(
-            f"joint {reversed_joint!r} is reversed in the assembled pose; "
-            "draw its two lines in the same sense",
-            None,
-            inputs,
-            {},
-            pose.residual * size,
-            _inverse(pose.rcond),
-        )
-    return pose, spent
 
 
 def travel(
@@ -134,7 +69,7 @@ def _refusal(
     wanted = dict(zip(names, goal, strict=True))
     reached = {name: a + blocked.share * (b - a) for name, a, b in zip(names, start, goal, strict=True)}
     residual = blocked.pose.residual * mechanism.drawing.size
-    condition = _inverse(blocked.pose.rcond)
+    condition = inverse(blocked.pose.rcond)
     asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
     if blocked.share == 1.0 or np.allclose(list(reached.values()), goal, rtol=SMALLEST_RCOND, atol=0):
@@ -158,7 +93,3 @@ def _refusal(
         residual,
         condition,
     )
-
-
-def _inverse(rcond: float) -> float:
-    return 1.0 / rcond if rcond > 0 else float("inf")

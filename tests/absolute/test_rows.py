@@ -7,11 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import absolute
+from absolute.assemble import assemble
 from absolute.assembly import Mechanism
 from absolute.drawing import Drawing
 from absolute.newton import accelerations
 from absolute.rows import joint_frames
-from absolute.travel import assemble, travel
+from absolute.travel import travel
 
 EPS = np.finfo(float).eps
 
