@@ -10,6 +10,7 @@ which is all that positions, velocities, accelerations and whole motions need.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import comb, factorial
 from typing import Protocol
 
@@ -70,8 +71,12 @@ class Sine:
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
         with np.errstate(over="ignore", invalid="ignore"):
-            angle = self.angular_frequency * np.asarray(instants, dtype=float) + self.phase
-            sine, cosine = np.sin(angle), np.cos(angle)
+            angle = self.angular_frequency * np.asarray(instants, dtype=float)
+            # sin(a + p) by the sum rule: in a + p itself a large phase would swallow the digits of time,
+            # and the values would no longer change as the rates say.
+            before, across = np.cos(self.phase), np.sin(self.phase)
+            sine = np.sin(angle) * before + np.cos(angle) * across
+            cosine = np.cos(angle) * before - np.sin(angle) * across
             quarter_turns = (sine, cosine, -sine, -cosine)
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
             factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
@@ -98,11 +103,23 @@ class Table:
     def series(self, instants: ArrayLike, order: int) -> Array:
         """The cubic piece that starts at or before each instant, shifted to the instant."""
         t = np.asarray(instants, dtype=float)
-        spline = CubicSpline(self.times, self.values, bc_type="not-a-knot", extrapolate=False)
         result = np.zeros((*t.shape, order + 1))
         for k in range(min(order, 3) + 1):
-            result[..., k] = spline(t, nu=k) / factorial(k)
+            result[..., k] = self._spline(t, nu=k) / factorial(k)
         return result
+
+    @property
+    def finite(self) -> bool:
+        """Whether the spline exists in floating point: huge values or close times overflow its slopes."""
+        try:
+            return bool(np.isfinite(self._spline.c).all())
+        except ValueError:
+            return False
+
+    @cached_property
+    def _spline(self) -> CubicSpline:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return CubicSpline(self.times, self.values, bc_type="not-a-knot", extrapolate=False)
 
     @property
     def breaks(self) -> tuple[float, ...]:

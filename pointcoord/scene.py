@@ -5,10 +5,11 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
-import math
+import sys
 import tomllib
 from collections.abc import Mapping
 from importlib import resources
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -24,6 +25,15 @@ from pointcoord.suspensions import TOPOLOGIES
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
 
+# What a part must be, in the words of a scene file.
+SHAPES = {
+    "tuple_type": "Input should be a list",
+    "model_type": "Input should be a table",
+    "dict_type": "Input should be a table",
+}
+# Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
+# power, the order of its series, it stays below the largest number, 2^1024.
+FARTHEST = 1e15
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
 
@@ -57,7 +67,8 @@ class MechanismPart(_Part):
     def _orthonormal(self) -> Self:
         up, right = np.array(self.up), np.array(self.right)
         # Components printed with 15 digits leave 1e-15 in each product; anything above is a slip.
-        worst = max(abs(up @ up - 1.0), abs(right @ right - 1.0), abs(up @ right))
+        with np.errstate(over="ignore", invalid="ignore"):
+            worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
         if not worst <= 1e-12:
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
         return self
@@ -87,8 +98,12 @@ class TablePart(_Part):
     def _increasing(self) -> Self:
         if len(self.times) != len(self.values):
             raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
-        if not (np.diff(self.times) > 0.0).all():
+        if not all(earlier < later for earlier, later in pairwise(self.times)):
             raise ValueError("times do not increase; allowed: strictly increasing times")
+        if not Table(self.times, self.values).finite:
+            raise ValueError(
+                "the spline through the table is not finite; allowed: smaller values, or times further apart"
+            )
         return self
 
 
@@ -134,10 +149,9 @@ class TimePart(_Part):
 
     @model_validator(mode="after")
     def _forwards(self) -> Self:
-        if not math.isfinite(self.stop - self.start):
-            raise ValueError(
-                f"from {self.start} to {self.stop} s is no finite time; allowed: less than 1e308 s"
-            )
+        for name, instant in (("start", self.start), ("stop", self.stop)):
+            if abs(instant) > FARTHEST:
+                raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
         if self.samples == 1 and self.start != self.stop:
             raise ValueError(
                 f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
@@ -231,6 +245,12 @@ class Scene(_Part):
             content = tomllib.loads(text.decode("utf-8"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
             raise SceneError(str(name), "", f"is not TOML: {error}", "TOML 1.0 in UTF-8") from None
+        except ValueError:
+            # Python's own limit, which `tomllib` passes on.
+            digits = sys.get_int_max_str_digits()
+            raise SceneError(
+                str(name), "", "a whole number has too many digits", f"at most {digits} digits"
+            ) from None
         return cls.from_mapping(content, str(name))
 
 
@@ -244,18 +264,27 @@ def _scene_error(source: str, error: ValidationError) -> PointcoordError:
     faults = error.errors(include_url=False)
     first = faults[0]
     key = ".".join(str(part) for part in first["loc"])
-    problem, allowed = first["msg"].removeprefix("Value error, "), ""
+    problem, allowed = SHAPES.get(first["type"], first["msg"].removeprefix("Value error, ")), ""
     given = first["input"]
     if first["type"] == "missing":
         problem = "this key is missing"
     elif first["type"] == "extra_forbidden":
         problem, allowed = "there is no such key", ", ".join(_keys_at(first["loc"][:-1]))
     elif not isinstance(given, dict | BaseModel) and first["type"] != "value_error":
-        shown = repr(given)
-        problem = f"{problem}, not {shown if len(shown) <= 60 else shown[:57] + '...'}"
+        problem = f"{problem}, not {_shown(given)}"
     if len(faults) > 1:
         problem += f" (and {len(faults) - 1} more)"
     return SceneError(source, key, problem, allowed)
+
+
+def _shown(given: object) -> str:
+    """A value in at most 60 characters."""
+    try:
+        text = repr(given)
+    except (ValueError, RecursionError):
+        # Whole numbers of thousands of digits, and lists in lists hundreds deep, have no text in Python.
+        return f"something too long to show ({type(given).__name__})"
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _keys_at(place: tuple[int | str, ...]) -> tuple[str, ...]:
