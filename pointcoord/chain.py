@@ -36,6 +36,9 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-6
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 5000
+# Unit of time of a series, s, at least: raised to an order of 20 it stays far above the smallest
+# number, 2^-1022, so that no coefficient is lost in a motion however short.
+SHORTEST_UNIT = 2.0**-50
 # Trial lengths of a segment, in units of where its last terms grow as large as earlier ones.
 TRIALS = np.geomspace(1.0, 1e-5, 160)
 
@@ -190,17 +193,19 @@ def _expand(
     scale: float,
     order: int,
 ) -> tuple[Array, float]:
-    """The series about an instant and its unit of time, at most `scale`.
+    """The series about an instant and its unit of time, at most `scale` or SHORTEST_UNIT.
 
     The unit is small enough for no known coefficient to exceed the mechanism's size, so that no product
     of two series overflows however fast the inputs are.
     """
     known = mechanism.known_series({name: f.series(instant, order) for name, f in functions.items()})
+    scale = max(scale, SHORTEST_UNIT)
     size = np.abs(known[..., 1:, :]).max(axis=tuple(i for i in range(known.ndim) if i != known.ndim - 2))
     orders = np.arange(order + 1.0)
     if size.any():
-        fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-        scale = min(scale, _power_of_two(fastest))
+        with np.errstate(over="ignore"):
+            fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
+        scale = min(scale, _power_of_two(min(fastest, scale)))
     return expand(mechanism.map, factors, y, known * (scale**orders)[:, None]), scale
 
 
