@@ -80,4 +80,5 @@ def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str
     side = 1.0 if part.side == "left" else -1.0
     names = ("lower_ball_joint", "strut_lower", "wheel_centre")
     p5, p7, p10 = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
-    return {"kingpin": np.pi / 2 - np.angle(p7 - p5), "camber": np.angle(p7 - p10)}
+    # pi/2 - arg z, between -pi and pi.
+    return {"kingpin": np.angle(1j * np.conj(p7 - p5)), "camber": np.angle(p7 - p10)}

@@ -24,6 +24,8 @@ from validate.tolerance import (
 )
 
 Array = NDArray[np.float64]
+# Numbers below the smallest normal one lose digits, and so do tolerances made of them.
+SMALLEST = float(np.finfo(float).tiny)
 Verdict = Literal["agrees", "disagrees"]
 
 UNITS = {
@@ -115,11 +117,14 @@ def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> 
     rows = []
     for quantity, part, first, second, tolerance in _pairs(scene, one, two, f):
         gap = np.abs(first - second)
+        if quantity == "wheel":
+            # Whole turns apart is the same angle.
+            gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
         gap = gap.max(axis=-1) if gap.ndim > 1 else gap
         # A NaN is a disagreement, and the worst one.
         gap = np.where(np.isfinite(gap), gap, np.inf)
         with np.errstate(divide="ignore", invalid="ignore"):
-            shares = np.where(gap == 0.0, 0.0, gap / tolerance)
+            shares = np.where(gap == 0.0, 0.0, gap / (tolerance + SMALLEST))
         worst = int(np.argmax(gap))
         share = float(np.max(shares))
         rows.append(
