@@ -1,0 +1,183 @@
+"""Thousands of broken and odd scene files: each gives a motion, or exit status 2 and one line that says why.
+
+`validate.mutation` makes the files by number, so a failing one can be made again. Each defect that they
+found stays as a named case.
+"""
+
+import contextlib
+import io
+import os
+import signal
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import pointcoord
+from validate.cli import main
+from validate.mutation import mutated_scene
+
+FILES = 10_000 if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else 300
+BLOCK = 25
+# Every so many files are solved by all formulations as well.
+COMPARED = 10
+# Processor time, s, so that a busy machine changes nothing. A motion of the most segments that are allowed
+# takes some ten; a comparison solves a scene three times.
+LIMIT = {"simulate": 20.0, "validate": 60.0}
+
+
+class TooLong(BaseException):
+    """Nothing but the test itself may catch this."""
+
+
+class Run(NamedTuple):
+    """What a user of the program sees."""
+
+    status: int
+    out: str
+    err: str
+
+
+@contextlib.contextmanager
+def stopwatch(seconds: float) -> Iterator[None]:
+    def late(number: int, frame: FrameType | None) -> None:
+        raise TooLong(f"more than {seconds} s of processor time")
+
+    before = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def run(*arguments: str) -> Run:
+    """Run the program; warnings are errors here, so one ends it as a traceback would."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), stopwatch(LIMIT[arguments[0]]):
+        status = main(arguments)
+    return Run(status, out.getvalue(), err.getvalue())
+
+
+def fault(number: int, folder: Path) -> str:
+    """What is wrong with how a mutated file is met; nothing if it is met as it should be."""
+    path, target = folder / f"{number}.toml", folder / f"{number}.npz"
+    path.write_bytes(mutated_scene(number))
+    try:
+        found = _wrong_motion(run("simulate", str(path), "-o", str(target)), target)
+        if not found and number % COMPARED == 0:
+            found = _wrong_words(run("validate", str(path)))
+    except (Exception, TooLong):
+        return traceback.format_exc()
+    return found
+
+
+def _wrong_words(seen: Run) -> str:
+    if seen.status not in (0, 2):
+        return f"status {seen.status}: {seen.out}"
+    if len(seen.err.splitlines()) != (1 if seen.status else 0):
+        return f"status {seen.status} with {seen.err!r}"
+    return ""
+
+
+def _wrong_motion(seen: Run, target: Path) -> str:
+    if not target.exists():
+        # A motion that stops on its way is kept as far as it went; one that does not begin leaves nothing.
+        return _wrong_words(seen) if seen.status else "a motion was promised and none is there"
+    with np.load(target) as motion:
+        bad = [name for name in motion.files if not np.isfinite(motion[name]).all()]
+        empty = len(motion["time [s]"]) == 0
+    return _wrong_words(seen) or ("a motion of no instants" if empty else f"not finite: {bad}" if bad else "")
+
+
+@pytest.mark.parametrize("first", range(0, FILES, BLOCK))
+def test_every_mutated_file_gives_a_finite_motion_or_one_line(first: int, tmp_path: Path) -> None:
+    faults = {number: fault(number, tmp_path) for number in range(first, first + BLOCK)}
+    assert not {number: found for number, found in faults.items() if found}
+
+
+def test_a_number_always_means_the_same_file() -> None:
+    files = [mutated_scene(number) for number in range(200)]
+    assert files == [mutated_scene(number) for number in range(200)]
+    assert len(set(files)) > 190
+
+
+def test_the_files_are_not_all_refused_and_not_all_solved(tmp_path: Path) -> None:
+    statuses = []
+    for number in range(60):
+        path = tmp_path / "scene.toml"
+        path.write_bytes(mutated_scene(number))
+        statuses.append(run("simulate", str(path), "-o", str(tmp_path / "motion.npz")).status)
+    assert 6 <= statuses.count(0) <= 54
+
+
+BOUNCE = (Path(pointcoord.__file__).parent / "scenes" / "bounce.toml").read_text(encoding="utf-8")
+RACK = "{ constant = 0.0 }"
+ARM = "{ polynomial = [0.8, 0.25, 0.0625] }"
+STEEP = "{ table = { times = [0, 1, 2, 3], values = [1e308, -1e308, 1e308, -1e308] } }"
+CLOSE = "{ table = { times = [0, 5e-324, 2, 3], values = [0, 1, 2, 3] } }"
+NO_SPLINE = "inputs.rack.table: the spline through the table is not finite; allowed: smaller values"
+
+# What once ended in a traceback, a warning or a hang: the changes to the scene, and words of the line.
+REFUSED: dict[str, tuple[dict[str, str], str]] = {
+    "whole number of 5000 digits": ({RACK: f"{{ constant = {'1' * 5000} }}"}, "too many digits"),
+    "whole number of 5000 hexadecimal digits": (
+        {"samples = 131": f"samples = 0x{'f' * 5000}"},
+        "time.samples: Input should be less than or equal to 10000000, not something too long to show (int)",
+    ),
+    "up of 1e300": ({'"left"': '"left"\nup = [0.0, 1e300, 0.0]'}, "not unit vectors"),
+    "lists 200 deep": ({"[450, -330, -40]": "[" * 200 + "]" * 200}, "mechanism.points.lower_ball_joint"),
+    "table of values too far apart": ({RACK: STEEP}, NO_SPLINE),
+    "table of times too close": ({RACK: CLOSE}, NO_SPLINE),
+    "stop at 1e308 s": ({"stop = 2.6": "stop = 1e308"}, "time: stop is 1e+308 s; allowed: -1e+15 to 1e+15 s"),
+}
+# What once ended in a warning, a hang or a wrong verdict of the comparison.
+SOLVED: dict[str, dict[str, str]] = {
+    # Added to the angle, such a phase swallowed the time: values stood still while rates said they moved.
+    "sine of a huge phase": {
+        RACK: "{ sine = { amplitude = 20.0, angular_frequency = 1.0, phase = -3e272 } }"
+    },
+    # The kingpin angles of a strut that hangs upside down were a whole turn apart.
+    "car upside down": {'"left"': '"left"\nup = [0.0, 0.6, -0.8]\nright = [0.0, -0.8, -0.6]'},
+    # The series' unit of time was the motion's own, and its square was lost.
+    "motion of 1e-200 s": {"stop = 2.6": "stop = 1e-200"},
+    "inputs held for 1e15 s": {ARM: "{ constant = 1.5 }", "stop = 2.6": "stop = 1e15"},
+    # Their difference is one rounding, and the tolerance made of them was 0.
+    "rates below the smallest normal number": {ARM: "{ polynomial = [1.5, 1e-320] }"},
+}
+
+
+def _bounce_with(folder: Path, changes: dict[str, str]) -> str:
+    text = BOUNCE
+    for old, new in changes.items():
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    path = folder / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_files_that_once_broke_the_program_are_refused(case: str, tmp_path: Path) -> None:
+    changes, words = REFUSED[case]
+    seen = run("simulate", _bounce_with(tmp_path, changes), "-o", str(tmp_path / "motion.npz"))
+    assert (seen.status, len(seen.err.splitlines())) == (2, 1)
+    assert words in seen.err
+
+
+@pytest.mark.parametrize("case", SOLVED)
+def test_files_that_once_broke_the_program_are_solved_and_agree(case: str, tmp_path: Path) -> None:
+    seen = run("validate", _bounce_with(tmp_path, SOLVED[case]))
+    assert (seen.status, seen.err) == (0, ""), seen.out
+
+
+def test_inputs_that_overflow_are_refused_by_the_absolute_model_as_well(tmp_path: Path) -> None:
+    path = _bounce_with(tmp_path, {RACK: f"{{ polynomial = {[1e-3] * 2000} }}"})
+    seen = run("validate", path, "--first", "absolute", "--second", "pointcoord")
+    assert (seen.status, len(seen.err.splitlines())) == (2, 1)
+    assert "all its numbers must be finite" in seen.err
