@@ -202,7 +202,9 @@ class Scene(_Part):
     @property
     def instants(self) -> NDArray[np.float64]:
         """The instants of the scene, shape (samples,), s."""
-        return np.linspace(self.time.start, self.time.stop, self.time.samples)
+        even = np.linspace(self.time.start, self.time.stop, self.time.samples)
+        # Steps below the smallest normal number are rounded so coarsely that they add up to more than all.
+        return np.minimum(even, self.time.stop)
 
     @property
     def functions(self) -> dict[str, TimeFunction]:
