@@ -34,9 +34,11 @@ Array = NDArray[np.float64]
 
 # Fraction of the proven step: at 1 Newton's convergence from the tangent would be only linear.
 SAFETY = 0.8
-# A path that advances less than this fraction in a step has met the end of what can be assembled:
-# steps shrink with the square of the distance to the end, which is then below 1e-5 of the path.
-SMALLEST_STEP = 1e-10
+# A path that advances less than this fraction in a step has met the end of what can be assembled: steps
+# shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
+# where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
+# rounding, which grows as the inverse of that root, is near 1e-10.
+SMALLEST_STEP = 1e-13
 STEPS = 2000
 
 
@@ -128,7 +130,8 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
             drive = 2.0 * system.polar(y[active], tangent) + offset[active] * left[:, None]
             tangent[:, :n] = -local.solve(drive)
             step = np.minimum(SAFETY * proven_step(system, y[active], local, tangent), 1.0)
-        able = step * left >= SMALLEST_STEP  # False for a NaN as well
+        # False for a NaN as well; a step that completes the path may be as short as it likes.
+        able = (step * left >= SMALLEST_STEP) | (step >= 1.0)
         active, tangent, step, left = active[able], tangent[able], step[able], left[able]
         left = np.where(step >= 1.0, 0.0, left * (1.0 - step))
         guess = y[active] + step[:, None] * tangent

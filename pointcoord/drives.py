@@ -11,8 +11,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.doubled import exact_product, exact_square
 from pointcoord.errors import InputOutOfRange
 from pointcoord.inputs import cosine
+from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
@@ -51,6 +53,10 @@ class Drive(Protocol):
         """The coordinate's series from the input's."""
         ...
 
+    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
+        """What the computed coordinate of an input lacks, and how uncertain it is with that added."""
+        ...
+
     def drawn(self, drawing: Drawing) -> Array:
         """The coordinate at which the drawing itself stands."""
         ...
@@ -87,6 +93,17 @@ class ArmAngle:
         with np.errstate(over="ignore", invalid="ignore"):
             return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
 
+    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
+        """The length's rounding is known, so the rise lacks it in proportion.
+
+        The cosine is rounded to 1 unit in the last place at worst, which is 2 u, and the product by u.
+        """
+        length = drawing.distance(self.pivot, self.point)
+        square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
+        own, own_rest = exact_product(length, length)
+        lacking = ((square - own) + (rest - own_rest)) / (2.0 * length * length)
+        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate)
+
     def drawn(self, drawing: Drawing) -> Array:
         """Height of the drawn point over its pivot."""
         return drawing.along(self.pivot, self.point, self.direction)
@@ -110,6 +127,10 @@ class Travel:
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The displacement in the mechanism's units."""
         return value / np.asarray(drawing.unit)[..., None]
+
+    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
+        """None: a quotient by a power of two."""
+        return np.zeros_like(coordinate), np.zeros_like(coordinate)
 
     def drawn(self, drawing: Drawing) -> Array:
         """The travel at which the drawn point stands: against the direction is positive (eq. 14)."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.constraints import Link, OnLine
+from pointcoord.doubled import exact_square
 from pointcoord.drives import Drawing
 from pointcoord.errors import MechanismError, UnknownName
 from pointcoord.linear import EPS, factorise, null_directions
@@ -46,12 +47,14 @@ def build_mechanism(
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
     vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
     drawing = Drawing(vectors, unit)
+    drawn = _drawn(topology, drawing)
     mechanism = Mechanism(
         topology=topology,
         origin=origin,
         unit=unit,
         drawing=drawing,
-        drawn=_drawn(topology, drawing),
+        drawn=drawn,
+        drawn_lacks=_drawn_lacks(topology, drawing, drawn),
         carrier_weights={
             name: _carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
         },
@@ -103,6 +106,16 @@ def _drawn(topology: Topology, drawing: Drawing) -> Array:
     for drive in topology.drives:
         y[..., layout.scalar(drive.coordinate)] = drive.drawn(drawing)
     return y
+
+
+def _drawn_lacks(topology: Topology, drawing: Drawing, drawn: Array) -> Array:
+    """The rounding of the squared lengths, five units at most; the rest of the drawing is not rounded."""
+    lacks = np.zeros_like(drawn)
+    for start, end in topology.layout.squared_lengths:
+        place = topology.layout.squared_length(start, end)
+        square, rest = exact_square(drawing.vectors[start], drawing.vectors[end])
+        lacks[..., place] = (square - drawn[..., place]) + rest
+    return lacks
 
 
 def _no_length(start: str, end: str) -> MechanismError:

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from pointcoord.drives import Drawing
 from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.layout import Layout
-from pointcoord.linear import EPS
-from pointcoord.quadratic import QuadraticMap
+from pointcoord.quadratic import UNIT_ROUNDOFF, QuadraticMap
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]
@@ -32,6 +31,7 @@ class Mechanism:
         unit: the length that is 1 in its coordinates, a power of two, shape (...,), mm.
         drawing: its drawn points and its directions in its own coordinates.
         drawn: the coordinates y of the drawing, shape (..., size).
+        drawn_lacks: what these lack by rounding, to some 100 u^2 of themselves, shape (..., size).
         carrier_weights: place of each carried point in the frame of its three carriers, shape (..., 3).
     """
 
@@ -40,6 +40,7 @@ class Mechanism:
     unit: Array
     drawing: Drawing
     drawn: Array
+    drawn_lacks: Array
     carrier_weights: Mapping[str, Array]
 
     @property
@@ -112,23 +113,31 @@ class Mechanism:
             for drive in self.topology.drives
         }
 
-    def known_uncertainty(self, y: Array) -> Array:
-        """Rounding of the known coordinates when inputs become coordinates, shape (..., size).
+    def known_data(self, y: Array, chassis_moves: bool = True) -> tuple[Array, Array]:
+        """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
-        Driven coordinates take at most a norm (3.5 units of rounding), a cosine (2) and a product (1), which
-        4 eps = 8 units cover; moved chassis points a product and a sum, squared lengths their sum; the
-        rest is exact.
+        Drawn points, directions and constants are exact. What a squared length lacks was kept when it was
+        drawn; of a drive its kind knows (see `drives`). A moved chassis point has rounded a product and a
+        sum, by at most u of each.
+
+        Args:
+            chassis_moves: whether an input that moves the chassis is given at all.
+        Returns:
+            Two arrays of shape (..., size): y plus the first is right to within the second.
         """
-        layout = self.layout
-        uncertainty = np.zeros_like(y)
+        layout, vectors = self.layout, self.drawing.vectors
+        lacking, uncertainty = np.zeros_like(y), np.zeros_like(y)
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
-            reach = np.abs(y[..., place])
-            uncertainty[..., place] = 4 * EPS * np.maximum(reach, np.abs(self.drawn[..., place]))
-        for point in self.topology.chassis:
-            places = list(layout.vector(point))
-            moved = np.abs(y[..., places] - self.drawn[..., places])
-            uncertainty[..., places] = np.where(moved > 0.0, EPS * (np.abs(y[..., places]) + moved), 0.0)
+            lacking[..., place], uncertainty[..., place] = drive.rounding(y[..., place], self.drawing)
+        if chassis_moves and self.topology.chassis_motion:
+            along = [vectors[direction] != 0.0 for direction in self.topology.chassis_motion.values()]
+            for point in self.topology.chassis:
+                places = list(layout.vector(point))
+                moved = np.abs(y[..., places] - self.drawn[..., places])
+                rounding = 1.01 * UNIT_ROUNDOFF * (np.abs(y[..., places]) + moved)
+                uncertainty[..., places] = np.where(np.logical_or.reduce(along), rounding, 0.0)
         links = layout.size - len(layout.squared_lengths)
-        uncertainty[..., links:] = 4 * EPS * y[..., links:]
-        return uncertainty
+        lacking[..., links:] = self.drawn_lacks[..., links:]
+        uncertainty[..., links:] = 256 * UNIT_ROUNDOFF**2 * y[..., links:]
+        return lacking, uncertainty

@@ -71,6 +71,9 @@ class Samples:
     wheel: Channel
 
 
+Prover = Callable[[Samples], Proof]
+
+
 @dataclass(frozen=True)
 class Motion(Samples):
     """A solved scene.
@@ -82,7 +85,7 @@ class Motion(Samples):
         notes: numbers that have no meaning, and why; empty if there are none.
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
         resample: evaluates the motion at other instants, if the method allows it.
-        prover: proves poses of the motion; called by `proof`.
+        prover: proves samples of the motion; called by `proof`.
     """
 
     method: str
@@ -91,11 +94,11 @@ class Motion(Samples):
     notes: tuple[str, ...]
     unit: float
     resample: Callable[[Array], Samples] | None
-    prover: Callable[[Array], Proof]
+    prover: Prover
 
     def proof(self) -> Proof:
         """Proven error bound, condition number and sensitivity of the pose at each of the times."""
-        return self.prover(self.times)
+        return self.prover(self)
 
     def at(self, instants: ArrayLike) -> Samples:
         """The same results at any instants inside the motion, without a new solve.

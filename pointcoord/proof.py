@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.certificate import certify
+from pointcoord.carried import carried_errors
+from pointcoord.certificate import INFLATION, Certificate, certify
 from pointcoord.linear import EPS, Factors, factorise
 from pointcoord.mechanism import Mechanism
 
@@ -24,9 +25,10 @@ class Proof:
 
     Attributes:
         times: shape (N,), s.
-        bound: distance from every coordinate of a solved point to the exact assembly, at most, (N,),
-            mm; infinite where nothing is proven. See `certificate` for what it covers.
+        bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm;
+            infinite where nothing is proven. See `certificate` for what it covers.
         carried_bound: the same for carried points, (N,), mm.
+        carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
         condition: condition number of the Jacobian, (N,).
         velocity_sensitivity: change of a velocity per displacement of the pose, at most, (N,), 1/s;
             zero where no velocity was solved for.
@@ -37,19 +39,32 @@ class Proof:
     times: Array
     bound: Array
     carried_bound: Array
+    carried_gain: Array
     condition: Array
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
     residual: Array
 
 
-def prove(mechanism: Mechanism, times: Array, states: Callable[[Array], Sequence[Array]]) -> Proof:
+def prove(
+    mechanism: Mechanism,
+    times: Array,
+    states: Callable[[Array], Sequence[Array]],
+    reported: Mapping[str, Array],
+    chassis_moves: bool,
+) -> Proof:
     """Prove poses in blocks.
+
+    What is reported was summed, and shifted to the user's origin, apart from the coordinates y that are
+    proven. Both are at hand, and the difference of two numbers this close together is exact, so what lies
+    between them is measured.
 
     Args:
         times: instants, shape (N,), s.
         states: gives the coordinates y, shape (n, size), at some of the instants, and as many of their
             time derivatives as were solved for.
+        reported: position of every point at the times, (N, 3), mm.
+        chassis_moves: whether an input that moves the chassis is given.
     """
     parts = []
     for low in range(0, len(times), BLOCK):
@@ -60,13 +75,28 @@ def prove(mechanism: Mechanism, times: Array, states: Callable[[Array], Sequence
             _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
             for order in (0, 1)
         )
-        bound = pose_bound(mechanism, y, factors)
-        # The carried point's own evaluation takes some ten roundings of numbers as large as itself.
-        rounding = 8 * EPS * np.abs(y).max(axis=-1) * mechanism.unit
-        carried = carried_gain(mechanism, y) * (bound + rounding)
-        parts.append((bound, carried, factors.condition, first, second, residual))
+        lacking, uncertainty = mechanism.known_data(y, chassis_moves)
+        certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
+        local = {
+            name: (place[low : low + BLOCK] - mechanism.origin) / mechanism.unit
+            for name, place in reported.items()
+        }
+        bound = mechanism.unit * _reported_bound(mechanism, y, local, certificate, uncertainty)
+        carried, gain = carried_errors(mechanism, y, local, certificate)
+        parts.append((bound, mechanism.unit * carried, gain, factors.condition, first, second, residual))
     columns = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Proof(times, *columns)
+
+
+def _reported_bound(
+    mechanism: Mechanism, y: Array, local: Mapping[str, Array], certificate: Certificate, uncertainty: Array
+) -> Array:
+    """Bound on the reported coordinates of solved points and of the chassis, shape (...,), in units."""
+    topology, layout = mechanism.topology, mechanism.layout
+    own = np.concatenate([certificate.coordinates, uncertainty[..., layout.unknowns :]], axis=-1)
+    places = {name: list(layout.vector(name)) for name in (*topology.moving, *topology.chassis)}
+    each = [own[..., place] + np.abs(local[name] - y[..., place]) for name, place in places.items()]
+    return np.asarray(INFLATION * np.concatenate(each, axis=-1).max(axis=-1))
 
 
 def _sensitivity(mechanism: Mechanism, factors: Factors, rate: Array) -> Array:
@@ -80,32 +110,7 @@ def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
 
     The shift to the user's origin rounds each coordinate once more.
     """
-    radius = certify(mechanism.map, y, factors, mechanism.known_uncertainty(y)).radius
-    return np.asarray(radius * mechanism.unit + EPS * np.abs(mechanism.origin).max(axis=-1))
-
-
-def carried_gain(mechanism: Mechanism, y: Array) -> Array:
-    r"""How many times as far as its carriers a carried point moves, at most, shape (...,).
-
-    p = p_0 + a e1 + b e2 + c e1 x e2 has the derivatives K1 = a I - c [e2]x and K2 = b I + c [e1]x by
-    p_1 and p_2 and I - K1 - K2 by p_0; the gain is the sum of the magnitudes in a row of all three.
-    Bounds are so small that the curvature of p adds less than a millionth of them.
-    """
-    gain = np.ones(y.shape[:-1])
-    for name, carriers in mechanism.topology.carried.items():
-        base, first, second = (y[..., list(mechanism.layout.vector(point))] for point in carriers)
-        a, b, c = (mechanism.carrier_weights[name][..., i, None, None] for i in range(3))
-        by_first = a * np.eye(3) - c * _cross_matrix(second - base)
-        by_second = b * np.eye(3) + c * _cross_matrix(first - base)
-        by_base = np.eye(3) - by_first - by_second
-        rows = sum(np.abs(k).sum(axis=-1) for k in (by_base, by_first, by_second))
-        gain = np.maximum(gain, (1.0 + 1e-6) * np.asarray(rows).max(axis=-1))
-    return gain
-
-
-def _cross_matrix(v: Array) -> Array:
-    """[v]x with [v]x w = v x w, shape (..., 3, 3)."""
-    x, y, z = np.moveaxis(v, -1, 0)
-    zero = np.zeros_like(x)
-    rows = ((zero, -z, y), (z, zero, -x), (-y, x, zero))
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    lacking, uncertainty = mechanism.known_data(y)
+    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
+    points = certificate.coordinates[..., : 3 * len(mechanism.topology.moving)].max(axis=-1)
+    return np.asarray(points * mechanism.unit + EPS * np.abs(mechanism.origin).max(axis=-1))

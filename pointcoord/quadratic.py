@@ -100,6 +100,12 @@ class QuadraticMap:
         ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
         return table, ends[:, 0], ends[:, 1]
 
+    @property
+    def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
+        """Coefficients of all terms, where each row starts, and the ends of both factors' differences."""
+        coefficients, a, b, c, d, starts = self._terms
+        return coefficients, starts, ((a, b), (c, d))
+
     def factors(self, y: Array) -> tuple[Array, Array]:
         """Both differences of every term, each of shape (..., terms)."""
         _, a, b, c, d, _ = self._terms
@@ -129,6 +135,18 @@ class QuadraticMap:
         matrix = np.zeros((*y.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., flat] = entries
         return matrix.reshape(*y.shape[:-1], len(self.rows), self.unknowns)
+
+    def jacobian_uncertainty(self, data: Array) -> Array:
+        """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
+        factors, coefficients, first, flat = self._jacobian_pattern
+        _, a, b, c, d, _ = self._terms
+        both = np.concatenate(
+            [data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)], -1
+        )
+        entries = np.add.reduceat(both.take(factors, axis=-1) * np.abs(coefficients), first, axis=-1)
+        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix[..., flat] = entries
+        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).

@@ -23,9 +23,9 @@ from pointcoord.hardpoints import build_mechanism
 from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved, solve_instants, square_velocity_term
 from pointcoord.mechanism import Mechanism
-from pointcoord.motion import Motion, Samples
+from pointcoord.motion import Motion, Prover, Samples
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
-from pointcoord.proof import Proof, prove
+from pointcoord.proof import prove
 from pointcoord.readout import Readout, least_squares_rates
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
@@ -103,9 +103,8 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        return _motion(
-            sampler(instants), method, pose, work, sampler, _prover(mechanism, sampler.coordinates), mechanism
-        )
+        prover = _prover(mechanism, sampler.coordinates, functions)
+        return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism)
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -132,7 +131,7 @@ def _by_newton(
             places = np.searchsorted(solved.times, instants)
             return [state[places] for state in solved.states]
 
-        prover = _prover(readout.mechanism, coordinates)
+        prover = _prover(readout.mechanism, coordinates, functions)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, cost, None, prover, readout.mechanism)
 
@@ -147,8 +146,11 @@ def _by_newton(
     return motion(solved)
 
 
-def _prover(mechanism: Mechanism, coordinates: Callable[[Array], list[Array]]) -> Callable[[Array], Proof]:
-    return lambda times: prove(mechanism, times, coordinates)
+def _prover(
+    mechanism: Mechanism, coordinates: Callable[[Array], list[Array]], functions: Mapping[str, TimeFunction]
+) -> Prover:
+    moves = any(name in functions for name in mechanism.topology.chassis_motion)
+    return lambda samples: prove(mechanism, samples.times, coordinates, samples.position, moves)
 
 
 def _motion(
@@ -157,7 +159,7 @@ def _motion(
     pose: Pose,
     work: Work,
     resample: Callable[[Array], Samples] | None,
-    prover: Callable[[Array], Proof],
+    prover: Prover,
     mechanism: Mechanism,
 ) -> Motion:
     notes = []

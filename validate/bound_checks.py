@@ -3,11 +3,12 @@ r"""pointcoord's proven bounds held against the truth, a pose at a time.
 The error of a pose is its distance from the truth, whose own is below 1e-40 of the car. It must never
 exceed the bound:
 
-    error <= bound,    and    loss = error / (condition eps size)    must not grow towards the end,
+    error <= bound,    and    loss = error / (eps (condition size + far))    must not grow to the end,
 
-with size the power of two in which the mechanism counts lengths. Near the end of an input the condition
-number grows as distance^(-1/2), because the end is a fold, so an error that follows condition eps has
-slope 1 over the condition and -1/2 over the distance in double-logarithmic scales.
+with size the power of two in which the mechanism counts lengths and far its distance from the origin.
+Near the end of an input the condition number grows as distance^(-1/2), because the end is a fold, so an
+error that follows condition eps has slope 1 over that rounding and -1/2 over the distance in
+double-logarithmic scales.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
+from validate.inputs import rates
 from validate.singular import NearPose, near_pose
 from validate.truth import InfeasibleError, Instant, TruthError, solve_truth
 from validate.truth.exact import as_fraction
@@ -44,6 +46,7 @@ class Check:
         instant: s, for a motion; a held pose has the instant 0.
         condition: of the Jacobian.
         size: of the mechanism, a power of two.
+        far: largest coordinate of a point in the frame of the scene.
         error, bound: of the solved points. carried_error, carried_bound: of the wheel centre.
     """
 
@@ -54,6 +57,7 @@ class Check:
     instant: float
     condition: float
     size: float
+    far: float
     error: float
     bound: float
     carried_error: float
@@ -65,9 +69,14 @@ class Check:
         return max(self.error / self.bound, self.carried_error / self.carried_bound)
 
     @property
+    def rounding(self) -> float:
+        """What rounding may do: eps (condition size + far), mm."""
+        return EPS * (self.condition * self.size + self.far)
+
+    @property
     def loss(self) -> float:
-        """error / (condition eps size)."""
-        return self.error / (self.condition * EPS * self.size)
+        """Error in parts of that rounding."""
+        return self.error / self.rounding
 
 
 @dataclass(frozen=True)
@@ -131,17 +140,14 @@ def _checked(
         }
     )
     motion = _answer(lambda: simulate(scene))
-    return [_check(pose, laws, float(t), motion) for t in instants]
+    return [_check(pose, scene, float(t), motion) for t in instants]
 
 
-def _check(
-    pose: NearPose, laws: Mapping[str, Sequence[float]], instant: float, motion: Motion | str
-) -> Check | Refusal:
+def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -> Check | Refusal:
     # The distance of a motion shrinks with the part of its way that is left.
-    law = laws[pose.driven]
-    ahead = sum(law[1:]) * (1.0 - instant)
-    distance = pose.distance + abs(ahead) / pose.reach
-    truth = _answer(lambda: _truth(pose, laws, instant))
+    rate = (*(scene.inputs[pose.driven].polynomial or ()), 0.0)[1]
+    distance = pose.distance + abs(rate) * (1.0 - instant) / pose.reach
+    truth = _answer(lambda: _truth(pose, scene, instant))
     if isinstance(motion, str) or (isinstance(truth, str) and truth != InfeasibleError.__name__):
         return Refusal(
             pose.number,
@@ -149,14 +155,14 @@ def _check(
             f"pointcoord: {motion if isinstance(motion, str) else 'answers'}; "
             f"truth: {truth if isinstance(truth, str) else 'answers'}",
         )
-    proof = motion.prover(np.array([instant]))
+    samples = motion.at(np.array([instant]))
+    proof = motion.prover(samples)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, distance, "pointcoord: no finite bound")
     errors = {CARRIED: math.inf, "solved points": math.inf}  # where the truth has no such assembly
     if isinstance(truth, Instant):
-        found = motion.at(np.array([instant])).position
-        each = {name: _error(truth, name, place[0]) for name, place in found.items()}
+        each = {name: _error(truth, name, place[0]) for name, place in samples.position.items()}
         errors = {CARRIED: each.pop(CARRIED), "solved points": max(each.values())}
     return Check(
         number=pose.number,
@@ -166,6 +172,7 @@ def _check(
         instant=instant,
         condition=float(proof.condition[0]),
         size=motion.unit,
+        far=max(float(np.abs(place).max()) for place in samples.position.values()),
         error=errors["solved points"],
         bound=bound,
         carried_error=errors[CARRIED],
@@ -181,14 +188,10 @@ def _answer(ask: Callable[[], Answer]) -> Answer | str:
         return type(error).__name__
 
 
-def _truth(pose: NearPose, laws: Mapping[str, Sequence[float]], instant: float) -> Instant:
-    """The truth for the laws as they are written: their values are taken without rounding."""
-    t = Fraction(instant)
-    values = {
-        name: sum((Fraction(c) * t**power for power, c in enumerate(law)), Fraction(0))
-        for name, law in laws.items()
-    }
-    inputs = {name: (value, 0, 0) for name, value in values.items()}
+def _truth(pose: NearPose, scene: Scene, instant: float) -> Instant:
+    """The truth for the values that the laws have in double precision, as the bound is for these."""
+    at = np.array([instant])
+    inputs = {name: (float(rates(law, at)[0, 0]), 0, 0) for name, law in scene.inputs.items()}
     car = pose.car
     return solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side, digits=DIGITS)
 

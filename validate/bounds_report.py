@@ -45,14 +45,14 @@ def fitted(x: Sequence[float], y: Sequence[float]) -> Fit:
     return Fit(float(slope), float(np.sqrt(np.mean((v - slope * u - constant) ** 2))), len(pairs))
 
 
-def error_over_condition(checks: Sequence[Check]) -> Fit:
-    """Error in parts of the size over the condition number: slope 1 where rounding alone makes it."""
-    return fitted([c.condition for c in checks], [c.error / c.size for c in checks])
+def error_over_rounding(checks: Sequence[Check]) -> Fit:
+    """Error over eps (condition size + far): slope 1 where rounding alone makes it."""
+    return fitted([c.rounding / c.size for c in checks], [c.error / c.size for c in checks])
 
 
 def error_over_distance(checks: Sequence[Check]) -> Fit:
-    """The same over the distance from the end, near it: slope -1/2 at a fold."""
-    near = [c for c in checks if c.distance < FOLD]
+    """The same over the distance from the end, near it, of cars near their origin: slope -1/2 at a fold."""
+    near = [c for c in checks if c.distance < FOLD and c.far < 10.0 * c.size]
     return fitted([c.distance for c in near], [c.error / c.size for c in near])
 
 
@@ -89,7 +89,7 @@ def bounds_text(study: BoundStudy) -> str:
 def _set_text(name: str, checks: Sequence[Check]) -> str:
     if not checks:
         return f"{name}: none"
-    by_condition, by_distance = error_over_condition(checks), error_over_distance(checks)
+    by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
     rows = [
         (
             f"1e{decade} to 1e{decade + 1}",
@@ -114,11 +114,12 @@ def _set_text(name: str, checks: Sequence[Check]) -> str:
     worst, most = max(checks, key=lambda c: c.share), max(checks, key=lambda c: c.loss)
     return "\n".join(
         [
-            f"{len(checks)} {name} (medians, unless it says largest; loss = error / (condition eps size))",
+            f"{len(checks)} {name}; medians, unless it says largest",
+            "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
             table(head, rows),
             table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), quantiles),
-            f"error over condition: slope {by_condition.slope:.3f} (rounding alone: 1), "
-            f"scatter {by_condition.scatter:.2f} decades",
+            f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
+            f"scatter {by_rounding.scatter:.2f} decades",
             f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
             f"scatter {by_distance.scatter:.2f} decades",
             f"nearest to its bound: {_case(worst)}",
@@ -162,7 +163,7 @@ def _set_data(checks: Sequence[Check]) -> dict[str, Any]:
             for points, ratio in ratios.items()
             if len(ratio)
         },
-        "error_over_condition": _plain(asdict(error_over_condition(checks))),
+        "error_over_rounding": _plain(asdict(error_over_rounding(checks))),
         "error_over_distance": _plain(asdict(error_over_distance(checks))),
         "largest_loss": max((c.loss for c in checks), default=None),
         "largest_error_over_bound": max((c.share for c in checks), default=None),

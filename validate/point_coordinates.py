@@ -42,7 +42,7 @@ class PointCoordinates:
             wheel=motion.wheel,
             accuracy=Accuracy(
                 pose_error=proof.bound,
-                carried_gain=proof.carried_bound / proof.bound,
+                carried_gain=proof.carried_gain,
                 proven=True,
                 condition=proof.condition,
                 velocity_sensitivity=proof.velocity_sensitivity,
