@@ -19,18 +19,13 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from pointcoord.effects import EFFECTS
 from pointcoord.errors import PointcoordError, SceneError
+from pointcoord.faults import problem_of
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
 from pointcoord.suspensions import TOPOLOGIES
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
 
-# What a part must be, in the words of a scene file.
-SHAPES = {
-    "tuple_type": "Input should be a list",
-    "model_type": "Input should be a table",
-    "dict_type": "Input should be a table",
-}
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
@@ -266,27 +261,12 @@ def _scene_error(source: str, error: ValidationError) -> PointcoordError:
     faults = error.errors(include_url=False)
     first = faults[0]
     key = ".".join(str(part) for part in first["loc"])
-    problem, allowed = SHAPES.get(first["type"], first["msg"].removeprefix("Value error, ")), ""
-    given = first["input"]
-    if first["type"] == "missing":
-        problem = "this key is missing"
-    elif first["type"] == "extra_forbidden":
+    problem, allowed = problem_of(first), ""
+    if first["type"] == "extra_forbidden":
         problem, allowed = "there is no such key", ", ".join(_keys_at(first["loc"][:-1]))
-    elif not isinstance(given, dict | BaseModel) and first["type"] != "value_error":
-        problem = f"{problem}, not {_shown(given)}"
     if len(faults) > 1:
         problem += f" (and {len(faults) - 1} more)"
     return SceneError(source, key, problem, allowed)
-
-
-def _shown(given: object) -> str:
-    """A value in at most 60 characters."""
-    try:
-        text = repr(given)
-    except (ValueError, RecursionError):
-        # Whole numbers of thousands of digits, and lists in lists hundreds deep, have no text in Python.
-        return f"something too long to show ({type(given).__name__})"
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _keys_at(place: tuple[int | str, ...]) -> tuple[str, ...]:

@@ -1,0 +1,35 @@
+"""What is wrong with a part of a scene file, in the words of the file and with the value that is there."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails
+
+# The library speaks of Python's own types.
+SHAPES = {
+    "missing": "this key is missing",
+    "tuple_type": "Input should be a list",
+    "model_type": "Input should be a table",
+    "dict_type": "Input should be a table",
+}
+LONGEST = 60
+
+
+def problem_of(fault: ErrorDetails) -> str:
+    """One fault as a problem; a fault of our own validators shows its value itself."""
+    kind, given = fault["type"], fault["input"]
+    said = fault["msg"].removeprefix("Value error, ").replace("Tuple", "List")
+    problem = SHAPES.get(kind, said.partition(" after validation")[0])
+    if kind in ("missing", "value_error") or isinstance(given, dict | BaseModel):
+        return problem
+    return f"{problem}, not {shown(given)}"
+
+
+def shown(value: object) -> str:
+    """A value in at most 60 characters."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):
+        # Whole numbers of thousands of digits, and lists in lists hundreds deep, have no text in Python.
+        return f"something too long to show ({type(value).__name__})"
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
