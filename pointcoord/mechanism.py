@@ -20,6 +20,7 @@ from pointcoord.quadratic import UNIT_ROUNDOFF, QuadraticMap
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]
+Moved = bool | NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ class Mechanism:
             for drive in self.topology.drives
         }
 
-    def known_data(self, y: Array, chassis_moves: bool = True) -> tuple[Array, Array]:
+    def known_data(self, y: Array, chassis_moves: Moved = True) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
         Drawn points, directions and constants are exact. What a squared length lacks was kept when it was
@@ -121,7 +122,8 @@ class Mechanism:
         sum, by at most u of each.
 
         Args:
-            chassis_moves: whether an input that moves the chassis is given at all.
+            chassis_moves: whether its inputs move the chassis from the drawing; of each axis, shape
+                (..., 3), where that is known.
         Returns:
             Two arrays of shape (..., size): y plus the first is right to within the second.
         """
@@ -130,13 +132,15 @@ class Mechanism:
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
             lacking[..., place], uncertainty[..., place] = drive.rounding(y[..., place], self.drawing)
-        if chassis_moves and self.topology.chassis_motion:
+        if np.any(chassis_moves) and self.topology.chassis_motion:
             along = [vectors[direction] != 0.0 for direction in self.topology.chassis_motion.values()]
             for point in self.topology.chassis:
                 places = list(layout.vector(point))
                 moved = np.abs(y[..., places] - self.drawn[..., places])
                 rounding = 1.01 * UNIT_ROUNDOFF * (np.abs(y[..., places]) + moved)
-                uncertainty[..., places] = np.where(np.logical_or.reduce(along), rounding, 0.0)
+                uncertainty[..., places] = np.where(
+                    np.logical_or.reduce(along) & chassis_moves, rounding, 0.0
+                )
         links = layout.size - len(layout.squared_lengths)
         lacking[..., links:] = self.drawn_lacks[..., links:]
         uncertainty[..., links:] = 256 * UNIT_ROUNDOFF**2 * y[..., links:]

@@ -51,7 +51,7 @@ def prove(
     times: Array,
     states: Callable[[Array], Sequence[Array]],
     reported: Mapping[str, Array],
-    chassis_moves: bool,
+    chassis_moves: NDArray[np.bool_],
 ) -> Proof:
     """Prove poses in blocks.
 
@@ -64,7 +64,7 @@ def prove(
         states: gives the coordinates y, shape (n, size), at some of the instants, and as many of their
             time derivatives as were solved for.
         reported: position of every point at the times, (N, 3), mm.
-        chassis_moves: whether an input that moves the chassis is given.
+        chassis_moves: along which axes the chassis is not where it is drawn, (N, 3).
     """
     parts = []
     for low in range(0, len(times), BLOCK):
@@ -75,7 +75,7 @@ def prove(
             _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
             for order in (0, 1)
         )
-        lacking, uncertainty = mechanism.known_data(y, chassis_moves)
+        lacking, uncertainty = mechanism.known_data(y, chassis_moves[low : low + BLOCK])
         certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
         local = {
             name: (place[low : low + BLOCK] - mechanism.origin) / mechanism.unit

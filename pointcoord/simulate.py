@@ -25,7 +25,7 @@ from pointcoord.instants import Solved, solve_instants, square_velocity_term
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Motion, Prover, Samples
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
-from pointcoord.proof import prove
+from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
@@ -149,8 +149,14 @@ def _by_newton(
 def _prover(
     mechanism: Mechanism, coordinates: Callable[[Array], list[Array]], functions: Mapping[str, TimeFunction]
 ) -> Prover:
-    moves = any(name in functions for name in mechanism.topology.chassis_motion)
-    return lambda samples: prove(mechanism, samples.times, coordinates, samples.position, moves)
+    movers = {name: f for name, f in functions.items() if name in mechanism.topology.chassis_motion}
+
+    def prover(samples: Samples) -> Proof:
+        shift = mechanism.chassis_shift({name: f.series(samples.times, 0) for name, f in movers.items()})
+        moves = np.zeros((len(samples.times), 3), dtype=bool) if shift is None else shift[:, 0] != 0.0
+        return prove(mechanism, samples.times, coordinates, samples.position, moves)
+
+    return prover
 
 
 def _motion(
