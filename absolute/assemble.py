@@ -49,7 +49,7 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     except BlockedError as block:
         blocked = block
     else:
-        if mechanism.sides.kept(*pose.poses):
+        if mechanism.sides.kept(pose.placed.world):
             return pose, spent
         wrong = pose
     if mechanism.sides.told:
@@ -57,11 +57,11 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
             found = seek(mechanism, start, target)
             if found is None:
                 continue
-            if mechanism.sides.kept(*found.poses):
+            if mechanism.sides.kept(found.placed.world):
                 return found, 0
             wrong = wrong or found
     if wrong is not None:
-        raise branch_error(mechanism, None, inputs, wrong.poses.rotation, wrong.poses.origin) from blocked
+        raise branch_error(mechanism, None, inputs, wrong.placed.world) from blocked
     size, largest = mechanism.drawing.size, float(np.abs(gap).max())
     reached = blocked or BlockedError(1.0, drawn, 0)
     left = largest * (1 - reached.share) * size
@@ -78,13 +78,11 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     ) from blocked
 
 
-def branch_error(
-    mechanism: Mechanism, instant: int | None, inputs: list[float], rotation: Array, origin: Array
-) -> BranchError:
+def branch_error(mechanism: Mechanism, instant: int | None, inputs: list[float], world: Array) -> BranchError:
     """The refusal of a pose that is not on the branch of the drawing."""
     sides = mechanism.sides
-    side = sides.lost(rotation, origin)
-    drawn, found = float(sides.drawn[side]), float(sides.shares(rotation, origin)[side])
+    side = sides.lost(world)
+    drawn, found = float(sides.drawn[side]), float(sides.shares(world)[side])
     if instant is None:
         where = "the drawing can be assembled, but not on its own branch"
         cure = "draw the points closer to an assembled pose"

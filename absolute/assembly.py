@@ -8,9 +8,10 @@ import pinocchio as pin
 
 from absolute.description import Model
 from absolute.drawing import Drawing
+from absolute.features import Features
 from absolute.laws import LAWS
 from absolute.rows import rows_of
-from absolute.sides import Sides
+from absolute.sides import Sides, side_ends
 from absolute.solution import Array
 from absolute.stack import RowStack
 
@@ -39,8 +40,10 @@ class Mechanism:
         self.model = model
         self.drawing = drawing = Drawing(model)
         rows = rows_of(model, drawing)
-        self.stack = RowStack(rows, len(drawing.bodies))
-        self.sides = Sides(model, drawing, rows.senses)
+        features = Features(len(drawing.bodies))
+        ends = side_ends(model, drawing, rows.senses, features)
+        self.stack = RowStack(rows, features)
+        self.sides = Sides(model, ends, features)
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         self._ids = [
@@ -58,7 +61,9 @@ class Mechanism:
         self._laws = [
             (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
         ]
-        coordinates = self.stack.place(*self.poses(self.drawn)).values[self.joint_rows :]
+        placed = self.stack.place(*self.poses(self.drawn))
+        self.sides.learn(placed.world, drawing.rounding)
+        coordinates = placed.values[self.joint_rows :]
         self.drawn_inputs = np.array(
             [
                 LAWS[drive.law].invert(coordinate / factor)
@@ -95,7 +100,11 @@ class Mechanism:
 
     def target_series(self, series: Array) -> Array:
         """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
-        targets = np.empty((3, len(series), self.stack.count))
-        for instant, (values, speeds, seconds) in enumerate(series.tolist()):
-            targets[:, instant] = self.targets(values, speeds, seconds)
+        targets = np.zeros((3, len(series), self.stack.count))
+        for row, ((law, factor), column) in enumerate(
+            zip(self._laws, series.transpose(2, 1, 0), strict=True), self.joint_rows
+        ):
+            _, speed, second = column
+            f, f1, f2 = factor * np.array([law(value) for value in column[0].tolist()]).reshape(-1, 3).T
+            targets[:, :, row] = f, f1 * speed, f2 * speed * speed + f1 * second
         return targets

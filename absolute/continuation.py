@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from absolute.assembly import Mechanism
-from absolute.newton import EPS, SMALLEST_RCOND, Pose, accelerations, correct
+from absolute.newton import EPS, Pose, accelerations, correct
 from absolute.solution import Array
 from absolute.vectors import cross
 
@@ -14,9 +14,8 @@ Path = Callable[[float], Array]
 # All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
 # over that distance the second-order prediction holds for any linkage that is not near a fold.
 LONGEST_STEP = 0.5
-# The curved part of a step, and what Newton adds, must be small against its straight part.
+# The curved part of a step must be small against its straight part.
 LARGEST_CURVE = 0.5
-LARGEST_CORRECTION = 0.1
 # A step below sqrt(eps) that still bends this much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
 # Thousands of the longest steps would be many turns around. A guard against endless work.
@@ -37,8 +36,8 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
     """The pose at the end of a path, and the Newton corrections it took.
 
     Each step is predicted to second order by the factors of the last pose and corrected by Newton.
-    It is refused and halved when it is long, bends much, needs a large correction, or changes the
-    sign of the determinant.
+    It is refused and halved when it is long, bends much, does not converge, or changes the sign of
+    the determinant.
 
     Raises:
         BlockedError: steps have become too short to go on: the mechanism locks there.
@@ -61,7 +60,8 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
                 mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), path(end)[0], pose.rcond
             )
             spent += outcome.corrections
-            if outcome.pose is not None and keeps_branch(pose, outcome.pose, outcome.added, size):
+            # Branches meet at folds, and the determinant changes its sign there.
+            if outcome.pose is not None and outcome.pose.sign == pose.sign:
                 arrived = outcome.pose
         if arrived is not None:
             pose, share, length = arrived, end, 2.0 * length
@@ -74,9 +74,3 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
             if size <= SHORTEST_STEP or share + length == share:
                 break
     raise BlockedError(share, pose, spent)
-
-
-def keeps_branch(start: Pose, end: Pose, added: Array, size: float) -> bool:
-    """Whether a step ends on the branch it began on: small corrections, no singular pose between."""
-    small = math.sqrt(added @ added) <= LARGEST_CORRECTION * size + end.floor
-    return small and end.sign == start.sign and end.rcond >= SMALLEST_RCOND

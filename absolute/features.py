@@ -9,9 +9,10 @@ Pick = tuple[int, int]
 
 
 class Features:
-    """Collects features in body axes; `tables` and `flat` make index arrays of them."""
+    """Collects features in body axes; when all are in, `tables` and `flat` make arrays of them."""
 
     def __init__(self, bodies: int) -> None:
+        self.bodies = bodies
         self._vectors: list[list[Array]] = [[] for _ in range(bodies)]
         self._points: list[list[float]] = [[] for _ in range(bodies)]
         self._places: dict[tuple[int, bytes, bool], Pick] = {}

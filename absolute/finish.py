@@ -28,6 +28,7 @@ class Finished(NamedTuple):
         corrections: (N,) Newton corrections in all.
         residual: (N,) largest violation of a row.
         kept: (N,) whether the pose is on the branch of the drawing.
+        world: (N, features, 3) points and directions that tell it.
     """
 
     rotation: Array
@@ -37,6 +38,7 @@ class Finished(NamedTuple):
     corrections: Counts
     residual: Array
     kept: NDArray[np.bool_]
+    world: Array
 
 
 def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int, rates: bool) -> Finished:
@@ -91,8 +93,8 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int,
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
         acceleration = solved(factors, targets[2] - drift)
     residual = np.abs(targets[0] - placed.values).max(axis=1)
-    kept = mechanism.sides.kept(rotation, origin)
-    return Finished(rotation, origin, velocity, acceleration, corrections, residual, kept)
+    kept = mechanism.sides.kept(placed.world)
+    return Finished(rotation, origin, velocity, acceleration, corrections, residual, kept, placed.world)
 
 
 def solved(factors: list[eigenpy.PartialPivLU], sides: Array) -> Array:

@@ -11,7 +11,7 @@ import eigenpy
 
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
-from absolute.continuation import LARGEST_CORRECTION, LONGEST_STEP
+from absolute.continuation import LONGEST_STEP
 from absolute.newton import Pose, correct
 from absolute.solution import Array
 from absolute.travel import travel
@@ -19,9 +19,8 @@ from absolute.travel import travel
 # Poses nearer to a fold than this are left to the careful continuation: branches are at least
 # about this far apart elsewhere.
 SAFE_RCOND = 1e-4
-# A correction of c leaves an error of about c^2: 1e-4 at most, from where Newton doubles the
-# digits with every correction that `finish` makes.
-ROUGH = 1e-2
+# The correction must be small against the step: a larger one means that the step bends much.
+LARGEST_CORRECTION = 0.1
 # Corrections below this are always fine: held inputs step by nothing, but the pose before was
 # left rough. A hundredth of the distance of branches.
 SMALL = 1e-6
@@ -121,7 +120,7 @@ def glide(mechanism: Mechanism, here: Rough, change: Array, target: Array) -> Ro
     correction = factors.solve(target - placed.values)
     added = math.sqrt(correction @ correction)
     sign = math.copysign(1.0, factors.determinant())
-    small = added <= min(LARGEST_CORRECTION * size + SMALL, ROUGH)
+    small = added <= LARGEST_CORRECTION * size + SMALL
     if not small or sign != here.sign or not factors.rcond() >= SAFE_RCOND:
         return None
     # The rotations before the correction serve the next tangent step as they are.

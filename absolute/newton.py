@@ -77,11 +77,10 @@ def pose_at(
 
 
 class Corrected(NamedTuple):
-    """Outcome of Newton's method: the pose or None, corrections spent, their sum."""
+    """Outcome of Newton's method: the pose or None, corrections spent."""
 
     pose: Pose | None
     corrections: int
-    added: Array
 
 
 def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corrected:
@@ -96,7 +95,6 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
     """
     factors = None
     previous = np.inf
-    added = np.zeros(mechanism.stack.count)
     settled = False
     for count in range(1, MOST_CORRECTIONS + 1):
         poses = mechanism.poses(q)
@@ -109,9 +107,8 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
             break
         if settled:
             pose = pose_at(mechanism, q, poses, placed, target, factors)
-            return Corrected(pose if size <= pose.floor else None, count - 1, added)
+            return Corrected(pose if size <= pose.floor else None, count - 1)
         contraction = size / previous
-        added += step
         q = mechanism.moved(q, poses.rotation, step)
         if count == 1:
             settled = size * size <= EPS * rcond
@@ -122,7 +119,7 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
         if renew:
             factors = None
         previous = size
-    return Corrected(None, count, added)
+    return Corrected(None, count)
 
 
 def seek(mechanism: Mechanism, q: Array, target: Array) -> Pose | None:

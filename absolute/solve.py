@@ -86,8 +86,7 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
                 if finished.kept[count]:
                     raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
                 if again == bad:
-                    pose = finished.rotation[count], finished.origin[count]
-                    raise branch_error(journey.mechanism, bad, values[bad - begin], *pose)
+                    raise branch_error(journey.mechanism, bad, values[bad - begin], finished.world[count])
                 again = bad
                 journey.back_to(bad)
                 continue

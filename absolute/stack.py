@@ -26,26 +26,27 @@ class Placed(NamedTuple):
 
     Attributes:
         turned: (..., bodies, places, 3) features of each body turned to world axes, without its origin.
+        world: (..., bodies * places, 3) the features where they are.
         parts: (..., 5, rows, 3) the vectors a, f, g, c1, c2 of every row.
         reach: (..., rows, 3) e = f - g.
         values: (..., rows) a . e.
     """
 
     turned: Array
+    world: Array
     parts: Array
     reach: Array
     values: Array
 
 
 class RowStack:
-    """Index arrays built once from the rows of a mechanism with `bodies` bodies, the chassis first."""
+    """Index arrays built once from the rows of a mechanism; its features are added to those given."""
 
-    def __init__(self, rows: Rows, bodies: int) -> None:
+    def __init__(self, rows: Rows, features: Features) -> None:
         every: list[Angle | Offset] = [*rows.angles, *rows.offsets]
         self.owners = tuple(row.owner for row in every)
         self.count = count = len(every)
-        self._bodies = bodies
-        features = Features(bodies)
+        bodies = features.bodies
         nothing = features.add(0, np.zeros(3), False)
         origins = [features.add(body, np.zeros(3), True) for body in range(bodies)]
         picks = [
@@ -91,9 +92,11 @@ class RowStack:
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
         turned = self._local @ rotation.swapaxes(-1, -2)
-        parts = self._parts(turned + self._is_point * origin[..., None, :])
+        world = turned + self._is_point * origin[..., None, :]
+        world = world.reshape(*world.shape[:-3], -1, 3)
+        parts: Array = world.take(self._picks, -2)
         reach = parts[..., 1, :, :] - parts[..., 2, :, :]
-        return Placed(turned, parts, reach, np.vecdot(parts[..., 0, :, :], reach))
+        return Placed(turned, world, parts, reach, np.vecdot(parts[..., 0, :, :], reach))
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""

@@ -239,3 +239,33 @@ def test_rates_too_large_for_floating_point_are_refused(strut: absolute.Model) -
     inputs = {"arm_angle": np.array([[1.6, 1e200, 0.0]]), "rack": np.zeros((1, 3))}
     with pytest.raises(InputError, match="instant 0"):
         absolute.solve(strut, inputs)
+
+
+@pytest.mark.parametrize("tiny", [1e-258, 1e-160, 5e-324])
+def test_tiny_inputs_are_as_good_as_none(strut: absolute.Model, tiny: float) -> None:
+    inputs = {"arm_angle": np.array([[1.6, tiny, tiny]]), "rack": np.full((1, 3), tiny)}
+    none = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.zeros((1, 3))}
+    motion, still = absolute.solve(strut, inputs), absolute.solve(strut, none)
+    for name in strut.points:
+        # Size 500 mm, condition number below 60, two roundings.
+        rounding = 2 * np.finfo(float).eps * 500 * 60
+        assert np.allclose(motion.position[name], still.position[name], rtol=0, atol=rounding)
+        assert (np.abs(motion.velocity[name]) <= 1e6 * tiny).all()
+        assert (np.abs(motion.acceleration[name]) <= 1e6 * tiny).all()
+
+
+@pytest.mark.parametrize("fast", [1e6, 1e12, 1e100])
+def test_huge_rates_give_rates_in_proportion(strut: absolute.Model, fast: float) -> None:
+    def moving(scale: float) -> absolute.Solution:
+        # Time runs faster by `scale`: rates by it, accelerations by its square.
+        scales = np.array([1.0, scale, scale**2])
+        arm, rack = np.array([[1.6, 0.25, 0.1]]) * scales, np.array([[10.0, 5.0, 2.0]]) * scales
+        return absolute.solve(strut, {"arm_angle": arm, "rack": rack})
+
+    plain, quick = moving(1.0), moving(fast)
+    for name in strut.points:
+        rounding = 2 * np.finfo(float).eps * 500 * 60
+        assert np.allclose(quick.velocity[name] / fast, plain.velocity[name], rtol=0, atol=rounding)
+        assert np.allclose(
+            quick.acceleration[name] / fast**2, plain.acceleration[name], rtol=0, atol=rounding
+        )
