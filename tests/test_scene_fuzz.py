@@ -183,3 +183,26 @@ def test_inputs_that_overflow_are_refused_by_the_absolute_model_as_well(tmp_path
     seen = run("validate", path, "--first", "absolute", "--second", "pointcoord")
     assert (seen.status, len(seen.err.splitlines())) == (2, 1)
     assert "all its numbers must be finite" in seen.err
+
+
+def test_a_strut_that_lies_flat_defeats_the_printed_formulas_only(tmp_path: Path) -> None:
+    flat = {
+        "[460, -180, 470]": "[460, 200, 20]",
+        "[456, -250, 246]": "[456, -50, 20]",
+        ARM: "{ polynomial = [1.65, 0.1] }",
+        "stop = 2.6": "stop = 0.1",
+    }
+    seen = run("validate", _bounce_with(tmp_path, flat))
+    assert (seen.status, seen.err) == (0, "")
+    assert "The paper's formulas as printed cannot solve" in seen.out
+    assert "1 of 1 scenes agree" in seen.out
+
+
+@pytest.mark.parametrize("command", ["simulate", "validate"])
+def test_hardpoints_that_make_no_mechanism_are_told_with_the_name_of_the_file(
+    command: str, tmp_path: Path
+) -> None:
+    path = _bounce_with(tmp_path, {"[450, -330, -40]": "[452, -320, 20]"})
+    seen = run(command, path)
+    assert (seen.status, len(seen.err.splitlines())) == (2, 1)
+    assert seen.err.startswith(f"pointcoord: {path}: mechanism.points: link ")

@@ -11,7 +11,16 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pointcoord import AssemblyError, Motion, MotionTooLong, PointcoordError, Scene, built_in_scenes, simulate
+from pointcoord import (
+    AssemblyError,
+    Motion,
+    MotionTooLong,
+    PointcoordError,
+    Scene,
+    SceneError,
+    built_in_scenes,
+    simulate,
+)
 from pointcoord.effects import EFFECTS, plan_effects
 from validate import report
 from validate.compare import Outcome, compare
@@ -44,15 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parser().parse_args(arguments)
         return int(options.run(options))
-    except (
-        PointcoordError,
-        FormulationError,
-        UnknownFormulation,
-        MissingPackage,
-        OutputError,
-        UsageError,
-    ) as error:
-        print(f"pointcoord: {' '.join(str(error).split())}", file=sys.stderr)
+    except REFUSALS as error:
+        _complain(str(error))
         return 2
     except BrokenPipeError:
         # The reader of a pipe has gone, such as `head`: nothing is left to say to it.
@@ -103,21 +105,30 @@ def _validate(options: argparse.Namespace) -> int:
     speak = options.json != "-"
     outcomes: list[Outcome] = []
     printed: list[Outcome] = []
-    refusals: list[FormulationError] = []
+    refusals: list[tuple[str, Exception]] = []
+    unprinted: list[tuple[str, Exception]] = []
     for name, scene in scenes:
         try:
             outcome = compare(scene, options.first, options.second, name)
-            outcomes.append(outcome)
-            if speak:
-                print(report.outcome_text(outcome), end="\n\n", flush=True)
+        except (FormulationError, SceneError) as error:
+            refusals.append((name, error))
+            _complain(_reason(name, error))
+            continue
+        outcomes.append(outcome)
+        if speak:
+            print(report.outcome_text(outcome), end="\n\n", flush=True)
+        try:
             printed.append(compare(scene, options.first, "printed", name))
-        except FormulationError as error:
-            refusals.append(error)
-            print(f"pointcoord: {name}: {' '.join(str(error).split())}", file=sys.stderr)
+        except (FormulationError, SceneError) as error:
+            # The formulas as printed lose rank where the mended ones do not: that is no fault of the scene.
+            unprinted.append((name, error))
     errata = findings(printed)
     paper = compare_with_paper() if not options.scenes else ()
     if speak:
-        print(report.findings_text(errata, [o.scene for o in printed]), end="\n\n")
+        if printed:
+            print(report.findings_text(errata, [o.scene for o in printed]), end="\n\n")
+        for name, why in unprinted:
+            print(f"The paper's formulas as printed cannot solve {_reason(name, why)}", end="\n\n")
         if paper:
             print(report.paper_text(paper), end="\n\n")
         agreed = sum(o.agreed for o in outcomes)
@@ -127,7 +138,10 @@ def _validate(options: argparse.Namespace) -> int:
             options.json,
             {
                 "comparisons": [report.outcome_data(outcome) for outcome in outcomes],
-                "refused": [{"formulation": r.formulation, "reason": str(r.reason)} for r in refusals],
+                "refused": [{"scene": name, "reason": _reason(name, why)} for name, why in refusals],
+                "refused_by_printed_formulas": [
+                    {"scene": name, "reason": _reason(name, why)} for name, why in unprinted
+                ],
                 "printed_formulas": [report.finding_data(finding) for finding in errata],
                 "printed_tables": report.paper_data(paper) if paper else None,
             },
@@ -135,6 +149,18 @@ def _validate(options: argparse.Namespace) -> int:
     if refusals:
         return 2
     return 0 if all(outcome.agreed for outcome in outcomes) else 1
+
+
+def _complain(message: str) -> None:
+    """One line on standard error."""
+    print(f"pointcoord: {' '.join(message.split())}", file=sys.stderr)
+
+
+def _reason(name: str, error: Exception) -> str:
+    """Why a scene is refused, beginning with the name that the user gave it."""
+    if isinstance(error, SceneError):
+        return str(SceneError(name, error.key, error.problem, error.allowed))
+    return f"{name}: {error}"
 
 
 def _simulate(options: argparse.Namespace) -> int:
@@ -146,6 +172,8 @@ def _simulate(options: argparse.Namespace) -> int:
         if isinstance(error.partial, Motion):
             write_motion(options.output, error.partial)
         raise
+    except SceneError as error:
+        raise SceneError(options.scene, error.key, error.problem, error.allowed) from error
     return 0
 
 
