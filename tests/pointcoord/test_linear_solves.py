@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.linear import factorise, null_directions, weakest_direction
+from pointcoord.linear import factorise, null_directions, weakest_balance
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -137,10 +137,10 @@ def test_null_directions_span_the_null_spaces(seed: int, rows: int, columns: int
 
 @plain
 @given(seed=seeds, n=st.integers(2, 8))
-def test_weakest_direction_is_shortened_the_most(seed: int, n: int) -> None:
+def test_weakest_balance_of_rows_is_shortened_the_most(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     matrix = graded(rng, n, 1e6)
-    direction = weakest_direction(matrix)
+    balance = weakest_balance(matrix)
     # The smallest stretch is 1e-6; rounding of the product is n eps.
-    assert abs(np.linalg.norm(direction) - 1.0) <= 4 * n * EPS
-    assert np.linalg.norm(matrix @ direction) <= 1e-6 + 16 * n * EPS
+    assert abs(np.linalg.norm(balance) - 1.0) <= 4 * n * EPS
+    assert np.linalg.norm(balance @ matrix) <= 1e-6 + 16 * n * EPS
