@@ -35,7 +35,7 @@ FINEST = 4.0 * EPS
 # A larger one could take a neighbouring branch for the same motion, and would hardly save a segment.
 COARSEST = 1e-6
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
-MOST_SEGMENTS = 5000
+MOST_SEGMENTS = 2000
 # Unit of time of a series, s, at least: raised to an order of 20 it stays far above the smallest
 # number, 2^-1022, so that no coefficient is lost in a motion however short.
 SHORTEST_UNIT = 2.0**-50
