@@ -73,7 +73,8 @@ def write_motion(target: str | None, motion: Motion) -> None:
     try:
         if target.endswith(".npz"):
             with open(target, "wb") as binary:
-                np.savez(binary, **dict(columns(motion)))  # type: ignore[arg-type]
+                arrays: dict[str, Any] = dict(columns(motion))
+                np.savez(binary, **arrays)
         elif target.endswith(".csv"):
             with open(target, "w", newline="", encoding="utf-8") as stream:
                 _write_csv(stream, motion)
