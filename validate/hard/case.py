@@ -1,0 +1,108 @@
+"""A hard case: why it is hard, a parameter that leads into it, and what has to come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+# right: every number lies within its bound of the truth. refused: a reason in place of numbers. noted: some
+# numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so. unjudged:
+# the truth could not be proven, which is a failure of the catalogue.
+Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one formulation made of one value of the parameter.
+
+    Attributes:
+        formulation: its name.
+        outcome: held to the truth.
+        reason: of a refusal; else which quantity came closest to its bound, or exceeded it the most.
+        error: largest distance of a point from the truth, in the case's unit; None without numbers.
+        bound: largest bound that the formulation gives for it, in the same unit.
+        share: largest error of any quantity, rates and angles too, in parts of its bound.
+        condition: largest condition number.
+    """
+
+    formulation: str
+    outcome: Outcome
+    reason: str = ""
+    error: float | None = None
+    bound: float | None = None
+    share: float | None = None
+    condition: float | None = None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One value of a parameter, tried by every formulation of the case.
+
+    Attributes:
+        facts: what else was measured there, by name with its unit.
+    """
+
+    value: float
+    answers: tuple[Answer, ...]
+    facts: Mapping[str, float | str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a formulation may make of a case.
+
+    Attributes:
+        outcomes: those allowed.
+        right_from: for values of the parameter from here up only `right` is allowed.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    right_from: float = float("inf")
+
+    def met(self, value: float, outcome: Outcome) -> bool:
+        """Whether an outcome is what had to come."""
+        return outcome in (("right",) if value >= self.right_from else self.outcomes)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One entry of the catalogue.
+
+    Attributes:
+        name: on the command line, words joined by hyphens.
+        group: heading that it is shown under.
+        why: one sentence that says why it is hard.
+        parameter: what tends to the singular place, with its unit.
+        values: of the parameter, evenly spaced in its logarithm.
+        expected: by formulation; a case tries the formulations named here.
+        behaviour: one sentence that says what is expected.
+        examine: tries one value.
+        unit: of error and bound.
+    """
+
+    name: str
+    group: str
+    why: str
+    parameter: str
+    values: tuple[float, ...]
+    expected: Mapping[str, Expected]
+    behaviour: str
+    examine: Callable[[float], Trial]
+    unit: str = "mm"
+
+
+def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:
+    """The answers of a trial that the case does not allow."""
+    return tuple(a for a in trial.answers if not case.expected[a.formulation].met(trial.value, a.outcome))
+
+
+def wrong_without_warning(trial: Trial) -> tuple[Answer, ...]:
+    """Wrong numbers that their formulation gave as right; the printed formulas are there to be wrong."""
+    return tuple(a for a in trial.answers if a.outcome == "wrong" and a.formulation != "printed")
+
+
+RIGHT = Expected(("right",))
+RIGHT_OR_REFUSED = Expected(("right", "refused"))
+REFUSED = Expected(("refused",))
+FAILS = Expected(("refused", "noted", "wrong"))
