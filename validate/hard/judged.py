@@ -1,0 +1,89 @@
+"""A solution held to the truth, in one answer: right, noted or wrong, by how much and in what.
+
+A formulation may say itself that some of its numbers have no meaning. Such a note covers the numbers that
+are not finite in the quantity that it names, and nothing else: they are left out, and the rest is judged
+once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from validate.compare import Comparison, compare_solutions
+from validate.formulation import Accuracy, Solution
+from validate.hard.case import Answer, Outcome
+
+Array = NDArray[np.float64]
+
+NOTED_QUANTITIES = ("angular_velocity", "angular_acceleration")
+
+
+def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
+    """Hold all numbers of a solution to the truth, which knows the sensitivities that tolerances need."""
+    rows = compare_solutions(scene, answer, truth, "hard").rows
+    outcome = _outcome(scene, answer, truth, rows)
+    worst = max(rows, key=lambda row: row.share if np.isfinite(row.share) else np.inf)
+    accuracy = answer.accuracy
+    return Answer(
+        formulation=answer.formulation,
+        outcome=outcome,
+        reason=_reason(worst, answer, outcome),
+        error=_finite(_error(answer, truth)),
+        bound=_finite(float(np.max(accuracy.pose_error * np.maximum(accuracy.carried_gain, 1.0)))),
+        share=_finite(worst.share),
+        condition=_finite(float(np.max(accuracy.condition))),
+    )
+
+
+def _outcome(scene: Scene, answer: Solution, truth: Solution, rows: tuple[Comparison, ...]) -> Outcome:
+    if all(row.verdict == "agrees" for row in rows):
+        # Any number lies within an infinite bound: a formulation that gives one says that it knows nothing.
+        return "right" if _bounded(answer.accuracy) else "noted"
+    rest = compare_solutions(scene, _without_noted(answer, truth), truth, "hard").rows
+    return "noted" if all(row.verdict == "agrees" for row in rest) else "wrong"
+
+
+def _bounded(accuracy: Accuracy) -> bool:
+    """Whether a solution says of every instant how accurate it is."""
+    factors = (getattr(accuracy, field.name) for field in fields(accuracy))
+    return all(bool(np.isfinite(factor).all()) for factor in factors)
+
+
+def _without_noted(answer: Solution, truth: Solution) -> Solution:
+    """The answer with the truth in place of what is not finite and has a note."""
+    mended: dict[str, dict[str, Array]] = {}
+    for quantity in NOTED_QUANTITIES:
+        said = any(note.startswith(quantity.replace("_", " ") + " of") for note in answer.notes)
+        given: Mapping[str, Array] = getattr(answer, quantity)
+        if said:
+            true = getattr(truth, quantity)
+            mended[quantity] = {n: np.where(np.isfinite(a), a, true[n]) for n, a in given.items()}
+    return replace(answer, **mended)  # type: ignore[arg-type]
+
+
+def _error(answer: Solution, truth: Solution) -> float:
+    """Largest component of the distance of any point from the truth, mm."""
+    return max(float(np.max(np.abs(answer.position[name] - truth.position[name]))) for name in truth.position)
+
+
+def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:
+    where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
+    if outcome == "right":
+        return where
+    if outcome == "noted" and not _bounded(answer.accuracy):
+        return f"{where}: no finite bound is given"
+    notes = "; ".join(answer.notes)
+    said = f"; noted: {notes}" if outcome == "noted" else ""
+    return (
+        f"{where} is off by {worst.difference:.2g} {worst.unit}, "
+        f"{worst.share:.2g} of what is allowed, at t = {worst.instant:.6g} s{said}"
+    )
+
+
+def _finite(number: float) -> float | None:
+    return number if np.isfinite(number) else None

@@ -1,0 +1,159 @@
+"""A scene made from a value of a parameter, tried by formulations and held to the truth.
+
+Every number that a formulation gives is compared: positions, velocities, accelerations, body rates and
+wheel angles at every instant, each against the formulation's own bound or tolerance (see `tolerance`).
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pointcoord import Scene, SceneError
+from validate.formulation import FormulationError, Solution
+from validate.formulations import MissingPackage, formulation
+from validate.hard.case import Answer, Case, Expected, Trial
+from validate.hard.content import decades as decades
+from validate.hard.content import paper_car as paper_car
+from validate.hard.judged import judged_answer
+from validate.hard.sensitivity import with_sensitivities
+from validate.truth import InfeasibleError, TruthError
+from validate.verdicts import true_solution
+
+Facts = Mapping[str, float | str]
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A scene after its trial, for whatever else a case measures.
+
+    Attributes:
+        solutions: of the formulations that answered, by name.
+        truth: at the scene's instants; None if there is none.
+    """
+
+    value: float
+    scene: Scene
+    solutions: Mapping[str, Solution]
+    truth: Solution | None
+
+
+Measure = Callable[[Tried], Facts]
+
+
+def scene_case(
+    *,
+    name: str,
+    group: str,
+    why: str,
+    parameter: str,
+    values: Sequence[float],
+    scene: Callable[[float], Mapping[str, Any]],
+    expected: Mapping[str, Expected],
+    behaviour: str,
+    measure: Measure | None = None,
+) -> Case:
+    """A case whose trial is one scene.
+
+    Args:
+        scene: the content of the scene at a value of the parameter; see `content.paper_car`.
+        expected: by name of a formulation; these are tried.
+        measure: what else is measured on the solutions.
+    """
+
+    def examine(value: float) -> Trial:
+        return try_scene(value, scene(value), tuple(expected), measure)
+
+    return Case(name, group, why, parameter, tuple(values), expected, behaviour, examine)
+
+
+def try_scene(
+    value: float, content: Mapping[str, Any], formulations: Sequence[str], measure: Measure | None = None
+) -> Trial:
+    """Solve a scene by each formulation and hold the answers to the truth.
+
+    A scene that cannot be read is refused by all. Where the truth has no pose no answer is right.
+    """
+    try:
+        scene = Scene.from_mapping(content)
+    except SceneError as error:
+        refused = tuple(Answer(name, "refused", _told(error)) for name in formulations)
+        return Trial(value, refused, {"truth": "not asked"})
+    tried = {name: solved(name, scene) for name in formulations}
+    solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
+    truth = _truth(scene)
+    answers = []
+    for name, one in tried.items():
+        if isinstance(one, Answer):
+            answers.append(one)
+        elif isinstance(truth, InfeasibleError):
+            answers.append(Answer(name, "wrong", f"answers where there is no pose: {truth}"))
+        elif isinstance(truth, Exception):
+            answers.append(Answer(name, "unjudged", _told(truth)))
+        else:
+            answers.append(_judged(scene, one, with_sensitivities(scene, truth, one, solutions)))
+    facts: dict[str, float | str] = {"truth": _told(truth) if isinstance(truth, Exception) else "answers"}
+    if measure is not None:
+        known = None if isinstance(truth, Exception) else truth
+        facts |= measure(Tried(value, scene, solutions, known))
+    return Trial(value, tuple(answers), facts)
+
+
+def solved(name: str, scene: Scene) -> Solution | Answer:
+    """A formulation's solution, or its refusal as an answer.
+
+    Any other error is a defect of the formulation, and so is a warning: its answer is wrong, and the run
+    goes on.
+
+    Raises:
+        MissingPackage: the formulation is not installed.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return formulation(name).solve(scene)
+    except FormulationError as error:
+        return Answer(name, "refused", _told(error.reason))
+    except SceneError as error:
+        return Answer(name, "refused", _told(error))
+    except MissingPackage:
+        raise
+    except Exception as error:
+        return Answer(name, "wrong", f"fails: {_told(error)}")
+
+
+def _truth(scene: Scene) -> Solution | Exception:
+    """The truth, or why there is none."""
+    still = np.zeros(len(scene.instants))
+    try:
+        return true_solution(scene, still, still)
+    except TruthError as error:
+        return error
+    except (ValueError, ArithmeticError) as error:
+        # Inputs that overflow have no exact value to solve for.
+        return error
+
+
+def _judged(scene: Scene, answer: Solution, truth: Solution) -> Answer:
+    angles = truth.wheel
+    if len(angles) < len(answer.wheel):
+        # An angle that the truth leaves out is 0/0 there, or half a turn, where its sign has no meaning.
+        answer = replace(answer, wheel={name: answer.wheel[name] for name in angles})
+        if not angles:
+            scene = scene.model_copy(
+                update={"effects": tuple(e for e in scene.effects if e != "wheel_angles")}
+            )
+    try:
+        with np.errstate(all="ignore"):
+            return judged_answer(scene, answer, truth)
+    except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
+        return Answer(answer.formulation, "unjudged", f"cannot be compared: {_told(error)}")
+
+
+def _told(error: Exception) -> str:
+    """An error's name and its message on one line."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
