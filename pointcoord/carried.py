@@ -29,17 +29,20 @@ from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Carriers = tuple[Array, Array, Array]
+Pair = tuple[Array, Array]
 
 ROUNDINGS = 10.0 * UNIT_ROUNDOFF  # the nine of p and one for the distance from what is reported
 
 
 def carried_errors(
-    mechanism: Mechanism, y: Array, local: Mapping[str, Array], certificate: Certificate
+    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], certificate: Certificate, shifted: Array
 ) -> tuple[Array, Array]:
     """Bound of the reported carried points, in units, and their gain over their carriers, shape (...,).
 
     Args:
-        local: reported positions from the mechanism's origin, in its units, shape (..., 3).
+        local: reported positions without what was added to report them, as high and low, in units, each
+            of shape (..., 3).
+        shifted: rounding of what was added, in units, shape (..., 3).
     """
     bound, gain = np.zeros(y.shape[:-1]), np.ones(y.shape[:-1])
     for name, carriers in mechanism.topology.carried.items():
@@ -56,12 +59,17 @@ def carried_errors(
         )
         curved = 8.0 * np.abs(weights[..., 2]) * certificate.radius**2
         found, size = _carried(weights, (base, first, second))
-        apart = np.abs(local[name] - found) + ROUNDINGS * size
-        each = moved + doubt + apart
+        each = moved + doubt + apart(local[name], found) + ROUNDINGS * size + shifted
         total = INFLATION * (each.max(axis=-1) + curved + _unsolved(mechanism, name, carriers))
         bound = np.maximum(bound, np.where(np.isfinite(certificate.radius), total, np.inf))
         gain = np.maximum(gain, INFLATION * magnitude.sum(axis=(0, -1)).max(axis=-1))
     return bound, gain
+
+
+def apart(pair: Pair, place: Array) -> Array:
+    """Distance of a sum of two numbers from a third that is close to it, to a rounding of itself."""
+    high, low = pair
+    return np.abs((high - place) + low)
 
 
 def _derivatives(weights: Array, base: Array, first: Array, second: Array) -> list[Array]:

@@ -3,7 +3,8 @@ r"""A motion as a chain of short power series.
 A segment is as long as its last two terms allow: at its end they, and what they contribute to the
 derivatives that are asked for, are below the tolerance relative to the size of that derivative. The
 terms that were left out are smaller still. The end is then solved by Newton, which starts the next
-segment without inherited error and shows what the error was; a segment that missed is halved.
+segment without inherited error and shows what the error was; a segment that missed, or that ended on
+another branch (see `branch`), is halved.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.assembly import Pose, stopped
+from pointcoord.branch import on_branch, orientation
 from pointcoord.errors import AssemblyError, MotionTooLong
 from pointcoord.inputs import TimeFunction
 from pointcoord.linear import EPS, Factors
@@ -29,7 +31,7 @@ Array = NDArray[np.float64]
 BLOCK = 1024
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
-SHORTEST = 1e-11
+SHORTEST = 1e-15
 # A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
 FINEST = 4.0 * EPS
 # A larger one could take a neighbouring branch for the same motion, and would hardly save a segment.
@@ -109,7 +111,7 @@ def build_chain(
     y, factors, work = pose.y, pose.factors, Work()
     scale = _power_of_two(stop - start)
     segments: list[Segment] = []
-    instant = start
+    instant, side = start, orientation(pose.factors)
     # Shorter steps in time than this are lost in the rounding of the instant itself.
     shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
@@ -127,10 +129,13 @@ def build_chain(
         good = np.zeros(y.shape[:-1], dtype=bool)
         while length >= shortest or instant + length >= limit:
             end = limit if instant + length >= limit else instant + length
-            reached = _end(mechanism, functions, series, end, (end - instant) / scale)
+            s = (end - instant) / scale
+            reached = _end(mechanism, functions, series, end, s)
             work += reached.work
             # What rounding alone makes of a step is no truncation, however small the tolerance.
             good = reached.converged & (reached.first_step <= settings.tolerance + 2.0 * reached.noise)
+            if good.all():
+                good = on_branch(mechanism.map, side, series, s, reached)
             if good.all():
                 break
             length = 0.5 * (end - instant)
@@ -228,25 +233,27 @@ def _length(series: Array, settings: Settings) -> float:
     """
     size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
     size[:, 0] = 1.0
-    logs = np.log(np.maximum(size, np.finfo(float).tiny))
-    orders = np.arange(size.shape[-1], dtype=float)
     if not (size[:, -2:] > 0.0).any():
         return np.inf
-    with np.errstate(divide="ignore", over="ignore"):
-        # Where the last terms grow as large as any earlier one: any useful segment is shorter.
-        first = min(settings.derivative, 1)
-        equal = (logs[:, None, first:-2] - logs[:, -2:, None]) / (orders[-2:, None] - orders[first:-2])
-        reach = float(np.exp(np.min(equal.max(axis=-1))))
-        trials = reach * TRIALS
-        fits = np.ones(len(trials), dtype=bool)
-        falling = np.ones_like(orders)
-        for d in range(settings.derivative + 1):
-            powers = trials[:, None] ** np.maximum(orders - d, 0.0)
-            terms = size[:, None, :] * (falling * powers)[None]
-            whole = np.ones(terms.shape[:2]) if d == 0 else terms[..., d:].max(axis=-1)
-            fits &= (terms[..., -2:].sum(axis=-1) <= settings.tolerance * whole).all(axis=0)
-            falling = falling * np.maximum(orders - d, 0.0)
-    return float(trials[np.argmax(fits)]) if fits.any() else float(trials[-1])
+    # In logarithms no power is too large or too small for the arithmetic, and a missing term stays one.
+    with np.errstate(divide="ignore"):
+        logs = np.log(size)
+    known = np.maximum(logs, np.log(np.finfo(float).tiny))
+    orders = np.arange(size.shape[-1], dtype=float)
+    # Where the last terms grow as large as any earlier one: any useful segment is shorter.
+    first = min(settings.derivative, 1)
+    equal = (known[:, None, first:-2] - known[:, -2:, None]) / (orders[-2:, None] - orders[first:-2])
+    trials = np.min(equal.max(axis=-1)) + np.log(TRIALS)
+    fits = np.ones(len(trials), dtype=bool)
+    falling = np.zeros_like(orders)
+    for d in range(settings.derivative + 1):
+        terms = logs[:, None, d:] + falling[d:] + (orders[d:] - d) * trials[:, None]
+        whole = np.zeros(terms.shape[:2]) if d == 0 else terms.max(axis=-1)
+        last = np.logaddexp(terms[..., -2], terms[..., -1])
+        fits &= (last <= np.log(settings.tolerance) + whole).all(axis=0)
+        falling[d + 1 :] += np.log(orders[d + 1 :] - d)
+    with np.errstate(over="ignore"):
+        return float(np.exp(trials[np.argmax(fits) if fits.any() else -1]))
 
 
 def _power_of_two(length: float) -> float:

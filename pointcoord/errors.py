@@ -134,6 +134,7 @@ class MotionTooLong(PointcoordError):
     def __init__(self, limit: int, instant: float, start: float, stop: float, partial: object) -> None:
         self.limit = limit
         self.instant = instant
+        self.start = start
         self.stop = stop
         self.partial = partial
         expected = limit * (stop - start) / (instant - start)

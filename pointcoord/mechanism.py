@@ -20,7 +20,6 @@ from pointcoord.quadratic import UNIT_ROUNDOFF, QuadraticMap
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]
-Moved = bool | NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -58,18 +57,18 @@ class Mechanism:
         """Series of all known coordinates from the series of the inputs.
 
         Args:
-            inputs: coefficients of each input, shape (..., order + 1), rad or mm per s**k; inputs that
-                move the chassis may be missing and are then zero.
+            inputs: coefficients of each input that drives a coordinate, shape (..., order + 1), rad or mm
+                per s**k. What moves the chassis is no part of the constraints (see `chassis`).
         Returns:
             Coefficients, shape (..., order + 1, known coordinates), in the mechanism's units.
         Raises:
-            UnknownName: an input that this topology does not have, or one that is missing.
+            UnknownName: an input that drives nothing here, or one that is missing.
             InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
         """
         topology, layout = self.topology, self.layout
         for name in inputs:
-            if name not in topology.inputs:
-                raise UnknownName("input", name, topology.inputs)
+            if name not in topology.required_inputs:
+                raise UnknownName("driving input", name, topology.required_inputs)
         for name in topology.required_inputs:
             if name not in inputs:
                 raise UnknownName("given input", name, inputs)
@@ -84,25 +83,11 @@ class Mechanism:
             if not np.isfinite(series).all():
                 worst = float(series[~np.isfinite(series)][0])
                 raise InputOutOfRange(name, worst, "finite values and rates of every order")
-        shift = self.chassis_shift(inputs)
-        if shift is not None:
-            for point in topology.chassis:
-                known[..., [i - layout.unknowns for i in layout.vector(point)]] += shift
         if not np.isfinite(known).all():
             largest = max(inputs, key=lambda name: float(np.abs(inputs[name]).max()))
             worst = float(np.abs(inputs[largest]).max())
             raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
         return known
-
-    def chassis_shift(self, inputs: Mapping[str, Array]) -> Array | None:
-        """Series of the chassis' displacement, (..., order + 1, 3), in units; None if it stands still."""
-        shift: Array | None = None
-        for name, direction in self.topology.chassis_motion.items():
-            if name in inputs:
-                along = (inputs[name] / np.asarray(self.unit)[..., None])[..., None]
-                moved = along * self.drawing.vectors[direction][..., None, :]
-                shift = moved if shift is None else shift + moved
-        return shift
 
     def input_values(self, known: Array) -> dict[str, Array]:
         """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""
@@ -114,33 +99,20 @@ class Mechanism:
             for drive in self.topology.drives
         }
 
-    def known_data(self, y: Array, chassis_moves: Moved = True) -> tuple[Array, Array]:
+    def known_data(self, y: Array) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
         Drawn points, directions and constants are exact. What a squared length lacks was kept when it was
-        drawn; of a drive its kind knows (see `drives`). A moved chassis point has rounded a product and a
-        sum, by at most u of each.
+        drawn; of a drive its kind knows (see `drives`).
 
-        Args:
-            chassis_moves: whether its inputs move the chassis from the drawing; of each axis, shape
-                (..., 3), where that is known.
         Returns:
             Two arrays of shape (..., size): y plus the first is right to within the second.
         """
-        layout, vectors = self.layout, self.drawing.vectors
+        layout = self.layout
         lacking, uncertainty = np.zeros_like(y), np.zeros_like(y)
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
             lacking[..., place], uncertainty[..., place] = drive.rounding(y[..., place], self.drawing)
-        if np.any(chassis_moves) and self.topology.chassis_motion:
-            along = [vectors[direction] != 0.0 for direction in self.topology.chassis_motion.values()]
-            for point in self.topology.chassis:
-                places = list(layout.vector(point))
-                moved = np.abs(y[..., places] - self.drawn[..., places])
-                rounding = 1.01 * UNIT_ROUNDOFF * (np.abs(y[..., places]) + moved)
-                uncertainty[..., places] = np.where(
-                    np.logical_or.reduce(along) & chassis_moves, rounding, 0.0
-                )
         links = layout.size - len(layout.squared_lengths)
         lacking[..., links:] = self.drawn_lacks[..., links:]
         uncertainty[..., links:] = 256 * UNIT_ROUNDOFF**2 * y[..., links:]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.carried import carried_errors
+from pointcoord.carried import Pair, apart, carried_errors
 from pointcoord.certificate import INFLATION, Certificate, certify
+from pointcoord.doubled import exact_sum
 from pointcoord.linear import EPS, Factors, factorise
 from pointcoord.mechanism import Mechanism
 
@@ -25,8 +26,11 @@ class Proof:
 
     Attributes:
         times: shape (N,), s.
-        bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm;
-            infinite where nothing is proven. See `certificate` for what it covers.
+        pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
+            mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
+        bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
+            what adding the user's origin and the chassis' motion rounds comes to it. See `certificate`
+            for what it covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
         condition: condition number of the Jacobian, (N,).
@@ -37,6 +41,7 @@ class Proof:
     """
 
     times: Array
+    pose_bound: Array
     bound: Array
     carried_bound: Array
     carried_gain: Array
@@ -51,20 +56,22 @@ def prove(
     times: Array,
     states: Callable[[Array], Sequence[Array]],
     reported: Mapping[str, Array],
-    chassis_moves: NDArray[np.bool_],
+    offset: Array,
+    rounding: Array,
 ) -> Proof:
     """Prove poses in blocks.
 
-    What is reported was summed, and shifted to the user's origin, apart from the coordinates y that are
-    proven. Both are at hand, and the difference of two numbers this close together is exact, so what lies
-    between them is measured.
+    What is reported was summed, and shifted to the user's origin and by the chassis' motion, apart from
+    the coordinates y that are proven. Both are at hand, so what lies between them is measured, without
+    rounding.
 
     Args:
         times: instants, shape (N,), s.
         states: gives the coordinates y, shape (n, size), at some of the instants, and as many of their
             time derivatives as were solved for.
         reported: position of every point at the times, (N, 3), mm.
-        chassis_moves: along which axes the chassis is not where it is drawn, (N, 3).
+        offset: what was added to every point to report it, (N, 3), mm.
+        rounding: of the offset itself, at most, (N, 3), mm.
     """
     parts = []
     for low in range(0, len(times), BLOCK):
@@ -75,27 +82,36 @@ def prove(
             _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
             for order in (0, 1)
         )
-        lacking, uncertainty = mechanism.known_data(y, chassis_moves[low : low + BLOCK])
+        lacking, uncertainty = mechanism.known_data(y)
         certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
         local = {
-            name: (place[low : low + BLOCK] - mechanism.origin) / mechanism.unit
+            name: _local(mechanism, place[low : low + BLOCK], offset[low : low + BLOCK])
             for name, place in reported.items()
         }
-        bound = mechanism.unit * _reported_bound(mechanism, y, local, certificate, uncertainty)
-        carried, gain = carried_errors(mechanism, y, local, certificate)
-        parts.append((bound, mechanism.unit * carried, gain, factors.condition, first, second, residual))
+        doubt = rounding[low : low + BLOCK] / mechanism.unit
+        bound = mechanism.unit * _reported_bound(mechanism, y, local, certificate, doubt)
+        carried, gain = carried_errors(mechanism, y, local, certificate, doubt)
+        own = mechanism.unit * certificate.coordinates[..., : 3 * len(mechanism.topology.moving)].max(axis=-1)
+        parts.append((own, bound, mechanism.unit * carried, gain, factors.condition, first, second, residual))
     columns = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Proof(times, *columns)
 
 
+def _local(mechanism: Mechanism, reported: Array, offset: Array) -> Pair:
+    high, low = exact_sum(reported, -offset)
+    return high / mechanism.unit, low / mechanism.unit
+
+
 def _reported_bound(
-    mechanism: Mechanism, y: Array, local: Mapping[str, Array], certificate: Certificate, uncertainty: Array
+    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], certificate: Certificate, doubt: Array
 ) -> Array:
     """Bound on the reported coordinates of solved points and of the chassis, shape (...,), in units."""
     topology, layout = mechanism.topology, mechanism.layout
-    own = np.concatenate([certificate.coordinates, uncertainty[..., layout.unknowns :]], axis=-1)
+    # In its own frame the chassis is where it was drawn, exactly.
+    drawn = np.zeros((*y.shape[:-1], layout.size - layout.unknowns))
+    own = np.concatenate([certificate.coordinates, drawn], axis=-1)
     places = {name: list(layout.vector(name)) for name in (*topology.moving, *topology.chassis)}
-    each = [own[..., place] + np.abs(local[name] - y[..., place]) for name, place in places.items()]
+    each = [own[..., place] + apart(local[name], y[..., place]) + doubt for name, place in places.items()]
     return np.asarray(INFLATION * np.concatenate(each, axis=-1).max(axis=-1))
 
 

@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import rigid, wheel
+from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import Plan
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Channel, Samples
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
-"""For each time derivative, the points' states of shape (..., N, 3), mm, from the mechanism's origin."""
+"""For each time derivative, the points' states of shape (..., N, 3), mm, in the chassis' frame, from the
+mechanism's origin."""
 
 BodyRates = Callable[[Mapping[str, Array], Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array]]
 
@@ -25,6 +27,7 @@ class Readout:
     """How states become results.
 
     Attributes:
+        chassis: what it does, which is added to the points' states.
         outboard: unit vector away from the car's middle.
         body_rates: angular velocity and acceleration of a body from its points' states; the least
             squares of `rigid` unless a variant replaces it.
@@ -32,16 +35,17 @@ class Readout:
 
     mechanism: Mechanism
     plan: Plan
+    chassis: ChassisMotion
     outboard: Array
     body_rates: BodyRates
 
     def samples(self, times: Array, states: States) -> Samples:
         """Name the states and compute the effects of the plan from them."""
         asked = self.plan.effects
-        origin = self.mechanism.origin[..., None, :]
-        position = {name: p + origin for name, p in states[0].items()} if origin.any() else states[0]
+        shift = self.chassis.states(times, self.plan.derivative_of_points)
+        position = _added(states[0], self.offset(times))
         derivatives = {
-            quantity: states[order] if quantity in asked else None
+            quantity: _added(states[order], shift[order] if shift else None) if quantity in asked else None
             for order, quantity in ((1, "velocity"), (2, "acceleration"))
         }
         omegas: dict[str, Array] | None = None
@@ -65,12 +69,24 @@ class Readout:
             wheel=Channel("wheel angle", "wheel_angles", angles),
         )
 
+    def offset(self, times: Array) -> Array | None:
+        """What is added to every position, the origin and the chassis' displacement; None if it is zero."""
+        origin = self.mechanism.origin[..., None, :]
+        shift = self.chassis.states(times, 0)
+        if not shift:
+            return origin if origin.any() else None
+        return origin + shift[0]
+
     def _wheel_angles(self, position: Mapping[str, Array]) -> dict[str, Array]:
         up, lower = self.mechanism.drawing.vectors["up"], position["strut_lower"]
         return {
             "camber": wheel.camber_angle(lower, position["wheel_centre"], up, self.outboard),
             "kingpin": wheel.kingpin_angle(position["lower_ball_joint"], lower, up, self.outboard),
         }
+
+
+def _added(states: Mapping[str, Array], offset: Array | None) -> Mapping[str, Array]:
+    return states if offset is None else {name: state + offset for name, state in states.items()}
 
 
 def least_squares_rates(

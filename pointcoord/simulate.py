@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pointcoord.assembly import Pose, assemble
 from pointcoord.chain import Chain, Settings, build_chain
+from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import plan_effects
 from pointcoord.errors import (
     AssemblyError,
@@ -58,11 +59,13 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
     readout = Readout(
         mechanism=mechanism,
         plan=plan_effects(scene.effects),
+        chassis=ChassisMotion.of(mechanism, scene.functions),
         outboard=scene.mechanism.outboard,
         body_rates=printed_body_rates if method == "printed" else least_squares_rates,
     )
-    functions = scene.functions
+    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)
+    readout.chassis.states(scene.instants, readout.plan.derivative_of_points)
     first = scene.time.start
     pose = assemble(mechanism, {name: f.series(first, 0)[..., 0] for name, f in functions.items()}, first)
     solve = _by_series if method == "series" else _by_newton
@@ -103,7 +106,7 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        prover = _prover(mechanism, sampler.coordinates, functions)
+        prover = _prover(readout, sampler.coordinates)
         return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism)
 
     try:
@@ -131,7 +134,7 @@ def _by_newton(
             places = np.searchsorted(solved.times, instants)
             return [state[places] for state in solved.states]
 
-        prover = _prover(readout.mechanism, coordinates, functions)
+        prover = _prover(readout, coordinates)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, cost, None, prover, readout.mechanism)
 
@@ -146,15 +149,15 @@ def _by_newton(
     return motion(solved)
 
 
-def _prover(
-    mechanism: Mechanism, coordinates: Callable[[Array], list[Array]], functions: Mapping[str, TimeFunction]
-) -> Prover:
-    movers = {name: f for name, f in functions.items() if name in mechanism.topology.chassis_motion}
+def _prover(readout: Readout, coordinates: Callable[[Array], list[Array]]) -> Prover:
+    mechanism = readout.mechanism
 
     def prover(samples: Samples) -> Proof:
-        shift = mechanism.chassis_shift({name: f.series(samples.times, 0) for name, f in movers.items()})
-        moves = np.zeros((len(samples.times), 3), dtype=bool) if shift is None else shift[:, 0] != 0.0
-        return prove(mechanism, samples.times, coordinates, samples.position, moves)
+        times = samples.times
+        added = readout.offset(times)
+        offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
+        rounding = readout.chassis.rounding(times, mechanism.origin)
+        return prove(mechanism, times, coordinates, samples.position, offset, rounding)
 
     return prover
 

@@ -73,8 +73,8 @@ class Sampler:
         plan, topology = self.readout.plan, self.readout.mechanism.topology
         moving = [*topology.moving, *topology.carried]
         states: list[dict[str, Array]] = [{} for _ in range(plan.derivative + 1)]
-        for order, shift in enumerate(self._chassis(instants, plan.derivative_of_points)):
-            states[order] |= {name: shift[name] for name in topology.chassis}
+        for order in range(plan.derivative_of_points + 1):
+            states[order] |= self._chassis(len(instants), order)
         for names, derivatives in self._requests(moving):
             columns = [np.concatenate([series[n] for n in names], axis=-1) for series in self._point_series]
             values = evaluate(self.chain, columns, instants, derivatives)
@@ -126,26 +126,13 @@ class Sampler:
             result.append({name: points * unit for name, points in series.items()})
         return result
 
-    def _chassis(self, instants: Array, derivatives: int) -> list[dict[str, Array]]:
-        """States of the chassis points, straight from the inputs that move the chassis."""
+    def _chassis(self, count: int, order: int) -> dict[str, Array]:
+        """States of the chassis points, which stand still in the chassis' frame."""
         mechanism = self.readout.mechanism
-        topology = mechanism.topology
-        inputs = {
-            name: f.series(instants, derivatives)
-            for name, f in self.functions.items()
-            if name in topology.chassis_motion
-        }
-        shift = mechanism.chassis_shift(inputs)
         unit = np.asarray(mechanism.unit)[..., None, None]
-        batch = self.chain.segments[0].coefficients.shape[:-2]
-        still = np.zeros((*batch, 1, 3))
-        states = []
-        for order in range(derivatives + 1):
-            moved = still if shift is None else shift[..., order, :] * (max(order, 1) * unit)
-            drawn = {
-                name: mechanism.drawing.vectors[name][..., None, :] * unit if order == 0 else still
-                for name in topology.chassis
-            }
-            shape = (*batch, len(instants), 3)
-            states.append({name: np.broadcast_to(place + moved, shape) for name, place in drawn.items()})
+        shape = (*self.chain.segments[0].coefficients.shape[:-2], count, 3)
+        states = {}
+        for name in mechanism.topology.chassis:
+            place = mechanism.drawing.vectors[name][..., None, :] * unit
+            states[name] = np.broadcast_to(place if order == 0 else np.zeros(3), shape)
         return states

@@ -55,8 +55,8 @@ class AbsoluteCoordinates:
             angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
             wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
             accuracy=Accuracy(
-                # The last term: a result far from the origin is rounded once more when it is stored.
-                pose_error=ROUNDINGS * EPS * condition * size + EPS * distance,
+                pose_error=ROUNDINGS * EPS * condition * size,
+                stored=np.full(len(times), EPS * distance),
                 carried_gain=np.ones(len(times)),  # every point rides on its body alike
                 proven=False,
                 condition=condition,

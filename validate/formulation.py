@@ -19,7 +19,7 @@ class Accuracy:
     """What a formulation says of its own accuracy; `tolerance` makes tolerances of it.
 
     Attributes:
-        pose_error: error of each coordinate of each point, at most, shape (N,), mm.
+        pose_error: error of each coordinate of each point in the frame where it is solved, at most, (N,), mm.
         carried_gain: how many times as large it is for a point that rides on a body, shape (N,).
         proven: whether `pose_error` is a proven bound or an estimate.
         condition: condition number of the matrix that gives the rates, shape (N,).
@@ -27,6 +27,8 @@ class Accuracy:
         acceleration_sensitivity: the same of an acceleration, shape (N,), 1/s^2. Both are zero if the
             formulation does not know them.
         truncation: relative error of the rates that the method leaves on purpose.
+        stored: what a reported coordinate is rounded besides, shape (N,), mm: far from the origin, say. No
+            rate sees it.
     """
 
     pose_error: Array
@@ -36,6 +38,7 @@ class Accuracy:
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
     truncation: float = 0.0
+    stored: Array | float = 0.0
 
 
 @dataclass(frozen=True)

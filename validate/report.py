@@ -66,7 +66,7 @@ def outcome_text(outcome: Outcome) -> str:
         f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants",
         table(("quantity", "worst at", "largest difference", "held to", "at", "verdict"), rows),
         f"  tolerances from C = {ROUNDINGS:g}, eps = {EPS:.2g}, cond <= {f.condition.max():.3g} (both), "
-        f"pose error <= {f.position.max():.2g} mm (both), s1 <= {f.velocity_sensitivity.max():.2g} /s, "
+        f"pose error <= {f.pose.max():.2g} mm (both), s1 <= {f.velocity_sensitivity.max():.2g} /s, "
         f"s2 <= {f.acceleration_sensitivity.max():.2g} /s^2, "
         f"speed {f.speed:.3g} mm/s, acceleration {f.acceleration:.3g} mm/s^2",
     ]
@@ -137,7 +137,7 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
             "C": ROUNDINGS,
             "eps": EPS,
             "condition": float(f.condition.max()),
-            "pose_error_mm": float(f.position.max()),
+            "pose_error_mm": float(f.pose.max()),
             "velocity_sensitivity_per_s": float(f.velocity_sensitivity.max()),
             "acceleration_sensitivity_per_s2": float(f.acceleration_sensitivity.max()),
             "truncation": f.truncation,

@@ -6,23 +6,25 @@ known value), V and A the largest speed and acceleration of any point in the sce
 unit and C = 8 (each row of the linear systems takes at most 8 roundings of eps / 2 in each of two
 formulations):
 
-    T(position)     = e1 + e2
-    T(velocity)     = s1 T(position) + [C eps (k1 + k2) + truncation] V
-    T(acceleration) = s2 T(position) + 2 s1 T(velocity) + [C eps (k1 + k2) + truncation] A + C eps s1 V
+    T(pose)         = e1 + e2
+    T(position)     = T(pose) + r1 + r2
+    T(velocity)     = s1 T(pose) + [C eps (k1 + k2) + truncation] V
+    T(acceleration) = s2 T(pose) + 2 s1 T(velocity) + [C eps (k1 + k2) + truncation] A + C eps s1 V
 
-The pose error of pointcoord is a proven bound; of the absolute model it is C eps k size. The velocity
+The pose error of pointcoord is a proven bound; of the absolute model it is C eps k size. Both solve near
+the mechanism; r is the rounding of what is reported from the user's origin, and no rate sees it. The velocity
 solves C_u v = -C_w w', so a pose displaced by d changes it by C_u^-1 2 B(d, v), at most s1 |d|. The
 acceleration solves C_u a = -C_w w'' - 2 B(v, v), where a velocity error enters as 4 B(v, .).
 
 A point that rides on a body, the wheel centre, moves g times as much as the points that carry it, and
-its velocity and acceleration have these tolerances times g with s1 T(position), and s1 T(velocity) added
+its velocity and acceleration have these tolerances times g with s1 T(pose), and s1 T(velocity) added
 once more for the turning of its arm.
 
 The rates of a body with points r_i about their centroid, |r_i| <= R, are least squares with the inertia
 tensor J = sum (|r_i|^2 I - r_i r_i^T); with w, a its largest angular velocity and acceleration,
 
-    T(omega) = b [T(velocity) + w T(position)],    b = max row sum of |J^-1 [r_1]x ... J^-1 [r_k]x|
-    T(alpha) = b [T(acceleration) + (a + 2 w^2) T(position) + 2 w R T(omega)]
+    T(omega) = b [T(velocity) + w T(pose)],    b = max row sum of |J^-1 [r_1]x ... J^-1 [r_k]x|
+    T(alpha) = b [T(acceleration) + (a + 2 w^2) T(pose) + 2 w R T(omega)]
 
 and an angle of a line of length l turns by at most T(angle) = 4 T(position) / l + 4 eps.
 """
@@ -54,6 +56,7 @@ ANGLE_LINES = {
 class Factors:
     """The factors of a pair's tolerances, for the report; arrays over the instants where they vary."""
 
+    pose: Array
     position: Array
     carried_gain: Array
     condition: Array
@@ -71,7 +74,8 @@ def factors(first: Solution, second: Solution) -> Factors:
     """
     a, b = first.accuracy, second.accuracy
     return Factors(
-        position=a.pose_error + b.pose_error,
+        pose=a.pose_error + b.pose_error,
+        position=a.pose_error + b.pose_error + a.stored + b.stored,
         carried_gain=np.maximum(a.carried_gain, b.carried_gain),
         condition=a.condition + b.condition,
         velocity_sensitivity=np.maximum(a.velocity_sensitivity, b.velocity_sensitivity),
@@ -88,23 +92,24 @@ def _largest(vectors: Mapping[str, Array]) -> float:
 
 
 def point_tolerances(f: Factors) -> dict[str, Array]:
-    """Tolerances of position (mm), velocity (mm/s) and acceleration (mm/s^2), each of shape (N,)."""
+    """Tolerances of pose and position (mm), velocity (mm/s), acceleration (mm/s^2), each of shape (N,)."""
     relative = ROUNDINGS * EPS * f.condition + f.truncation
-    velocity = f.velocity_sensitivity * f.position + relative * f.speed
+    velocity = f.velocity_sensitivity * f.pose + relative * f.speed
     acceleration = (
-        f.acceleration_sensitivity * f.position
+        f.acceleration_sensitivity * f.pose
         + 2.0 * f.velocity_sensitivity * velocity
         + relative * f.acceleration
         + ROUNDINGS * EPS * f.velocity_sensitivity * f.speed
     )
-    return {"position": f.position, "velocity": velocity, "acceleration": acceleration}
+    return {"pose": f.pose, "position": f.position, "velocity": velocity, "acceleration": acceleration}
 
 
 def carried_tolerances(f: Factors) -> dict[str, Array]:
     """The same for a point that rides on a body."""
     own = point_tolerances(f)
-    turned = own["velocity"] + f.velocity_sensitivity * own["position"]
+    turned = own["velocity"] + f.velocity_sensitivity * own["pose"]
     return {
+        "pose": f.carried_gain * own["pose"],
         "position": f.carried_gain * own["position"],
         "velocity": f.carried_gain * turned,
         "acceleration": f.carried_gain * (own["acceleration"] + f.velocity_sensitivity * turned),
@@ -128,8 +133,8 @@ def body_tolerances(
     moments = np.cross(r[..., None, :], np.eye(3))  # row j of matrix i: r_i x e_j
     solved = np.linalg.solve(inertia[:, None], np.swapaxes(moments, -2, -1))
     gain = np.abs(solved).sum(axis=(-3, -1)).max(axis=-1)
-    omega = gain * (tolerances["velocity"] + spin * tolerances["position"])
-    pulled = (spin_rate + 2.0 * spin**2) * tolerances["position"]
+    omega = gain * (tolerances["velocity"] + spin * tolerances["pose"])
+    pulled = (spin_rate + 2.0 * spin**2) * tolerances["pose"]
     turned = 2.0 * spin * lengths.max(axis=-1) * omega
     return {
         "angular_velocity": omega,

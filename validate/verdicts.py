@@ -136,7 +136,8 @@ def true_solution(scene: Scene, velocity_sensitivity: Array, acceleration_sensit
         angular_acceleration=_rounded([i.angular_acceleration for i in instants], ("knuckle",)),
         wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
         accuracy=Accuracy(
-            pose_error=np.full(count, EPS * farthest),
+            pose_error=np.zeros(count),
+            stored=np.full(count, EPS * farthest),
             carried_gain=np.ones(count),
             proven=True,
             condition=np.zeros(count),

@@ -51,9 +51,9 @@ def test_small_steps_of_the_inputs_lead_where_one_jump_leads(
         path = follow(strut.map, y, known)
         assert path.done == 1.0
         y = path.y
-    gap = np.abs(y - jump.y)[:n].max() * strut.unit
-    # The last pose of the walk ends with the same correction as the jump: the jump's bound holds twice.
-    assert gap <= 4 * jump.bound
+    # Walk and jump end with a Newton step that has shrunk to rounding, the condition number times eps of
+    # coordinates up to 2.
+    assert np.abs(y - jump.y)[:n].max() <= 4 * np.finfo(float).eps * jump.condition
 
 
 @few
@@ -66,8 +66,10 @@ def test_path_there_and_back_returns_to_the_same_pose(
     there = follow(strut.map, start.y, end.y[n:])
     back = follow(strut.map, there.y, start.y[n:])
     assert there.done == back.done == 1.0
-    assert np.abs(there.y - end.y).max() * strut.unit <= 4 * end.bound
-    assert np.abs(back.y - start.y).max() * strut.unit <= 4 * start.bound
+    # Each pose is where Newton's last step has shrunk to rounding, the condition number times eps of
+    # coordinates up to 2.
+    for found, pose in ((there, end), (back, start)):
+        assert np.abs(found.y - pose.y).max() <= 4 * np.finfo(float).eps * pose.condition
 
 
 def test_assembled_drawing_keeps_the_links_and_puts_the_strut_on_one_line(

@@ -63,7 +63,7 @@ def test_doubled_residual_is_right_to_within_what_it_says_itself(
 
 
 def test_squared_lengths_lack_what_they_have_rounded(strut: Mechanism) -> None:
-    lacking, uncertainty = strut.known_data(strut.drawn, chassis_moves=False)
+    lacking, uncertainty = strut.known_data(strut.drawn)
     for start, end in strut.layout.squared_lengths:
         place = strut.layout.squared_length(start, end)
         a, b = (strut.drawing.vectors[name].tolist() for name in (start, end))

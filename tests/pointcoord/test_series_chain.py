@@ -20,6 +20,8 @@ from pointcoord.work import Work
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
 N = 17
+# Where the tie rod locks at a level arm, mm; between 130.100768 and 130.100769 by its circle's closed form.
+RACK_END = 130.10076831981567
 BOUNCE: dict[str, TimeFunction] = {"arm_angle": Polynomial((0.8, 0.25, 0.0625)), "rack": Polynomial((0.0,))}
 BOTH: dict[str, TimeFunction] = {"arm_angle": Sine(0.4, 2.0, 0.0, 1.5), "rack": Sine(30.0, 3.0)}
 TABLE: dict[str, TimeFunction] = {
@@ -247,3 +249,19 @@ def test_no_tolerance_lets_a_motion_pass_the_end_of_its_branch(
         with pytest.raises(AssemblyError, match="bring 'arm_angle' back") as caught:
             simulate(scene, method)
         assert np.rad2deg(caught.value.reached["arm_angle"]) == pytest.approx(35.27, abs=0.01)
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e9])
+@pytest.mark.parametrize("short", [1e-6, 1e-10, 1e-12, 1e-13])
+def test_no_tolerance_lets_a_motion_cross_to_a_branch_that_it_only_touches(
+    make_scene: Callable[..., Scene], tolerance: float, short: float
+) -> None:
+    # The rack comes near the end of its travel and goes back. The other branch, its tie rod's outer end
+    # 200 mm away in the end, comes within the root of `short` of the car's size.
+    rack = {"sine": {"amplitude": (1.0 - short) * RACK_END, "angular_frequency": 1.0}}
+    scene = make_scene((np.pi / 2,), rack, stop=np.pi, samples=21, tolerance=tolerance, effects=[])
+    # Newton's method takes steps that are proven to keep the branch.
+    gap = largest_gap(simulate(scene), simulate(scene, "newton"), "position")
+    # The series keep ten times the coarsest truncation, 1e-6 of 512 mm; at the turn rounding is
+    # magnified by the inverse root of `short`.
+    assert gap <= 10 * 1e-6 * 512 + 16 * EPS * 512 / np.sqrt(short)

@@ -1,0 +1,73 @@
+r"""The chassis moves: a displacement of the whole car, added to what is reported.
+
+    p(t) = p_drawn chassis(t) + sum_i e_i h_i(t),      inputs h_i along directions e_i
+
+Every constraint is made of differences of points, so a displacement of all of them changes none. The
+mechanism is solved in the chassis' own frame, where neither the distance that the chassis goes nor its
+speed costs a digit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import InputOutOfRange
+from pointcoord.inputs import TimeFunction
+from pointcoord.mechanism import Mechanism
+from pointcoord.quadratic import UNIT_ROUNDOFF
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ChassisMotion:
+    """Inputs that move the chassis, each along a unit vector of shape (..., 3)."""
+
+    functions: Mapping[str, TimeFunction]
+    directions: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, functions: Mapping[str, TimeFunction]) -> ChassisMotion:
+        """Those of a mechanism's inputs that move its chassis."""
+        along = mechanism.topology.chassis_motion
+        moving = {name: f for name, f in functions.items() if name in along}
+        return cls(moving, {name: mechanism.drawing.vectors[along[name]] for name in moving})
+
+    def states(self, instants: Array, derivatives: int) -> list[Array]:
+        """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing moves the chassis.
+
+        Raises:
+            InputOutOfRange: a value or a rate is not finite.
+        """
+        sums: list[Array] = []
+        for name, function in self.functions.items():
+            series = function.series(instants, derivatives)
+            if not np.isfinite(series).all():
+                order = int(np.argwhere(~np.isfinite(series))[0, -1])
+                raise InputOutOfRange(
+                    name, float(series[~np.isfinite(series)][0]), f"a finite derivative of order {order}"
+                )
+            along = self.directions[name][..., None, :]
+            parts = [factorial(d) * series[..., d, None] * along for d in range(derivatives + 1)]
+            sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
+        return sums
+
+    def rounding(self, instants: Array, origin: Array) -> Array:
+        """Rounding of the displacement and of its sum with an origin, (..., N, 3), mm.
+
+        k inputs take k products and k - 1 sums, each rounded by at most u of the sum of the products'
+        magnitudes; the sum with the origin is rounded by u of itself. An axis along which nothing moves
+        is not rounded at all.
+        """
+        magnitude = np.zeros((*np.shape(instants), 3))
+        for name, function in self.functions.items():
+            value = np.abs(function.series(instants, 0))
+            magnitude = magnitude + value * np.abs(self.directions[name][..., None, :])
+        count = 2.0 * len(self.functions)
+        total = UNIT_ROUNDOFF * (count * magnitude + np.abs(origin[..., None, :]) + magnitude)
+        return np.where(magnitude > 0.0, 1.01 * total, 0.0)
