@@ -1,0 +1,141 @@
+"""The truth of cars drawn so near to where their assemblies meet that their side is a matter of rounding.
+
+A drawing need not be assembled, so `solve_truth` calls a side unclear that is less than 1e-9 of the lengths
+that it is made of. A hard case draws such cars on purpose, and its coordinates are exact: the sign of an
+exact product of them is the side that was drawn, however small the product is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from pointcoord import Scene
+from validate.formulation import Accuracy, Solution
+from validate.hard.case import Answer, Trial
+from validate.hard.judged import judged_answer
+from validate.hard.sensitivity import with_sensitivities
+from validate.hard.trial import Measure, Tried, solved, try_scene
+from validate.truth import AmbiguousAssemblyError, Choices, Instant, TruthError
+from validate.truth.branches import candidate
+from validate.truth.design import Design, Driven, exact_vector, values_only
+from validate.truth.equations import unknown_of
+from validate.truth.instant import prove_instant
+from validate.truth.solve import with_enough_digits
+from validate.truth.vectors import cross, dot, minus
+from validate.verdicts import inputs_at
+
+DIGITS = 60
+EPS = float(np.finfo(float).eps)
+RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
+
+
+def drawn_choices(scene: Scene) -> Choices:
+    """The four signs of a drawing, from exact products (see `validate.truth.Choices`).
+
+    Raises:
+        AmbiguousAssemblyError: a product is exactly zero, so that nothing tells the side.
+    """
+    part = scene.mechanism
+    p = {name: exact_vector(place, name) for name, place in part.points.items()}
+    ball, top = p["lower_ball_joint"], p["strut_top"]
+    front, strut = p["lower_arm_front"], minus(p["strut_top"], ball)
+    knuckle = minus(p["strut_lower"], ball)
+    axis, up = minus(p["lower_arm_rear"], front), exact_vector(part.up, "up")
+    inner, outer = minus(p["tie_rod_inner"], ball), minus(p["tie_rod_outer"], ball)
+    products = {
+        "arm": dot(cross(axis, up), minus(ball, front)),
+        "strut": dot(knuckle, strut),
+        "rod": -dot(minus(p["strut_rod_end"], top), strut),
+        "tie": dot(cross(knuckle, inner), outer),
+    }
+    for name, product in products.items():
+        if product == 0:
+            remedy = "the drawing lies exactly where two assemblies meet"
+            raise AmbiguousAssemblyError(f"the sign of the {name} choice", 0.0, 0.0, remedy)
+    return Choices(**{name: 1 if product > 0 else -1 for name, product in products.items()})
+
+
+def instant_on_side(scene: Scene, time: float) -> Instant:
+    """The proven instant on the side of the drawing.
+
+    Raises:
+        TruthError: there is no pose, or none can be proven.
+    """
+    part, choices = scene.mechanism, drawn_choices(scene)
+    design = Design.from_points(dict(part.points), part.up, part.right, part.side)
+    driven = Driven.from_mapping(inputs_at(scene, time))
+
+    def attempt(working: int) -> Instant:
+        known = design.known(driven)
+        still = values_only(known)
+        chosen = candidate(still, choices)
+        chosen.require_feasible(float(design.unit))
+        return prove_instant(design, known, unknown_of(chosen.points, still), choices, DIGITS, working)
+
+    return with_enough_digits(attempt, DIGITS)
+
+
+def solution_on_side(scene: Scene) -> Solution:
+    """The truth at all instants of a scene, on the side of its drawing.
+
+    Raises:
+        TruthError: an instant has no pose, or none can be proven.
+    """
+    instants = [instant_on_side(scene, t) for t in scene.instants.tolist()]
+    still = np.zeros(len(instants))
+    position = {n: np.array([i.position_as_float(n) for i in instants]) for n in instants[0].position}
+    farthest = max(float(np.abs(place).max()) for place in position.values())
+    rows = {
+        quantity: {
+            name: np.array([[float(x) for x in getattr(i, quantity)[name]] for i in instants])
+            for name in getattr(instants[0], quantity)
+            if quantity in RATES[:2] or name == "knuckle"
+        }
+        for quantity in RATES
+    }
+    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
+    return Solution(
+        formulation="truth",
+        times=scene.instants,
+        position=position,
+        wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
+        accuracy=Accuracy(
+            pose_error=np.full(len(still), EPS * farthest),
+            carried_gain=np.ones(len(still)),
+            proven=True,
+            condition=still,
+            velocity_sensitivity=still,
+            acceleration_sensitivity=still,
+        ),
+        **rows,
+    )
+
+
+def try_on_side(
+    value: float, content: Mapping[str, Any], formulations: Sequence[str], measure: Measure | None = None
+) -> Trial:
+    """As `try_scene`, and where the drawn side is unclear to the truth, by the exact signs of the drawing."""
+    trial = try_scene(value, content, formulations, measure)
+    if all(answer.outcome != "unjudged" for answer in trial.answers):
+        return trial
+    scene = Scene.from_mapping(content)
+    try:
+        truth = solution_on_side(scene)
+    except TruthError as error:
+        return replace(trial, facts={**trial.facts, "truth": f"{type(error).__name__}: {error}"})
+    tried = {name: solved(name, scene) for name in formulations}
+    solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
+    answers = tuple(
+        one
+        if isinstance(one, Answer)
+        else judged_answer(scene, one, with_sensitivities(scene, truth, one, solutions))
+        for one in tried.values()
+    )
+    facts = {**trial.facts, "truth": "on the side of the exact sign of the drawing"}
+    if measure is not None:
+        facts |= measure(Tried(value, scene, solutions, truth))
+    return Trial(value, answers, facts)
