@@ -94,6 +94,14 @@ def _parser() -> argparse.ArgumentParser:
     plan.add_argument("scene", metavar="SCENE", help=scene_help)
     plan.set_defaults(run=_plan)
 
+    hard = commands.add_parser(
+        "hard", help="try the cases that are known to be hard, and hold them to the truth"
+    )
+    hard.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
+    hard.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
+    hard.add_argument("--json", metavar="FILE", help="write every trial as JSON; - for standard output")
+    hard.set_defaults(run=_hard)
+
     scenes = commands.add_parser("scenes", help="list the built-in scenes")
     scenes.set_defaults(run=_scenes)
     return parser
@@ -161,6 +169,39 @@ def _reason(name: str, error: Exception) -> str:
     if isinstance(error, SceneError):
         return str(SceneError(name, error.key, error.problem, error.allowed))
     return f"{name}: {error}"
+
+
+def _hard(options: argparse.Namespace) -> int:
+    try:
+        # The truth needs packages that the solvers do without.
+        from validate.hard import catalogue, run
+        from validate.hard import report as hard_report
+    except ModuleNotFoundError as error:
+        raise MissingPackage("truth", error.name or "python-flint") from error
+    try:
+        cases = catalogue.chosen(options.cases)
+    except catalogue.UnknownCase as error:
+        raise UsageError(str(error)) from None
+    if options.list:
+        print(hard_report.listing(cases))
+        return 0
+    speak = options.json != "-"
+    headings: list[str] = []
+
+    def tell(result: run.Examined) -> None:
+        if not speak:
+            return
+        if result.case.group not in headings:
+            headings.append(result.case.group)
+            print(f"== {result.case.group}", end="\n\n")
+        print(hard_report.case_text(result, bool(options.cases)), end="\n\n", flush=True)
+
+    results = run.run(cases, tell)
+    if speak:
+        print(hard_report.summary_text(results))
+    if options.json:
+        write_json(options.json, hard_report.results_data(results))
+    return 0 if run.as_expected(results) else 1
 
 
 def _simulate(options: argparse.Namespace) -> int:

@@ -1,0 +1,146 @@
+r"""Group 4: rates of the knuckle where the printed quotient is 0/0, and rates that are exactly zero.
+
+The paper prints omega = v65 x v75 / (v65 . r75). As v = omega x r, its divisor is omega . (r65 x r75): it is
+zero whenever omega lies in the plane of the knuckle's three points, and while the arm is held v75 itself is.
+Least squares over the three points divides by an inertia tensor, which only a knuckle in line makes singular.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from validate.hard.cars import OTHER_CAR, PAPER_CAR, Array, body_rates_at, car_content
+from validate.hard.case import FAILS, RIGHT, Case
+from validate.hard.content import SQUARE, paper_car
+from validate.hard.trial import Facts, Tried, decades, scene_case
+from validate.tolerance import KNUCKLE
+from validate.truth import solve_truth
+
+GROUP = "4. Body rates"
+VALUES = (*decades(-12, -1), 0.0)
+OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
+ALL = OURS | {"printed": FAILS}
+RACK_RATE = 150.0  # mm/s, the paper's steering scene
+
+
+def omega_errors(tried: Tried) -> Facts:
+    """Largest error of any component of the knuckle's angular velocity, by formulation."""
+    if tried.truth is None:
+        return {}
+    true = tried.truth.angular_velocity["knuckle"]
+    facts: dict[str, float | str] = {"largest angular velocity [rad/s]": float(np.abs(true).max())}
+    for name, solution in tried.solutions.items():
+        found = solution.angular_velocity["knuckle"]
+        facts[f"error of it, {name} [rad/s]"] = float(np.abs(found - true).max())
+    return facts
+
+
+def largest_rates(tried: Tried) -> Facts:
+    """Largest rate of any point or body, by formulation: of a car at rest it must be 0 to the last bit."""
+    facts: dict[str, float | str] = {}
+    for name, solution in tried.solutions.items():
+        channels = (
+            solution.velocity,
+            solution.acceleration,
+            solution.angular_velocity,
+            solution.angular_acceleration,
+        )
+        rates = [array for channel in channels for array in channel.values()]
+        facts[f"largest rate, {name}"] = max(float(np.abs(array).max()) for array in rates)
+    return facts
+
+
+def _steered(value: float) -> dict[str, Any]:
+    return paper_car([SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
+
+
+@cache
+def plane_share() -> float:
+    """Rack rate, mm/s per rad/s of the arm, for which omega lies in the plane of the knuckle's points.
+
+    omega is linear in the two rates, so its part across the plane vanishes for one ratio of them.
+    """
+    arm, rack = (
+        body_rates_at(PAPER_CAR, (SQUARE, a, 0.0), (0.0, b, 0.0))["angular_velocity"]
+        for a, b in ((1.0, 0.0), (0.0, 1.0))
+    )
+    across = _plane(SQUARE)
+    return -float(arm @ across) / float(rack @ across)
+
+
+def _plane(arm_angle: float) -> Array:
+    """Normal of the plane of the knuckle's three points."""
+    pose = solve_truth(PAPER_CAR.points, {"arm_angle": (arm_angle, 0, 0), "rack": (0, 0, 0)})
+    first, second, third = (np.array(pose.position_as_float(name)) for name in KNUCKLE)
+    return np.cross(second - first, third - first)
+
+
+def _in_the_plane(value: float) -> dict[str, Any]:
+    return paper_car([SQUARE, 1.0], [0.0, plane_share() * (1.0 + value)])
+
+
+def _resting(value: float) -> dict[str, Any]:
+    return car_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
+
+
+def _one_rate(name: str) -> Any:
+    def content(value: float) -> dict[str, Any]:
+        laws: dict[str, Any] = {"arm_angle": SQUARE, "rack": 0.0}
+        laws[name] = [laws[name], value]
+        return paper_car(laws["arm_angle"], laws["rack"])
+
+    return content
+
+
+CASES: tuple[Case, ...] = (
+    scene_case(
+        name="arm-all-but-held",
+        group=GROUP,
+        why="points 5 and 7 stand almost still while the rack moves: the printed omega is 0/0",
+        parameter="rate of the arm while the rack is driven, rad/s; then the arm is held",
+        values=VALUES,
+        scene=_steered,
+        expected=ALL,
+        behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
+        measure=omega_errors,
+    ),
+    scene_case(
+        name="omega-in-the-knuckle-plane",
+        group=GROUP,
+        why="omega lies in the plane of the knuckle's points: the divisor of the printed quotient is zero",
+        parameter="distance of the rack's rate from the one that does it, relative; then at it",
+        values=VALUES,
+        scene=_in_the_plane,
+        expected=ALL,
+        behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
+        measure=omega_errors,
+    ),
+    *(
+        scene_case(
+            name=f"{label}-hardly-moves",
+            group=GROUP,
+            why=f"only the {label} moves, slower and slower: rates keep their relative accuracy down to zero",
+            parameter=f"rate of the {label}, {unit}; then at rest",
+            values=(*(float(f"1e-{25 * k}") for k in range(1, 13)), 0.0),
+            scene=_one_rate(name),
+            expected=OURS,
+            behaviour="right, and exactly zero at rest",
+            measure=largest_rates,
+        )
+        for name, label, unit in (("arm_angle", "arm", "rad/s"), ("rack", "rack", "mm/s"))
+    ),
+    scene_case(
+        name="at-rest",
+        group=GROUP,
+        why="all inputs rest, so every rate is zero: rounding must not make a motion of it",
+        parameter="arm angle from a right angle, rad; then at it",
+        values=VALUES,
+        scene=_resting,
+        expected=OURS,
+        behaviour="every rate is exactly zero",
+        measure=largest_rates,
+    ),
+)

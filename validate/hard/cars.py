@@ -1,0 +1,95 @@
+"""Cars of hard cases: the paper's as drawn, turned, mirrored, its strut upright, or drawn at a true pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.hard.content import Law, paper_car
+from validate.input_ends import Car
+from validate.strategies import PAPER, mirrored
+from validate.truth import solve_truth
+
+Array = NDArray[np.float64]
+
+UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
+PAPER_CAR = Car(PAPER, "left", UP, RIGHT)
+# On one vertical line, so that a quarter turn about x or y, which permutes axes, lays the strut exactly flat.
+UPRIGHT_CAR = Car(
+    PAPER
+    | {
+        "strut_top": (450.0, -330.0, 470.0),
+        "strut_rod_end": (450.0, -330.0, 246.0),
+        "strut_lower": (450.0, -330.0, 20.0),
+    },
+    "left",
+    UP,
+    RIGHT,
+)
+
+
+def turned(car: Car, turn: Array) -> Car:
+    """The whole car turned by an orthogonal matrix of determinant 1, its axes with it."""
+    points = {name: _triple(turn @ np.array(place)) for name, place in car.points.items()}
+    return Car(points, car.side, _triple(turn @ np.array(car.up)), _triple(turn @ np.array(car.right)))
+
+
+def rotation(axis: int, cosine: float, sine: float) -> Array:
+    """The turn about a coordinate axis (0 to 2) by the angle of this cosine and sine."""
+    turn = np.eye(3)
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    turn[[first, second], [first, second]] = cosine
+    turn[first, second], turn[second, first] = -sine, sine
+    return turn
+
+
+def any_rotation(seed: int) -> Array:
+    """A turn drawn at random, the same for the same seed."""
+    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return np.asarray(turn * np.sign(np.linalg.det(turn)))
+
+
+def car_content(
+    car: Car, arm_angle: Law, rack: Law = 0.0, heave: Law | None = None, **settings: Any
+) -> dict[str, Any]:
+    """The content of a scene of a car; settings as for `content.paper_car`."""
+    return paper_car(
+        arm_angle, rack, heave, points=car.points, side=car.side, up=car.up, right=car.right, **settings
+    )
+
+
+def drawn_at(car: Car, arm_angle: float, rack: float) -> Car:
+    """The car drawn anew at the pose of these inputs, rad and mm: nothing is left to assemble."""
+    pose = solve_truth(
+        car.points, {"arm_angle": (arm_angle, 0, 0), "rack": (rack, 0, 0)}, up=car.up, right=car.right
+    )
+    points = {name: pose.position_as_float(name) for name in car.points}
+    return Car(points, car.side, car.up, car.right)
+
+
+def body_rates_at(car: Car, arm_angle: Sequence[float], rack: Sequence[float]) -> Mapping[str, Array]:
+    """True angular velocity and acceleration of the knuckle for inputs (value, rate, acceleration)."""
+    pose = solve_truth(
+        car.points,
+        {"arm_angle": tuple(arm_angle), "rack": tuple(rack)},
+        up=car.up,
+        right=car.right,
+        side=car.side,
+    )
+    spin, change = pose.angular_velocity["knuckle"], pose.angular_acceleration["knuckle"]
+    return {
+        "angular_velocity": np.array([float(x) for x in spin]),
+        "angular_acceleration": np.array([float(x) for x in change]),
+    }
+
+
+def _triple(vector: Array) -> tuple[float, float, float]:
+    x, y, z = (float(component) for component in vector)
+    return x, y, z
+
+
+# The other side of the paper's car, leaning every way.
+OTHER_CAR = turned(Car(mirrored(PAPER), "right", UP, RIGHT), any_rotation(1))

@@ -1,0 +1,40 @@
+"""All hard cases in the order of their groups, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+
+from validate.hard import body_rates, dead_points, flat_strut, laws, spans
+from validate.hard.case import Case
+
+CASES: tuple[Case, ...] = (
+    *dead_points.CASES,
+    *flat_strut.CASES,
+    *body_rates.CASES,
+    *laws.CASES,
+    *spans.CASES,
+)
+
+
+class UnknownCase(Exception):
+    """A name that no case has; the message gives near names and how to list all."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        near = get_close_matches(name, [case.name for case in CASES], n=3)
+        hint = f"; near names: {', '.join(near)}" if near else ""
+        super().__init__(f"no hard case is called {name!r}{hint}; pointcoord hard --list names all")
+
+
+def chosen(names: Sequence[str]) -> tuple[Case, ...]:
+    """The cases of these names in the order of the catalogue, or all without names.
+
+    Raises:
+        UnknownCase: a name that no case has.
+    """
+    known = {case.name for case in CASES}
+    for name in names:
+        if name not in known:
+            raise UnknownCase(name)
+    return tuple(case for case in CASES if not names or case.name in names)

@@ -1,0 +1,173 @@
+"""Examined cases as text for people and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from typing import Any, get_args
+
+from validate.hard.case import Answer, Case, Expected, Outcome
+from validate.hard.run import Examined, as_expected, counts
+from validate.report import table
+
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+SHORT = 90  # characters of a reason in a table
+# The formulation that is held against the others where they give up.
+OURS, OTHER = "pointcoord", "absolute"
+
+
+def listing(cases: Sequence[Case]) -> str:
+    """Names and reasons of cases, under the headings of their groups."""
+    lines: list[str] = []
+    for before, case in zip((None, *cases), cases, strict=False):
+        if before is None or before.group != case.group:
+            lines += ["", case.group] if lines else [case.group]
+        lines.append(f"  {case.name}: {case.why}")
+    return "\n".join(lines)
+
+
+def case_text(result: Examined, every_value: bool = False) -> str:
+    """What came of a case: a row per formulation, and per value as well if asked for."""
+    case, values = result.case, result.case.values
+    lines = [
+        f"{case.name}: {case.why}",
+        f"  parameter: {case.parameter}, {values[0]:g} to {values[-1]:g}, {len(values)} values",
+        f"  expected: {case.behaviour}",
+        _indented(table(_head(case), [_row(result, name) for name in case.expected])),
+        *(f"  {line}" for line in _who_gives_up_first(result)),
+    ]
+    if every_value:
+        lines.append(_indented(table(_VALUE_HEAD, _value_rows(result))))
+        lines += [f"  at {t.value:g}: {_facts(t.facts)}" for t in result.trials if t.facts]
+    lines += [
+        f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
+        for value, answer in result.unexpected
+    ]
+    return "\n".join(lines)
+
+
+def _head(case: Case) -> tuple[str, ...]:
+    size = f"error [{case.unit}]"
+    return ("formulation", "tried", *OUTCOMES, size, "of its bound", "condition", "verdict")
+
+
+def _row(result: Examined, name: str) -> tuple[str, ...]:
+    given = result.answers(name)
+    outcomes = Counter(answer.outcome for _, answer in given)
+    largest = (_largest([getattr(a, what) for _, a in given]) for what in ("error", "share", "condition"))
+    stop = result.gives_up(name)
+    where = "" if stop is None else f"gives up at {given[stop[0]][0]:g}: {short(stop[1].reason)}"
+    return (name, str(len(given)), *(str(outcomes[o] or ".") for o in OUTCOMES), *largest, where)
+
+
+def _largest(numbers: Sequence[float | None]) -> str:
+    known = [number for number in numbers if number is not None]
+    return f"{max(known):.2g}" if known else "-"
+
+
+def short(reason: str) -> str:
+    """The beginning of a reason, for a table."""
+    return reason if len(reason) <= SHORT else reason[: SHORT - 3] + "..."
+
+
+def _who_gives_up_first(result: Examined) -> list[str]:
+    if OURS not in result.case.expected or OTHER not in result.case.expected:
+        return []
+    ours, other = result.gives_up(OURS), result.gives_up(OTHER)
+    places = [math.inf if stop is None else stop[0] for stop in (ours, other)]
+    if places[0] == places[1]:
+        return []
+    earlier, later = (OURS, OTHER) if places[0] < places[1] else (OTHER, OURS)
+    first, last = int(min(places)), max(places)
+    rest = "never does" if last == math.inf else f"goes on to {result.trials[int(last)].value:g}"
+    return [f"{earlier} gives up at {result.trials[first].value:g}, where {later} does not: that one {rest}."]
+
+
+_VALUE_HEAD = ("value", "formulation", "outcome", "error", "bound", "of its bound", "condition", "verdict")
+
+
+def _value_rows(result: Examined) -> Iterable[tuple[str, ...]]:
+    for trial in result.trials:
+        for a in trial.answers:
+            numbers = ("-" if x is None else f"{x:.2g}" for x in (a.error, a.bound, a.share, a.condition))
+            yield f"{trial.value:g}", a.formulation, a.outcome, *numbers, short(a.reason)
+
+
+def _facts(facts: Any) -> str:
+    return ", ".join(f"{k}: {v:.6g}" if isinstance(v, float) else f"{k}: {v}" for k, v in facts.items())
+
+
+def _indented(text: str) -> str:
+    return "\n".join(f"  {line}" for line in text.splitlines())
+
+
+def summary_text(results: Sequence[Examined]) -> str:
+    """Counts over all cases, and the verdict."""
+    rows = [
+        (name, str(sum(found.values())), *(str(found[o] or ".") for o in OUTCOMES))
+        for name, found in counts(results).items()
+    ]
+    trials = sum(len(result.trials) for result in results)
+    lines = [
+        f"{len(results)} cases, {trials} scenes:",
+        table(("formulation", "answers", *OUTCOMES), rows),
+    ]
+    wrong = sum(len(result.wrong) for result in results)
+    other = [result for result in results if result.unexpected or result.wrong]
+    if as_expected(results):
+        lines.append(
+            "All as expected: but for the formulas as printed, no number is wrong without a warning."
+        )
+    else:
+        lines.append(
+            f"NOT as expected: {sum(len(r.unexpected) for r in other)} answers, "
+            f"{wrong} of them wrong without a warning, in {', '.join(result.case.name for result in other)}."
+        )
+    return "\n".join(lines)
+
+
+def results_data(results: Sequence[Examined]) -> dict[str, Any]:
+    """Everything, as plain data: each case with each trial. JSON has no infinity: it becomes null."""
+    return {
+        "as_expected": as_expected(results),
+        "counts": {name: dict(found) for name, found in counts(results).items()},
+        "cases": [_case_data(result) for result in results],
+    }
+
+
+def _case_data(result: Examined) -> dict[str, Any]:
+    case = result.case
+    return {
+        "name": case.name,
+        "group": case.group,
+        "why": case.why,
+        "parameter": case.parameter,
+        "values": list(case.values),
+        "unit": case.unit,
+        "behaviour": case.behaviour,
+        "expected": {name: _expected_data(one) for name, one in case.expected.items()},
+        "seconds": result.seconds,
+        "trials": [
+            {
+                "value": trial.value,
+                "answers": [_answer_data(answer) for answer in trial.answers],
+                "facts": _finite(dict(trial.facts)),
+            }
+            for trial in result.trials
+        ],
+        "unexpected": [_answer_data(answer) | {"value": value} for value, answer in result.unexpected],
+    }
+
+
+def _expected_data(expected: Expected) -> dict[str, Any]:
+    return _finite({"outcomes": list(expected.outcomes), "right_from": expected.right_from})
+
+
+def _answer_data(answer: Answer) -> dict[str, Any]:
+    return _finite(asdict(answer))
+
+
+def _finite(row: dict[str, Any]) -> dict[str, Any]:
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}

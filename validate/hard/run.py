@@ -1,0 +1,90 @@
+"""Running cases: every value of the parameter is tried, whatever the ones before came to."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from validate.formulations import MissingPackage
+from validate.hard.case import Answer, Case, Trial, unexpected, wrong_without_warning
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A case with its trials, in the order of its values, and how long they took, s."""
+
+    case: Case
+    trials: tuple[Trial, ...]
+    seconds: float
+
+    def answers(self, formulation: str) -> tuple[tuple[float, Answer], ...]:
+        """What a formulation answered, each with the value of the parameter."""
+        return tuple((t.value, a) for t in self.trials for a in t.answers if a.formulation == formulation)
+
+    def gives_up(self, formulation: str) -> tuple[int, Answer] | None:
+        """The first refusal going in, with its place among the values; None if there is none."""
+        given = enumerate(answer for _, answer in self.answers(formulation))
+        return next(((i, answer) for i, answer in given if answer.outcome == "refused"), None)
+
+    @property
+    def unexpected(self) -> tuple[tuple[float, Answer], ...]:
+        """Answers that the case does not allow, each with its value."""
+        return tuple(
+            (trial.value, answer) for trial in self.trials for answer in unexpected(self.case, trial)
+        )
+
+    @property
+    def wrong(self) -> tuple[tuple[float, Answer], ...]:
+        """Wrong numbers without a warning, but for the printed formulas, each with its value."""
+        return tuple(
+            (trial.value, answer) for trial in self.trials for answer in wrong_without_warning(trial)
+        )
+
+
+def examine(case: Case) -> Examined:
+    """Try all values of a case.
+
+    Raises:
+        MissingPackage: a formulation of the case is not installed.
+    """
+    began = time.perf_counter()
+    trials = tuple(_tried(case, value) for value in case.values)
+    return Examined(case, trials, time.perf_counter() - began)
+
+
+def _tried(case: Case, value: float) -> Trial:
+    try:
+        return case.examine(value)
+    except MissingPackage:
+        raise
+    # A trial that fails says nothing of the formulations; it is counted, and the run goes on.
+    except Exception as error:
+        reason = f"the trial fails: {type(error).__name__}: {' '.join(str(error).split())}"
+        return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
+
+
+def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:
+    """Examine cases one after the other; each is handed over as soon as it is done."""
+    results = []
+    for case in cases:
+        result = examine(case)
+        done(result)
+        results.append(result)
+    return tuple(results)
+
+
+def counts(results: Iterable[Examined]) -> dict[str, Counter[str]]:
+    """How often each formulation came to each outcome."""
+    found: dict[str, Counter[str]] = {}
+    for result in results:
+        for trial in result.trials:
+            for answer in trial.answers:
+                found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
+    return found
+
+
+def as_expected(results: Iterable[Examined]) -> bool:
+    """Whether no answer is unexpected, and none is wrong without a warning."""
+    return not any(result.unexpected or result.wrong for result in results)
