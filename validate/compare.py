@@ -125,6 +125,8 @@ def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> 
         gap = np.where(np.isfinite(gap), gap, np.inf)
         with np.errstate(divide="ignore", invalid="ignore"):
             shares = np.where(gap == 0.0, 0.0, gap / (tolerance + SMALLEST))
+        # A tolerance that is not finite would let everything pass.
+        shares = np.where(np.isfinite(tolerance), shares, np.inf)
         worst = int(np.argmax(gap))
         share = float(np.max(shares))
         rows.append(
