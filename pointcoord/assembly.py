@@ -207,6 +207,7 @@ def stopped(
     factors: Factors,
     unfinished: NDArray[np.bool_],
     instant: float | None,
+    change: Array | None = None,
 ) -> AssemblyError:
     """The error for paths that end at y on their way to `goal`, told for the first unfinished one.
 
@@ -217,6 +218,7 @@ def stopped(
         y: coordinates, shape (..., size).
         goal: known coordinates, shape (..., known coordinates).
         unfinished: shape (...).
+        change: how far each known coordinate would still go; from y to the goal unless given.
     """
     member = tuple(np.argwhere(unfinished)[0])
     known = y[..., mechanism.map.unknowns :]
@@ -226,8 +228,9 @@ def stopped(
         return {name: float(value[member]) for name, value in values.items()}
 
     first = mechanism.map.unknowns
-    change = {
-        drive.input: np.abs(goal - known)[..., mechanism.layout.scalar(drive.coordinate) - first][member]
+    left = np.broadcast_to(np.abs(goal - known) if change is None else change, known.shape)
+    going = {
+        drive.input: float(left[..., mechanism.layout.scalar(drive.coordinate) - first][member])
         for drive in mechanism.topology.drives
     }
     return AssemblyError(
@@ -235,7 +238,7 @@ def stopped(
         reached=told(known),
         wanted=told(goal),
         condition=float(factors.condition[member]),
-        reduce=max(change, key=lambda name: float(change[name])),
+        reduce=max(going, key=going.__getitem__),
         limits=mechanism.topology.strongest(weakest_balance(factors.matrix[member])),
         instant=instant,
     )

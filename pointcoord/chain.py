@@ -273,8 +273,12 @@ def _cannot_pass(
 ) -> AssemblyError:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
-    error = stopped(
-        mechanism, "the motion cannot pass a singular pose", y, goal, factors, unfinished, instant
-    )
+    # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not.
+    span = stop - instant
+    laws = mechanism.known_series({name: f.series(instant, 4) for name, f in functions.items()})
+    with np.errstate(over="ignore", under="ignore"):
+        change = sum(np.abs(laws[..., k, :]) * span**k for k in range(1, 5))
+    problem = "the motion cannot pass a singular pose"
+    error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, np.asarray(change))
     error.partial = partial
     return error

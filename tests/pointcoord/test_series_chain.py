@@ -265,3 +265,18 @@ def test_no_tolerance_lets_a_motion_cross_to_a_branch_that_it_only_touches(
     # The series keep ten times the coarsest truncation, 1e-6 of 512 mm; at the turn rounding is
     # magnified by the inverse root of `short`.
     assert gap <= 10 * 1e-6 * 512 + 16 * EPS * 512 / np.sqrt(short)
+
+
+@pytest.mark.parametrize("beyond", [1e-14, 1e-9, 1e-3])
+def test_a_motion_that_cannot_go_on_names_the_input_that_moves(
+    make_scene: Callable[..., Scene], beyond: float
+) -> None:
+    # The arm rests and the rack runs past its end, if only by rounding.
+    scene = make_scene((np.pi / 2,), (0.0, (1.0 + beyond) * RACK_END), stop=1.0)
+    with pytest.raises(AssemblyError, match="bring 'rack' back") as caught:
+        simulate(scene)
+    error = caught.value
+    # The range is 219 mm: its last value is found to a billionth of that at least.
+    assert abs(error.reached["rack"] - RACK_END) <= 1e-9 * 219
+    assert error.limits[0].startswith("link ")
+    assert all("tie_rod" in name or "strut_lower" in name for name in error.limits[:3])
