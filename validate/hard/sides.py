@@ -104,7 +104,8 @@ def solution_on_side(scene: Scene) -> Solution:
         position=position,
         wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
         accuracy=Accuracy(
-            pose_error=np.full(len(still), EPS * farthest),
+            pose_error=still,
+            stored=np.full(len(still), EPS * farthest),
             carried_gain=np.ones(len(still)),
             proven=True,
             condition=still,
