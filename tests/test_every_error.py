@@ -27,6 +27,7 @@ from pointcoord.suspensions.macpherson import MACPHERSON
 from validate import cli, compare
 from validate.deep_store import Store
 from validate.formulations import formulation
+from validate.hard.catalogue import chosen
 from validate.output import write_motion
 from validate.truth import solve_truth
 from validate.truth.branches import candidate, choices_of_table
@@ -223,6 +224,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},
+    ),
+    "validate.hard.catalogue.UnknownCase": Recipe(
+        lambda *_: chosen(["arm-higest"]),
+        ("no hard case is called 'arm-higest'", "near names: ", "--list"),
+        {"name": "arm-higest"},
     ),
     "validate.truth.errors.TruthError": Recipe(
         lambda *_: (
