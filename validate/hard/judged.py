@@ -29,12 +29,13 @@ def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
     outcome = _outcome(scene, answer, truth, rows)
     worst = max(rows, key=lambda row: row.share if np.isfinite(row.share) else np.inf)
     accuracy = answer.accuracy
+    bound = accuracy.pose_error * np.maximum(accuracy.carried_gain, 1.0) + accuracy.stored
     return Answer(
         formulation=answer.formulation,
         outcome=outcome,
         reason=_reason(worst, answer, outcome),
         error=_finite(_error(answer, truth)),
-        bound=_finite(float(np.max(accuracy.pose_error * np.maximum(accuracy.carried_gain, 1.0)))),
+        bound=_finite(float(np.max(bound))),
         share=_finite(worst.share),
         condition=_finite(float(np.max(accuracy.condition))),
     )
@@ -42,8 +43,10 @@ def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
 
 def _outcome(scene: Scene, answer: Solution, truth: Solution, rows: tuple[Comparison, ...]) -> Outcome:
     if all(row.verdict == "agrees" for row in rows):
+        return "right"
+    if not _bounded(answer.accuracy) and _finite_throughout(answer):
         # Any number lies within an infinite bound: a formulation that gives one says that it knows nothing.
-        return "right" if _bounded(answer.accuracy) else "noted"
+        return "noted"
     rest = compare_solutions(scene, _without_noted(answer, truth), truth, "hard").rows
     return "noted" if all(row.verdict == "agrees" for row in rest) else "wrong"
 
@@ -52,6 +55,12 @@ def _bounded(accuracy: Accuracy) -> bool:
     """Whether a solution says of every instant how accurate it is."""
     factors = (getattr(accuracy, field.name) for field in fields(accuracy))
     return all(bool(np.isfinite(factor).all()) for factor in factors)
+
+
+def _finite_throughout(answer: Solution) -> bool:
+    channels = (answer.position, answer.velocity, answer.acceleration, answer.angular_velocity)
+    every = (*channels, answer.angular_acceleration, answer.wheel)
+    return all(bool(np.isfinite(array).all()) for channel in every for array in channel.values())
 
 
 def _without_noted(answer: Solution, truth: Solution) -> Solution:

@@ -1,0 +1,247 @@
+"""The catalogue is worth what its judge catches: wrong numbers, silence about them, and what crashes."""
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.formulation import FormulationError, Solution
+from validate.formulations import formulation
+from validate.hard import trial
+from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
+from validate.hard.judged import judged_answer
+from validate.hard.report import case_text, results_data, summary_text
+from validate.hard.run import as_expected, examine
+from validate.hard.sensitivity import redrawn_sensitivities
+from validate.hard.trial import decades, paper_car, scene_case, try_scene
+from validate.verdicts import true_solution
+
+OURS = ("pointcoord", "absolute")
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return Scene.from_mapping(paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2))
+
+
+@pytest.fixture(scope="module")
+def truth(scene: Scene) -> Solution:
+    return true_solution(scene, np.zeros(3), np.zeros(3))
+
+
+@pytest.fixture(scope="module")
+def solution(scene: Scene) -> Solution:
+    return formulation("pointcoord").solve(scene)
+
+
+def planted(
+    solution: Solution, quantity: str, name: str, value: float, notes: tuple[str, ...] = ()
+) -> Solution:
+    """The solution with one number changed."""
+    arrays = {n: np.array(a) for n, a in getattr(solution, quantity).items()}
+    arrays[name][1, ...] = value + (arrays[name][1, ...] if math.isfinite(value) else 0.0)
+    changes: dict[str, Any] = {quantity: arrays, "notes": notes}
+    return replace(solution, **changes)
+
+
+def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Callable[[Scene], Solution]) -> None:
+    """Put something else in the place of every formulation."""
+
+    class Stand:
+        name = "stand-in"
+
+        def solve(self, scene: Scene) -> Solution:
+            return solve(scene)
+
+    monkeypatch.setattr(trial, "formulation", lambda name: Stand())
+
+
+def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition() -> None:
+    result = try_scene(1.0, paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2), (*OURS, "pointcoord-newton"))
+    assert [a.outcome for a in result.answers] == ["right"] * 3
+    for answer in result.answers:
+        assert answer.error is not None
+        assert answer.bound is not None
+        assert answer.share is not None
+        # Half a rounding of 570 mm at least separates the truth from what is stored of it.
+        assert 0.0 < answer.error <= answer.bound + 570 * np.finfo(float).eps
+        assert answer.share <= 1.0
+        assert answer.condition is not None
+        assert answer.condition > 1.0
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name", "change"),
+    [
+        ("position", "wheel_centre", 1e-9),
+        ("velocity", "strut_lower", 1e-8),
+        ("acceleration", "tie_rod_outer", 1e-7),
+        ("angular_velocity", "knuckle", 1e-8),
+        ("angular_acceleration", "knuckle", 1e-7),
+        ("wheel", "camber", 1e-10),
+    ],
+)
+def test_a_wrong_number_of_any_quantity_is_wrong(
+    scene: Scene, truth: Solution, solution: Solution, quantity: str, name: str, change: float
+) -> None:
+    assert judged_answer(scene, solution, truth).outcome == "right"
+    answer = judged_answer(scene, planted(solution, quantity, name, change), truth)
+    assert answer.outcome == "wrong"
+    assert f"{quantity.replace('_', ' ')} of {name}" in answer.reason
+
+
+def test_a_missing_number_is_wrong_unless_a_note_says_so(
+    scene: Scene, truth: Solution, solution: Solution
+) -> None:
+    note = ("angular velocity of knuckle is not a number at 1 of 3 instants",)
+    silent = planted(solution, "angular_velocity", "knuckle", math.nan)
+    assert judged_answer(scene, silent, truth).outcome == "wrong"
+    said = planted(solution, "angular_velocity", "knuckle", math.nan, note)
+    assert judged_answer(scene, said, truth).outcome == "noted"
+    # The note speaks of numbers that are not there, and of no other quantity.
+    other = planted(said, "acceleration", "strut_lower", 1.0, note)
+    assert judged_answer(scene, other, truth).outcome == "wrong"
+    off = planted(solution, "angular_velocity", "knuckle", 1.0, note)
+    assert judged_answer(scene, off, truth).outcome == "wrong"
+    lost = planted(solution, "position", "strut_lower", math.nan, note)
+    assert judged_answer(scene, lost, truth).outcome == "wrong"
+
+
+def test_an_infinite_bound_does_not_make_a_number_right(
+    scene: Scene, truth: Solution, solution: Solution
+) -> None:
+    accuracy = replace(solution.accuracy, pose_error=np.array([1e-12, math.inf, 1e-12]))
+    answer = judged_answer(scene, replace(solution, accuracy=accuracy), truth)
+    assert answer.outcome == "noted"
+    assert "no finite bound" in answer.reason
+
+
+def test_any_answer_is_wrong_where_the_links_cannot_meet(
+    monkeypatch: pytest.MonkeyPatch, solution: Solution
+) -> None:
+    stand_in(monkeypatch, lambda scene: solution)
+    (answer,) = try_scene(1.0, paper_car(rack=131.0), ("stand-in",)).answers
+    assert answer.outcome == "wrong"
+    assert "tie_rod closure" in answer.reason
+
+
+def test_a_refusal_is_no_wrong_number_and_keeps_its_reason() -> None:
+    result = try_scene(1.0, paper_car(rack=131.0), OURS)
+    assert [a.outcome for a in result.answers] == ["refused", "refused"]
+    assert "AssemblyError" in result.answers[0].reason
+    assert "InfeasibleError" in str(result.facts["truth"])
+
+
+def test_a_scene_that_cannot_be_read_is_refused_by_all() -> None:
+    result = try_scene(1.0, paper_car(math.nan), OURS)
+    assert [a.outcome for a in result.answers] == ["refused", "refused"]
+    assert "inputs.arm_angle.constant" in result.answers[0].reason
+
+
+def test_a_crash_is_a_wrong_answer_and_does_not_stop_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    def crash(scene: Scene) -> Solution:
+        raise ZeroDivisionError("in a row")
+
+    stand_in(monkeypatch, crash)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert (answer.outcome, answer.reason) == ("wrong", "fails: ZeroDivisionError: in a row")
+
+
+def test_a_warning_is_a_crash(monkeypatch: pytest.MonkeyPatch, solution: Solution) -> None:
+    def warn(scene: Scene) -> Solution:
+        warnings.warn("overflow", RuntimeWarning, stacklevel=1)
+        return solution
+
+    stand_in(monkeypatch, warn)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert answer.outcome == "wrong"
+    assert "RuntimeWarning" in answer.reason
+
+
+def test_the_absolute_model_is_judged_by_sensitivities_even_where_pointcoord_refuses(
+    scene: Scene, truth: Solution, solution: Solution
+) -> None:
+    """They belong to the pose: a car drawn anew there has the same, but for the size it is counted in."""
+    first, second = redrawn_sensitivities(scene, truth)
+    for mine, its in (
+        (first, solution.accuracy.velocity_sensitivity),
+        (second, solution.accuracy.acceleration_sensitivity),
+    ):
+        assert (mine > 0.0).all()
+        assert (np.abs(np.log2(mine / its)) < 0.1).all()
+
+
+def made_case(answers: dict[float, Answer], expected: Expected = RIGHT, name: str = "absolute") -> Case:
+    """A case with given answers."""
+    return Case(
+        "made", "0. Made", "it is made", "a number", tuple(answers), {name: expected}, "none",
+        lambda value: Trial(value, (answers[value],), {"size": math.inf}),
+    )  # fmt: skip
+
+
+def test_a_wrong_number_without_warning_is_never_expected_but_of_the_printed_formulas() -> None:
+    wrong = Answer("absolute", "wrong", "far off", share=math.inf)
+    allowed = examine(made_case({1.0: wrong}, FAILS))
+    assert not allowed.unexpected
+    assert not as_expected([allowed])
+    printed = examine(made_case({1.0: replace(wrong, formulation="printed")}, FAILS, "printed"))
+    assert as_expected([printed])
+
+
+def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
+    refused = examine(
+        made_case({1.0: Answer("absolute", "right"), 0.1: Answer("absolute", "refused", "why")})
+    )
+    assert not as_expected([refused])
+    assert refused.gives_up("absolute") == (1, Answer("absolute", "refused", "why"))
+    assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in case_text(refused)
+    assert "gives up at 0.1: why" in case_text(refused)
+    assert "NOT as expected: 1 answers, 0 of them wrong" in summary_text([refused])
+    # A value without an answer breaks the trial, not the run.
+    broken = examine(replace(made_case({1.0: Answer("absolute", "right")}), values=(1.0, 2.0)))
+    assert [answer.outcome for _, answer in broken.answers("absolute")] == ["right", "unjudged"]
+    assert "KeyError" in broken.answers("absolute")[1][1].reason
+    assert not as_expected([broken])
+
+
+def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -> None:
+    case = scene_case(
+        name="beyond",
+        group="0. Made",
+        why="it is made",
+        parameter="rack travel, mm",
+        values=(0.0, 131.0),
+        scene=lambda value: paper_car(rack=value),
+        expected={"pointcoord": FAILS, "absolute": RIGHT},
+        behaviour="none",
+    )
+    result = examine(case)
+    mended = replace(
+        result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
+    )
+    text = case_text(replace(result, trials=(result.trials[0], mended)), every_value=True)
+    assert "absolute gives up at 131, where pointcoord does not: that one never does." in text
+    data = results_data([replace(result, trials=(result.trials[0], mended))])
+    assert data["cases"][0]["trials"][1]["answers"][0]["share"] is None
+    assert data["cases"][0]["expected"]["absolute"]["right_from"] is None
+
+
+def test_decades_are_evenly_spaced_going_in() -> None:
+    steps = np.diff(np.log10(decades(-12, 0)))
+    assert np.allclose(steps, -1.0, rtol=0, atol=1e-14)
+    assert decades(-12, 0)[0] == 1.0
+    assert decades(-12, 0)[-1] == 1e-12
+
+
+def test_a_formulations_refusal_is_told_by_its_own_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(scene: Scene) -> Solution:
+        raise FormulationError("stand-in", ValueError("its\n reason"))
+
+    stand_in(monkeypatch, refuse)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert (answer.outcome, answer.reason) == ("refused", "ValueError: its reason")

@@ -1,0 +1,94 @@
+"""`pointcoord hard` as its users meet it: text, JSON, exit status, and one line for every mistake."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from validate.cli import main
+from validate.hard import catalogue
+from validate.hard.case import RIGHT, Answer, Case, Trial
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A catalogue of two small cases, of which one goes wrong."""
+
+    def case(name: str, formulation: str) -> Case:
+        answer = Answer(formulation, "wrong", "far off")
+        return Case(
+            name, "0. Made", "it is made", "a number", (1.0,), {formulation: RIGHT}, "none",
+            lambda value: Trial(value, (answer,)),
+        )  # fmt: skip
+
+    monkeypatch.setattr(catalogue, "CASES", (case("ours-fails", "pointcoord"), case("quiet", "absolute")))
+
+
+def test_a_named_case_prints_a_row_per_formulation_and_per_value(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "omega-in-the-knuckle-plane"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "== 4. Body rates" in out
+    assert "omega-in-the-knuckle-plane: omega lies in the plane" in out
+    for name in ("pointcoord", "pointcoord-newton", "absolute", "printed"):
+        # Once in the summary of the case, once for each of its 13 values, once in the counts.
+        assert sum(name in line.split() for line in out.splitlines()) >= 15
+    assert "error of it, printed [rad/s]" in out
+    assert "All as expected" in out
+
+
+def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "at-rest", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    data = json.loads(out)
+    assert data["as_expected"] is True
+    (case,) = data["cases"]
+    assert case["name"] == "at-rest"
+    assert len(case["trials"]) == len(case["values"]) == 13
+    assert all(len(trial["answers"]) == 3 for trial in case["trials"])
+    assert data["counts"]["absolute"] == {"right": 13}
+
+
+def test_json_goes_to_a_file_beside_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "hard.json"
+    assert main(["hard", "at-rest", "--json", str(target)]) == 0
+    assert "at-rest" in capsys.readouterr().out
+    assert json.loads(target.read_text())["cases"][0]["unit"] == "mm"
+
+
+def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "--list"]) == 0
+    out, _ = capsys.readouterr()
+    assert catalogue.CASES
+    for case in catalogue.CASES:
+        assert f"  {case.name}: {case.why}" in out.splitlines()
+        assert case.group in out.splitlines()
+
+
+def test_a_name_that_no_case_has_ends_with_2_and_near_names(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "at-rests"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert "'at-rests'" in line
+    assert "near names: at-rest" in line
+    assert "pointcoord hard --list" in line
+
+
+@pytest.mark.usefixtures("made")
+def test_a_wrong_number_without_a_warning_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard"]) == 1
+    out, _ = capsys.readouterr()
+    assert "NOT AS EXPECTED: pointcoord is wrong at 1: far off" in out
+    assert "NOT as expected: 2 answers, 2 of them wrong without a warning, in ours-fails, quiet." in out
+    assert out.count("== 0. Made") == 1
+
+
+def test_names_are_unique_and_every_case_leads_somewhere() -> None:
+    names = [case.name for case in catalogue.CASES]
+    assert len(set(names)) == len(names)
+    for case in catalogue.CASES:
+        assert case.values, case.name
+        assert case.expected, case.name
+        assert len(set(case.values)) == len(case.values), case.name
