@@ -238,7 +238,7 @@ def stopped(
         reached=told(known),
         wanted=told(goal),
         condition=float(factors.condition[member]),
-        reduce=max(going, key=going.__getitem__),
+        reduce=max(going, key=going.__getitem__) if any(going.values()) else "",
         limits=mechanism.topology.strongest(weakest_balance(factors.matrix[member])),
         instant=instant,
     )

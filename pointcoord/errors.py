@@ -88,7 +88,8 @@ class AssemblyError(PointcoordError):
         wanted: value of every input that was asked for.
         instant: time of the wanted pose, s, if it belongs to a motion.
         condition: condition number at the last assembled pose.
-        reduce: the input with the most still to go, measured as its driven coordinate.
+        reduce: the input with the most still to go, measured as its driven coordinate; empty if none has
+            any way left, so that the drawing itself does not close.
         limits: the links and joints that hold each other there, the strongest first.
         partial: the motion up to the last assembled instant, if any.
     """
@@ -116,10 +117,13 @@ class AssemblyError(PointcoordError):
         when = "" if instant is None else f" at t = {instant:.6g} s"
         goals = ", ".join(f"{name} = {value:.10g}" for name, value in wanted.items())
         stops = ", ".join(f"{name} = {value:.10g}" for name, value in reached.items())
+        advice = (
+            f"bring {reduce!r} back towards its value there" if reduce else "draw these nearer to closing"
+        )
         super().__init__(
             f"{problem}{when}: wanted {goals}; assembly stopped at {stops} "
             f"(condition number {condition:.2g}), limited by {', '.join(limits[:3]) or 'an unknown link'}; "
-            f"bring {reduce!r} back towards its value there"
+            f"{advice}"
         )
 
 

@@ -240,3 +240,16 @@ def test_branch_is_kept_past_the_near_singular_place_at_35_degrees(strut: Mechan
     assert (signs == signs[0]).all()
     assert walk.condition[5] > walk.condition[:5].max()
     assert walk.condition[5] > walk.condition[6:].max()
+
+
+def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
+    make_scene: Callable[..., Scene], table: Points
+) -> None:
+    # The strut's lower point 200 mm in front of its line: no input is to blame, the drawing is.
+    x, y, z = table["strut_lower"]
+    with pytest.raises(
+        AssemblyError, match="the drawing cannot be assembled.*; draw these nearer to closing"
+    ) as caught:
+        simulate(make_scene(points={**table, "strut_lower": (x - 200.0, y, z)}))
+    assert caught.value.reduce == ""
+    assert any("strut_lower" in name for name in caught.value.limits)
