@@ -1,0 +1,237 @@
+"""Cars far from the origin, very small and very large cars, and links of very different length in one car.
+
+The error has to grow with the size of the mechanism, not with its distance from the origin. The paper's
+hardpoints are whole millimetres, so a shift by whole millimetres is exact, and so is a scale by a power of
+two: nothing changes but the place or the unit. The car at home says what a rate may be off by far away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from validate.formulation import Solution
+from validate.hard.case import RIGHT, Answer, Case, Expected, Trial
+from validate.hard.content import decades, paper_car
+from validate.hard.judged import judged_answer
+from validate.hard.near_points import assembled, drawn_angle, nearer
+from validate.hard.sensitivity import with_sensitivities
+from validate.hard.sides import try_on_side
+from validate.hard.trial import Tried, solved, try_scene
+from validate.singular import PAPER
+from validate.verdicts import true_solution
+
+Array = NDArray[np.float64]
+
+GROUP = "6. Far from the origin, and mixed sizes"
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+AWAY = (1.0, -1.0, 3.0)
+# A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
+# own coordinates are up to 8 sizes instead of 1, and rounded so much more coarsely.
+PLACED = 8.0
+EPS = float(np.finfo(float).eps)
+RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
+# A thousand times the rest of the car is as mixed as parts of one machine are.
+MIXED = Expected(("right", "refused"), right_from=1e-3)
+
+# Beyond 1e9 mm a millimetre is less than one part in 1e9: a model may decline to take that for a drawing.
+NEARER = Expected(("right", "refused"), right_from=1e-9)
+
+
+def moved_car(distance: float) -> dict[str, Any]:
+    """The paper's car in motion, with its origin some whole millimetres away."""
+    points = {name: np.array(place) + distance * np.array(AWAY) for name, place in PAPER.items()}
+    return paper_car(
+        (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), points={n: p.tolist() for n, p in points.items()}, stop=0.4
+    )
+
+
+@cache
+def at_home(name: str) -> tuple[Solution, Mapping[str, float]]:
+    """A formulation's solution of the car at home, and its largest error of each quantity."""
+    scene = Scene.from_mapping(moved_car(0.0))
+    solution = solved(name, scene)
+    assert isinstance(solution, Solution)  # it is the paper's own car
+    still = np.zeros(len(scene.instants))
+    return solution, errors(solution, true_solution(scene, still, still))
+
+
+def errors(solution: Solution, truth: Solution) -> dict[str, float]:
+    """Largest error of each quantity that does not know where the origin is."""
+    return {
+        quantity: max(
+            float(np.abs(array - getattr(truth, quantity)[name]).max())
+            for name, array in getattr(solution, quantity).items()
+        )
+        for quantity in RATES
+    }
+
+
+def far(value: float) -> Trial:
+    """The moved car, each rate held to what the car at home may be off by."""
+    content = moved_car(1.0 / value)
+    found: list[Tried] = []
+
+    def measure(tried: Tried) -> Mapping[str, float | str]:
+        found.append(tried)
+        if tried.truth is None:
+            return {}
+        ratios: dict[str, float | str] = {}
+        for name, solution in tried.solutions.items():
+            home = at_home(name)[1]
+            for quantity, error in errors(solution, tried.truth).items():
+                text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
+                ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
+        return ratios
+
+    trial = try_scene(value, content, SOLVERS, measure)
+    tried = found[0]
+    answers = tuple(
+        _as_at_home(a, tried) if a.outcome == "right" and tried.truth is not None else a
+        for a in trial.answers
+    )
+    return replace(trial, answers=answers)
+
+
+def _as_at_home(answer: Answer, tried: Tried) -> Answer:
+    """An answer that is right by its own bounds, held to those that the car has at home as well.
+
+    Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
+    angles are allowed nothing more than at home.
+    """
+    assert tried.truth is not None
+    solution, home = tried.solutions[answer.formulation], at_home(answer.formulation)[0]
+    places, near = solution.position, home.position
+    farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
+    for away, position in ((farthest, places), (nearest, tried.truth.position)):
+        held_to = replace(
+            home.accuracy,
+            pose_error=PLACED * home.accuracy.pose_error,
+            condition=PLACED * home.accuracy.condition,
+            stored=PLACED * home.accuracy.stored + EPS * away,
+        )
+        strict = replace(solution, position=position, accuracy=held_to)
+        truth = with_sensitivities(tried.scene, tried.truth, strict, tried.solutions)
+        truth = replace(truth, accuracy=replace(truth.accuracy, stored=np.full(len(truth.times), EPS * away)))
+        judged = judged_answer(tried.scene, strict, truth)
+        if judged.outcome != "right":
+            return replace(
+                answer, outcome="wrong", reason=f"by the bounds of the car at home: {judged.reason}"
+            )
+    return answer
+
+
+def scaled_car(scale: float) -> dict[str, Any]:
+    """The paper's car in motion, all lengths multiplied."""
+    points = {name: [scale * x for x in place] for name, place in PAPER.items()}
+    return paper_car(
+        (1.5, 0.25, 0.125),
+        (0.0, 30.0 * scale, 10.0 * scale),
+        points=points,
+        tolerance=1e-9 * scale,
+        stop=0.4,
+    )
+
+
+def lengthened(value: float, moved: tuple[str, ...], base: str) -> dict[str, Array]:
+    """Points moved away from another until they are 1 / value times as far from it."""
+    p = assembled()
+    return {n: p[base] + (x - p[base]) / value if n in moved else x for n, x in p.items()}
+
+
+def mixed(value: float, points: Callable[[float], Mapping[str, Array]], shrinking: bool) -> dict[str, Any]:
+    """A motion of a car with a link that is out of proportion; a short link follows no more than itself."""
+    share = value if shrinking else 1.0
+    return paper_car(
+        (drawn_angle(), 0.1 * share, 0.05 * share),
+        (0.0, 10.0 * share, 5.0 * share),
+        points={name: place.tolist() for name, place in points(value).items()},
+        stop=1.0,
+    )
+
+
+def _mixed_case(
+    name: str, why: str, parameter: str, points: Callable[[float], Mapping[str, Array]], shrinking: bool
+) -> Case:
+    return Case(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter=parameter,
+        values=decades(-6),
+        expected=dict.fromkeys(SOLVERS, MIXED),
+        behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
+        examine=lambda value: try_on_side(value, mixed(value, points, shrinking), SOLVERS),
+    )
+
+
+def _sizes(name: str, why: str, values: tuple[float, ...]) -> Case:
+    return Case(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter="size, in parts of the paper's car of some 500 mm",
+        values=values,
+        expected=dict.fromkeys(SOLVERS, RIGHT),
+        behaviour="right at every size, 1e-3 mm to 1e6 mm",
+        examine=lambda value: try_scene(value, scaled_car(value), SOLVERS),
+    )
+
+
+LONG = "how long it is in the paper's car over how long it is"
+CASES: tuple[Case, ...] = (
+    Case(
+        name="far-from-the-origin",
+        group=GROUP,
+        why="Coordinates far from the origin keep few digits of the car, and differences of them lose more.",
+        parameter="1 mm over the distance along x; thrice as far along z",
+        values=decades(),
+        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
+        behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
+        examine=far,
+    ),
+    _sizes(
+        "sizes-by-powers-of-two",
+        "Squares of small and large lengths differ by twice as many decades as the lengths.",
+        tuple(2.0**k for k in range(11, -20, -3)),
+    ),
+    _sizes(
+        "sizes-by-powers-of-ten",
+        "As by powers of two, and every coordinate is rounded anew.",
+        decades(-6, 4),
+    ),
+    _mixed_case(
+        "tie-rod-at-the-strut",
+        "The tie rod ends a thousandth of a millimetre from the strut's foot, in a car of 500 mm.",
+        "distance, in parts of what it is in the paper's car",
+        nearer("tie_rod_outer", "strut_lower"),
+        True,
+    ),
+    _mixed_case(
+        "tie-rod-long",
+        "The tie rod is up to 1e8 mm long, so that its outer end moves on what is nearly a plane.",
+        LONG,
+        partial(lengthened, moved=("tie_rod_inner", "rack_centre"), base="tie_rod_outer"),
+        False,
+    ),
+    _mixed_case(
+        "strut-long",
+        "The strut is up to 1e8 mm long, so that its direction hardly changes.",
+        LONG,
+        partial(lengthened, moved=("strut_top", "strut_rod_end"), base="lower_ball_joint"),
+        False,
+    ),
+    _mixed_case(
+        "arm-long",
+        "The arm is up to 1e8 mm long, so that a small angle is a long way; the angle shrinks with it.",
+        LONG,
+        partial(lengthened, moved=("lower_arm_front", "lower_arm_rear"), base="lower_ball_joint"),
+        True,
+    ),
+)
