@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -68,22 +67,6 @@ def drawn_at(car: Car, arm_angle: float, rack: float) -> Car:
     )
     points = {name: pose.position_as_float(name) for name in car.points}
     return Car(points, car.side, car.up, car.right)
-
-
-def body_rates_at(car: Car, arm_angle: Sequence[float], rack: Sequence[float]) -> Mapping[str, Array]:
-    """True angular velocity and acceleration of the knuckle for inputs (value, rate, acceleration)."""
-    pose = solve_truth(
-        car.points,
-        {"arm_angle": tuple(arm_angle), "rack": tuple(rack)},
-        up=car.up,
-        right=car.right,
-        side=car.side,
-    )
-    spin, change = pose.angular_velocity["knuckle"], pose.angular_acceleration["knuckle"]
-    return {
-        "angular_velocity": np.array([float(x) for x in spin]),
-        "angular_acceleration": np.array([float(x) for x in change]),
-    }
 
 
 def _triple(vector: Array) -> tuple[float, float, float]:

@@ -5,15 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from validate.hard import body_rates, dead_points, flat_strut, laws, spans
+from validate.hard import (
+    body_rates,
+    branches,
+    dead_points,
+    far_and_mixed,
+    flat_strut,
+    laws,
+    near_points,
+    reach,
+    spans,
+)
 from validate.hard.case import Case
 
 CASES: tuple[Case, ...] = (
     *dead_points.CASES,
     *flat_strut.CASES,
     *body_rates.CASES,
+    *near_points.CASES,
+    *far_and_mixed.CASES,
     *laws.CASES,
     *spans.CASES,
+    *branches.CASES,
+    *reach.CASES,
 )
 
 

@@ -20,8 +20,6 @@ from validate.hard.case import Answer, Outcome
 
 Array = NDArray[np.float64]
 
-NOTED_QUANTITIES = ("angular_velocity", "angular_acceleration")
-
 
 def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
     """Hold all numbers of a solution to the truth, which knows the sensitivities that tolerances need."""
@@ -65,14 +63,23 @@ def _finite_throughout(answer: Solution) -> bool:
 
 def _without_noted(answer: Solution, truth: Solution) -> Solution:
     """The answer with the truth in place of what is not finite and has a note."""
-    mended: dict[str, dict[str, Array]] = {}
-    for quantity in NOTED_QUANTITIES:
-        said = any(note.startswith(quantity.replace("_", " ") + " of") for note in answer.notes)
-        given: Mapping[str, Array] = getattr(answer, quantity)
-        if said:
-            true = getattr(truth, quantity)
-            mended[quantity] = {n: np.where(np.isfinite(a), a, true[n]) for n, a in given.items()}
-    return replace(answer, **mended)  # type: ignore[arg-type]
+    return replace(
+        answer,
+        angular_velocity=_mended(
+            answer.angular_velocity, truth.angular_velocity, "angular velocity", answer.notes
+        ),
+        angular_acceleration=_mended(
+            answer.angular_acceleration, truth.angular_acceleration, "angular acceleration", answer.notes
+        ),
+    )
+
+
+def _mended(
+    given: Mapping[str, Array], true: Mapping[str, Array], quantity: str, notes: tuple[str, ...]
+) -> Mapping[str, Array]:
+    if not any(note.startswith(f"{quantity} of") for note in notes):
+        return given
+    return {name: np.where(np.isfinite(array), array, true[name]) for name, array in given.items()}
 
 
 def _error(answer: Solution, truth: Solution) -> float:
@@ -86,12 +93,12 @@ def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:
         return where
     if outcome == "noted" and not _bounded(answer.accuracy):
         return f"{where}: no finite bound is given"
-    notes = "; ".join(answer.notes)
-    said = f"; noted: {notes}" if outcome == "noted" else ""
-    return (
-        f"{where} is off by {worst.difference:.2g} {worst.unit}, "
-        f"{worst.share:.2g} of what is allowed, at t = {worst.instant:.6g} s{said}"
-    )
+    if np.isfinite(worst.difference):
+        off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
+    else:
+        off = "is not a number"
+    said = f"; noted: {'; '.join(answer.notes)}" if outcome == "noted" else ""
+    return f"{where} {off} at t = {worst.instant:.6g} s{said}"
 
 
 def _finite(number: float) -> float | None:
