@@ -14,7 +14,7 @@ from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
 from validate.hard import trial
 from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
-from validate.hard.judged import judged_answer
+from validate.hard.judged import judged_answer, without_dust
 from validate.hard.report import case_text, results_data, summary_text
 from validate.hard.run import as_expected, examine
 from validate.hard.sensitivity import redrawn_sensitivities
@@ -119,6 +119,21 @@ def test_an_infinite_bound_does_not_make_a_number_right(
     answer = judged_answer(scene, replace(solution, accuracy=accuracy), truth)
     assert answer.outcome == "noted"
     assert "no finite bound" in answer.reason
+
+
+def test_the_truths_own_dust_about_zero_is_zero_and_nothing_else_is(truth: Solution) -> None:
+    """A chassis that heaves evenly: no point accelerates, and the truth says so up to its 60 digits."""
+    even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
+    still = true_solution(even, np.zeros(3), np.zeros(3))
+    largest = max(float(np.abs(array).max()) for array in still.acceleration.values())
+    assert 0.0 < largest < 1e-100
+    swept = without_dust(still)
+    assert all((array == 0.0).all() for array in swept.acceleration.values())
+    assert np.array_equal(swept.velocity["strut_top"], still.velocity["strut_top"])
+    # Where the car moves, a rate ten digits below the others is a number like any.
+    small = planted(truth, "velocity", "strut_top", 1e-10)
+    for name, array in without_dust(small).velocity.items():
+        assert np.array_equal(array, small.velocity[name])
 
 
 def test_any_answer_is_wrong_where_the_links_cannot_meet(

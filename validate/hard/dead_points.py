@@ -70,7 +70,12 @@ def _arm_case(name: str, car_key: str, place: int, law: str) -> Case:
 
     which = ("highest", "lowest")[place]
     return _case(
-        name, ARM_GROUP, law, f"the ball joint is {which} on its circle: its height says no more", content
+        name,
+        ARM_GROUP,
+        law,
+        car_key,
+        f"the ball joint is {which} on its circle: its height says no more",
+        content,
     )
 
 
@@ -84,7 +89,7 @@ def _toggle_case(name: str, car_key: str, place: int, law: str, arm_angle: float
 
     how = ("at its least", "at its greatest")[place]
     why = f"the rack is {how} travel at {arm_angle:.4g} rad: tie rod and steering arm lie in line"
-    return _case(name, TOGGLE_GROUP, law, why, content)
+    return _case(name, TOGGLE_GROUP, law, car_key, why, content)
 
 
 def _content(
@@ -96,7 +101,9 @@ def _content(
     return car_content(car, *inputs(near))
 
 
-def _case(name: str, group: str, law: str, why: str, content: Callable[[float], dict[str, Any]]) -> Case:
+def _case(
+    name: str, group: str, law: str, car_key: str, why: str, content: Callable[[float], dict[str, Any]]
+) -> Case:
     more = {
         "held": "",
         "moving": "; the motion ends near it, with rates as the inverse root of the distance",
@@ -107,7 +114,8 @@ def _case(name: str, group: str, law: str, why: str, content: Callable[[float], 
         group=group,
         why=why + more[law],
         parameter=DISTANCE,
-        values=decades(-12, -1),
+        # Coming closer from beyond, or with another car, is tried every second decade.
+        values=decades(-12, -1) if law != "beyond" and car_key == "" else decades(-12, -2)[::2],
         scene=content,
         expected=BEYOND if law == "beyond" else near_end(law),
         behaviour=OUTSIDE if law == "beyond" else inside(law),

@@ -19,7 +19,7 @@ from validate.formulations import MissingPackage, formulation
 from validate.hard.case import Answer, Case, Expected, Trial
 from validate.hard.content import decades as decades
 from validate.hard.content import paper_car as paper_car
-from validate.hard.judged import judged_answer
+from validate.hard.judged import judged_answer, without_dust
 from validate.hard.sensitivity import with_sensitivities
 from validate.truth import InfeasibleError, TruthError
 from validate.verdicts import true_solution
@@ -130,7 +130,7 @@ def _truth(scene: Scene) -> Solution | Exception:
     """The truth, or why there is none."""
     still = np.zeros(len(scene.instants))
     try:
-        return true_solution(scene, still, still)
+        return without_dust(true_solution(scene, still, still))
     except TruthError as error:
         return error
     except (ValueError, ArithmeticError) as error:
