@@ -12,8 +12,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, simulate
+from pointcoord import AssemblyError, Scene, simulate
+from validate.formulation import FormulationError
+from validate.formulations import formulation
+from validate.hard import blocked_ways
 from validate.hard.case import unexpected, wrong_without_warning
+from validate.hard.content import paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import car_called, home, last_value, reachable
 from validate.hard.reach import CASES, Drive, _refusal
@@ -127,6 +131,32 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     short = {name: array[:-1] for name, array in place.items()}
     cut = SimpleNamespace(partial=replace(motion, position=short))
     assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda r, end: blocked_ways.moved_on("absolute", r, end, 1e-7), "no pose just before"),
+        (lambda r, end: blocked_ways.moved_on("absolute", r, end, -1e-7), "a pose just beyond"),
+        (lambda r, end: r | {"rack": r["rack"] * (1.0 - 1e-6)}, "does not lie on the way"),
+        (lambda r, end: {}, "does not say how far"),
+    ],
+)
+def test_a_way_is_blocked_where_the_truth_loses_its_pose(
+    change: Callable[[dict[str, float], dict[str, float]], dict[str, Any]], says: str
+) -> None:
+    end = blocked_ways.goal(0.1)
+    scene = Scene.from_mapping(paper_car(end["arm_angle"], end["rack"]))
+    with pytest.raises(FormulationError) as caught:
+        formulation("absolute").solve(scene)
+    reached: dict[str, float] = caught.value.reason.reached  # type: ignore[attr-defined]
+    told = Exception("no way on")
+    for edit, outcome in ((lambda r, _: r, "right"), (change, "wrong")):
+        values = {name: float(value) for name, value in edit(reached, end).items()}
+        told.reached = values  # type: ignore[attr-defined]
+        answer = blocked_ways.judged("absolute", told, end)
+        assert answer.outcome == outcome
+    assert says in answer.reason
 
 
 def test_the_overshoot_of_the_arm_ends_where_angles_do() -> None:

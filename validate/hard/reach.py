@@ -16,6 +16,7 @@ import numpy as np
 from pointcoord import AssemblyError, Scene
 from validate.formulation import FormulationError
 from validate.formulations import formulation
+from validate.hard.blocked_ways import blocked_way
 from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Answer, Case, Trial
 from validate.hard.content import Law, decades, paper_car
 from validate.hard.kept import fault_of_kept
@@ -243,6 +244,7 @@ CASES: tuple[Case, ...] = (
         )
         for (driven, ahead), (name, where) in ENDS.items()
     ),
+    blocked_way(GROUP, FEW),
     scene_case(
         name="heave-has-no-end",
         group=GROUP,
