@@ -1,6 +1,8 @@
 """`pointcoord hard` as its users meet it: text, JSON, exit status, and one line for every mistake."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -92,3 +94,17 @@ def test_names_are_unique_and_every_case_leads_somewhere() -> None:
         assert case.values, case.name
         assert case.expected, case.name
         assert len(set(case.values)) == len(case.values), case.name
+
+
+def test_without_the_packages_of_the_truth_one_line_says_what_to_install() -> None:
+    program = (
+        "import sys; sys.modules['flint'] = None\n"
+        "from validate.cli import main\n"
+        "raise SystemExit(main(['hard', '--list']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert "'flint'" in line
+    assert "pip install 'pointcoord[validate]'" in line

@@ -12,7 +12,9 @@ from validate.hard import (
     far_and_mixed,
     flat_strut,
     laws,
+    links,
     near_points,
+    numbers,
     reach,
     spans,
 )
@@ -28,6 +30,8 @@ CASES: tuple[Case, ...] = (
     *spans.CASES,
     *branches.CASES,
     *reach.CASES,
+    *links.CASES,
+    *numbers.CASES,
 )
 
 
