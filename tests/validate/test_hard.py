@@ -240,7 +240,7 @@ def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -
         result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
     )
     text = case_text(replace(result, trials=(result.trials[0], mended)), every_value=True)
-    assert "absolute gives up at 131, where pointcoord does not: that one never does." in text
+    assert "absolute gives up at 131, before pointcoord, which never gives up." in text
     data = results_data([replace(result, trials=(result.trials[0], mended))])
     assert data["cases"][0]["trials"][1]["answers"][0]["share"] is None
     assert data["cases"][0]["expected"]["absolute"]["right_from"] is None

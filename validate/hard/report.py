@@ -81,8 +81,8 @@ def _who_gives_up_first(result: Examined) -> list[str]:
         return []
     earlier, later = (OURS, OTHER) if places[0] < places[1] else (OTHER, OURS)
     first, last = int(min(places)), max(places)
-    rest = "never does" if last == math.inf else f"goes on to {result.trials[int(last)].value:g}"
-    return [f"{earlier} gives up at {result.trials[first].value:g}, where {later} does not: that one {rest}."]
+    rest = "never gives up" if last == math.inf else f"gives up at {result.trials[int(last)].value:g}"
+    return [f"{earlier} gives up at {result.trials[first].value:g}, before {later}, which {rest}."]
 
 
 _VALUE_HEAD = ("value", "formulation", "outcome", "error", "bound", "of its bound", "condition", "verdict")
