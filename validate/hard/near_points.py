@@ -27,7 +27,7 @@ GROUP = "5. Points nearly in line or nearly coincident"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 RIGHT_FROM = 1e-2  # a millimetre or so, as there may be in a car: it must be solved
 SOLVED = Expected(("right", "refused"), right_from=RIGHT_FROM)
-SLOW = decades()[::2]  # a refusal takes half a second here
+SLOW = decades()[::3]  # a refusal takes half a second here
 
 
 @cache

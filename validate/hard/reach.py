@@ -219,7 +219,7 @@ ENDS = {
     ("rack", True): ("rack-greatest", "Tie rod and steering arm lie in line"),
 }
 # Every refusal is a whole motion towards a fold, so few values must do.
-SOME, FEW = decades()[::3], decades()[::6]
+SOME, FEW, ENDS_ONLY = decades()[::4], decades()[::6], decades()[::12]
 
 CASES: tuple[Case, ...] = (
     *(
@@ -231,7 +231,7 @@ CASES: tuple[Case, ...] = (
             Drive("turned", driven, ahead),
             f"reach-{name}-turned",
             f"{where}, in a car mirrored, turned and 4e6 mm from the origin",
-            FEW,
+            ENDS_ONLY,
         )
         for (driven, ahead), (name, where) in ENDS.items()
     ),
