@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,13 +15,12 @@ from validate.formulations import formulation
 from validate.hard.branches import (
     CASES,
     SOLVERS,
-    counted,
     flat_car,
     from_a_flat_drawing,
-    meeting,
     through_the_meeting,
 )
 from validate.hard.content import paper_car
+from validate.hard.counting import beside_meeting, counted, meeting, near_greatest_rack, near_lowest_arm
 from validate.hard.oriented import followed, sides
 from validate.hard.sides import drawn_choices, try_on_side
 from validate.hard.trial import Tried
@@ -80,7 +80,9 @@ def test_the_flat_drawing_stands_at_its_height_and_on_its_side(share: float, mir
     assert (signs[0].tie != signs[1].tie) == mirrored
 
 
-@pytest.mark.parametrize("name", ["crooked-drawing", "flat-drawing", "far-start-rack", "assemblies-counted"])
+@pytest.mark.parametrize(
+    "name", ["crooked-drawing", "flat-drawing", "far-start-rack", "assemblies-counted-arm"]
+)
 def test_the_branch_of_the_drawing_is_kept_far_from_the_singular_place(name: str) -> None:
     case = BY_NAME[name]
     trial = case.examine(case.values[0])
@@ -142,8 +144,11 @@ def test_sides_are_products_of_unit_vectors() -> None:
     assert all(float(value) > 0.0 for value in facts.values())
 
 
-def test_all_assemblies_that_can_exist_are_found_far_from_the_end() -> None:
-    facts = counted(0.1).facts
+@pytest.mark.parametrize("pose", [near_greatest_rack, near_lowest_arm, beside_meeting])
+def test_all_assemblies_that_can_exist_are_found_far_from_a_singular_pose(
+    pose: Callable[[float], tuple[float, float]],
+) -> None:
+    facts = counted(0.1, pose).facts
     # The search knows nothing of the closed forms, which allow two assemblies at least: both sides.
     assert float(facts["assemblies found, proven"]) == float(facts["assemblies possible"]) >= 2.0
     assert float(facts["starts"]) >= 1000.0

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
-from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
+from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected
 from validate.hard.content import SQUARE, Law, decades, paper_car
+from validate.hard.counting import counting_cases, meeting
 from validate.hard.last_values import car_called, last_value
 from validate.hard.near_points import assembled, drawn_angle
 from validate.hard.oriented import followed
@@ -25,36 +25,13 @@ from validate.hard.sides import try_on_side
 from validate.hard.trial import Facts, Tried
 from validate.input_ends import Linkage
 from validate.singular import PAPER
-from validate.truth import count_assemblies
 
 GROUP = "8. Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 WIDE = 0.05  # rad: half the motion through the place where the branches nearly meet
-STARTS = 1000
 # A motion through such a place takes half a second, so few values must do.
 EVEN, ODD, FEW = decades()[::2], (*decades(-11, -1)[::2], 1e-12), decades()[::4]
 CLEAR = Expected(("right", "refused"), right_from=1e-6)
-
-
-@cache
-def meeting() -> tuple[float, float]:
-    """Arm angle and rack travel, rad and mm, at which the two sides of the tie rod just meet, near 35 deg.
-
-    At less rack travel the arm cannot pass this angle, at more it can; there `spare` has a minimum of 0.
-    """
-    linkage = Linkage.of(car_called("paper"))
-
-    def least(rack: float) -> tuple[float, float]:
-        found = minimize_scalar(
-            lambda angle: float(linkage.spare(np.array(angle), np.array(rack))),
-            bounds=(0.58, 0.68),
-            method="bounded",
-            options={"xatol": 1e-12},
-        )
-        return float(found.fun), float(found.x)
-
-    rack = float(brentq(lambda r: least(r)[0], -10.0, 10.0, xtol=1e-14))
-    return least(rack)[1], rack
 
 
 def through_the_meeting(share: float, side: float) -> Mapping[str, Any]:
@@ -119,19 +96,6 @@ def whole_range(share: float, driven: str) -> Mapping[str, Any]:
     law = (high, low - high)
     laws: tuple[Law, Law] = (law, 0.0) if driven == "arm_angle" else (SQUARE, law)
     return paper_car(*laws, stop=1.0, samples=2)
-
-
-def counted(share: float) -> Trial:
-    """The assemblies of a pose near the greatest rack travel, beside what the solvers answer."""
-    rack = last_value("paper", "rack", True).beyond(-share)
-    trial = try_on_side(share, paper_car(SQUARE, rack), SOLVERS, followed)
-    listed = count_assemblies(PAPER, {"arm_angle": (SQUARE, 0, 0), "rack": (rack, 0, 0)}, starts=STARTS)
-    facts: dict[str, float | str] = {
-        "assemblies found, proven": float(len(listed.found)),
-        "assemblies possible": float(listed.possible),
-        "starts": float(listed.starts),
-    }
-    return Trial(share, trial.answers, {**trial.facts, **facts})
 
 
 def _case(
@@ -219,14 +183,5 @@ CASES: tuple[Case, ...] = (
         )
         for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
     ),
-    Case(
-        name="assemblies-counted",
-        group=GROUP,
-        why="A pose has up to sixteen assemblies, and near the end of an input two of them merge.",
-        parameter="distance from the greatest rack travel, in parts of its range",
-        values=decades(-12, -1)[::3],
-        expected=dict.fromkeys(SOLVERS, CLEAR),
-        behaviour="of all assemblies that a search finds, the one of the drawing",
-        examine=counted,
-    ),
+    *counting_cases(GROUP, CLEAR),
 )

@@ -1,0 +1,98 @@
+"""How many assemblies a pose has, near the singular poses where two of them merge.
+
+A search from a thousand starts lists those that it finds, each with its proof; closed forms say how many can
+exist. The literature reduces this strut to a polynomial of degree 64, which bounds them from above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, partial
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from validate.hard.case import Case, Expected, Trial
+from validate.hard.content import SQUARE, decades, paper_car
+from validate.hard.last_values import car_called, last_value
+from validate.hard.oriented import followed
+from validate.hard.sides import try_on_side
+from validate.input_ends import Linkage
+from validate.singular import PAPER
+from validate.truth import count_assemblies
+
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+STARTS = 1000
+DEGREE = 64.0  # of the polynomial in the literature
+
+
+@cache
+def meeting() -> tuple[float, float]:
+    """Arm angle and rack travel, rad and mm, at which the two sides of the tie rod just meet, near 35 deg.
+
+    At less rack travel the arm cannot pass this angle, at more it can; there `spare` has a minimum of 0.
+    """
+    linkage = Linkage.of(car_called("paper"))
+
+    def least(rack: float) -> tuple[float, float]:
+        found = minimize_scalar(
+            lambda angle: float(linkage.spare(np.array(angle), np.array(rack))),
+            bounds=(0.58, 0.68),
+            method="bounded",
+            options={"xatol": 1e-12},
+        )
+        return float(found.fun), float(found.x)
+
+    rack = float(brentq(lambda r: least(r)[0], -10.0, 10.0, xtol=1e-14))
+    return least(rack)[1], rack
+
+
+def near_greatest_rack(share: float) -> tuple[float, float]:
+    """Arm angle and rack travel near the last value of the rack."""
+    return SQUARE, last_value("paper", "rack", True).beyond(-share)
+
+
+def near_lowest_arm(share: float) -> tuple[float, float]:
+    """Arm angle and rack travel near the last value of the arm angle."""
+    return last_value("paper", "arm_angle", True).beyond(-share), 0.0
+
+
+def beside_meeting(share: float) -> tuple[float, float]:
+    """Arm angle and rack travel where the two sides of the tie rod nearly meet."""
+    angle, rack = meeting()
+    return angle, rack + 10.0 * share
+
+
+def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial:
+    """The assemblies of a pose near a singular one, beside what the solvers answer."""
+    angle, rack = pose(share)
+    trial = try_on_side(share, paper_car(angle, rack), SOLVERS, followed)
+    listed = count_assemblies(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=STARTS)
+    facts: dict[str, float | str] = {
+        "assemblies found, proven": float(len(listed.found)),
+        "assemblies possible": float(listed.possible),
+        "assemblies by the degree in the literature": DEGREE,
+        "starts": float(listed.starts),
+    }
+    return Trial(share, trial.answers, {**trial.facts, **facts})
+
+
+def counting_cases(group: str, expected: Expected) -> tuple[Case, ...]:
+    """One case for each singular pose that is approached."""
+    return tuple(
+        Case(
+            name=f"assemblies-counted-{where}",
+            group=group,
+            why="A pose has up to sixteen assemblies, and near a singular pose two of them merge.",
+            parameter=parameter,
+            values=decades(-12, -1)[::3],
+            expected=dict.fromkeys(SOLVERS, expected),
+            behaviour="of all assemblies that a search finds, the one of the drawing",
+            examine=partial(counted, pose=pose),
+        )
+        for where, parameter, pose in (
+            ("rack", "distance from the greatest rack travel, in parts of its range", near_greatest_rack),
+            ("arm", "distance from the greatest arm angle, in parts of its range", near_lowest_arm),
+            ("meeting", "rack travel beyond the meeting of two branches, in parts of 10 mm", beside_meeting),
+        )
+    )
