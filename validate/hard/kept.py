@@ -59,9 +59,9 @@ def fault_of_kept(reason: Exception, scene: Scene, end: float, driven: str) -> s
         except TruthError as error:
             return f"the kept instant {index} has no truth: {error}"
         for name, place in position.items():
-            error = float(np.abs(place[index] - truth.position_as_float(name)).max())
-            if not error <= bounds[name][index]:
-                return f"{name} of the kept instant {index} is off by {error:.3g} mm"
+            off = float(np.abs(place[index] - truth.position_as_float(name)).max())
+            if not off <= bounds[name][index]:
+                return f"{name} of the kept instant {index} is off by {off:.3g} mm"
     return ""
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from pointcoord import Scene
 from validate.formulation import Accuracy, Solution
 from validate.hard.case import Answer, Trial
-from validate.hard.judged import judged_answer
+from validate.hard.judged import judged_answer, without_dust
 from validate.hard.sensitivity import with_sensitivities
 from validate.hard.trial import Measure, Tried, solved, try_scene
 from validate.truth import AmbiguousAssemblyError, Choices, Instant, TruthError
@@ -30,7 +30,6 @@ from validate.verdicts import inputs_at
 
 DIGITS = 60
 EPS = float(np.finfo(float).eps)
-RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
 def drawn_choices(scene: Scene) -> Choices:
@@ -89,19 +88,15 @@ def solution_on_side(scene: Scene) -> Solution:
     still = np.zeros(len(instants))
     position = {n: np.array([i.position_as_float(n) for i in instants]) for n in instants[0].position}
     farthest = max(float(np.abs(place).max()) for place in position.values())
-    rows = {
-        quantity: {
-            name: np.array([[float(x) for x in getattr(i, quantity)[name]] for i in instants])
-            for name in getattr(instants[0], quantity)
-            if quantity in RATES[:2] or name == "knuckle"
-        }
-        for quantity in RATES
-    }
     angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
     return Solution(
         formulation="truth",
         times=scene.instants,
         position=position,
+        velocity=_rates(instants, "velocity"),
+        acceleration=_rates(instants, "acceleration"),
+        angular_velocity=_rates(instants, "angular_velocity", ("knuckle",)),
+        angular_acceleration=_rates(instants, "angular_acceleration", ("knuckle",)),
         wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
         accuracy=Accuracy(
             pose_error=still,
@@ -112,8 +107,17 @@ def solution_on_side(scene: Scene) -> Solution:
             velocity_sensitivity=still,
             acceleration_sensitivity=still,
         ),
-        **rows,
     )
+
+
+def _rates(
+    instants: Sequence[Instant], quantity: str, names: tuple[str, ...] | None = None
+) -> dict[str, np.ndarray]:
+    """One rate of all points, or of some bodies, rounded."""
+    each = [getattr(instant, quantity) for instant in instants]
+    return {
+        name: np.array([[float(x) for x in rate[name]] for rate in each]) for name in names or tuple(each[0])
+    }
 
 
 def try_on_side(
@@ -125,7 +129,7 @@ def try_on_side(
         return trial
     scene = Scene.from_mapping(content)
     try:
-        truth = solution_on_side(scene)
+        truth = without_dust(solution_on_side(scene))
     except TruthError as error:
         return replace(trial, facts={**trial.facts, "truth": f"{type(error).__name__}: {error}"})
     tried = {name: solved(name, scene) for name in formulations}
