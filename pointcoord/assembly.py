@@ -28,6 +28,7 @@ from pointcoord.mechanism import Mechanism
 from pointcoord.newton import polish
 from pointcoord.proof import pose_bound
 from pointcoord.quadratic import QuadraticMap
+from pointcoord.sense import turned_over
 from pointcoord.work import Work
 
 Array = NDArray[np.float64]
@@ -188,6 +189,7 @@ def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float |
     target = target[..., 0, :]
     drawing = follow(system, mechanism.drawn, mechanism.drawn[..., n:])
     _require(mechanism, drawing, mechanism.drawn[..., n:], "the drawing cannot be assembled", instant)
+    _require_sense(mechanism, drawing, instant)
     path = follow(system, drawing.y, target)
     _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
     return as_pose(mechanism, path.y, path.factors, path.iterations, drawing.work + path.work)
@@ -197,6 +199,16 @@ def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, inst
     unfinished = path.done < 1.0
     if unfinished.any():
         raise stopped(mechanism, problem, path.y, target, path.factors, unfinished, instant)
+
+
+def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -> None:
+    bad, pair = turned_over(mechanism, drawing.y)
+    if pair is None:
+        return
+    one, other = (" - ".join(piece) for piece in pair)
+    problem = f"the drawing has no one meaning, {one} turns over against {other} where it closes"
+    known = mechanism.drawn[..., mechanism.map.unknowns :]
+    raise stopped(mechanism, problem, drawing.y, known, drawing.factors, bad, instant)
 
 
 def stopped(

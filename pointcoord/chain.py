@@ -19,7 +19,7 @@ from pointcoord.assembly import Pose, stopped
 from pointcoord.branch import on_branch, orientation
 from pointcoord.errors import AssemblyError, MotionTooLong
 from pointcoord.inputs import TimeFunction
-from pointcoord.linear import EPS, Factors
+from pointcoord.linear import EPS, Factors, factorise
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import Converged, polish
 from pointcoord.series import expand
@@ -108,7 +108,7 @@ def build_chain(
     """
     settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
     breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
-    y, factors, work = pose.y, pose.factors, Work()
+    y, work = pose.y, Work()
     scale = _power_of_two(stop - start)
     segments: list[Segment] = []
     instant, side = start, orientation(pose.factors)
@@ -118,9 +118,14 @@ def build_chain(
         if len(segments) == MOST_SEGMENTS:
             raise MotionTooLong(MOST_SEGMENTS, instant, start, stop, Chain(tuple(segments), work))
         limit = next((b for b in breaks if b > instant), stop)
+        # Newton's factors are of the place before its last step, which may be farther off than the bound.
+        factors = factorise(mechanism.map.jacobian(y))
         series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
         work += Work(
-            segments=1, series_orders=settings.order, rate_solves=settings.order * int(np.prod(y.shape[:-1]))
+            segments=1,
+            factorisations=int(np.prod(y.shape[:-1])),
+            series_orders=settings.order,
+            rate_solves=settings.order * int(np.prod(y.shape[:-1])),
         )
         if limit == instant:
             segments.append(Segment(instant, stop, scale, series))
@@ -143,7 +148,7 @@ def build_chain(
             partial = Chain(tuple(segments), work) if segments else None
             raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial)
         segments.append(Segment(instant, end, scale, series))
-        instant, y, factors = end, reached.y, reached.factors
+        instant, y = end, reached.y
         scale = _power_of_two(length)
     return Chain(tuple(segments), work)
 
@@ -164,7 +169,7 @@ def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: i
     starts = [segment.start for segment in chain.segments]
     edges = [0, *np.searchsorted(ordered, starts[1:], side="left").tolist(), len(instants)]
     for segment, piece, first, last in zip(chain.segments, columns, edges[:-1], edges[1:], strict=True):
-        tables = _derivative_tables(piece, segment.scale, derivatives) if first < last else []
+        tables = derivative_tables(piece, segment.scale, derivatives) if first < last else []
         for low in range(first, last, BLOCK):
             high = min(low + BLOCK, last)
             s = (ordered[low:high] - segment.start) / segment.scale
@@ -178,7 +183,7 @@ def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: i
     return result[..., back, :]
 
 
-def _derivative_tables(coefficients: Array, scale: float, derivatives: int) -> list[Array]:
+def derivative_tables(coefficients: Array, scale: float, derivatives: int) -> list[Array]:
     """Coefficients of a series and of its time derivatives, each of shape (..., order + 1, m)."""
     tables = [coefficients]
     powers = np.arange(coefficients.shape[-2], dtype=float)[:, None]

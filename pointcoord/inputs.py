@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
+from pointcoord.doubled import exact_product, exact_sum
+
 Array = NDArray[np.float64]
 
 
@@ -44,13 +46,20 @@ class Polynomial:
     coefficients: tuple[float, ...]
 
     def series(self, instants: ArrayLike, order: int) -> Array:
-        """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k)."""
+        """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k).
+
+        Horner's rule in twice the working precision: terms may cancel, as where a motion comes to rest.
+        """
         t = np.asarray(instants, dtype=float)
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(min(order + 1, len(self.coefficients))):
-                shifted = [comb(j, k) * self.coefficients[j] for j in range(k, len(self.coefficients))]
-                result[..., k] = np.polynomial.polynomial.polyval(t, np.array(shifted))
+                factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
+                terms = np.array(self.coefficients[k:])
+                plain = np.polynomial.polynomial.polyval(t, factors * terms)
+                doubled = _doubled_horner(exact_product(np.array(factors), terms), t)
+                # Splitting a number above 1e300 overflows; there only the plain sum is left.
+                result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
         return result
 
     @property
@@ -71,12 +80,13 @@ class Sine:
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
         with np.errstate(over="ignore", invalid="ignore"):
-            angle = self.angular_frequency * np.asarray(instants, dtype=float)
-            # sin(a + p) by the sum rule: in a + p itself a large phase would swallow the digits of time,
-            # and the values would no longer change as the rates say.
-            before, across = np.cos(self.phase), np.sin(self.phase)
-            sine = np.sin(angle) * before + np.cos(angle) * across
-            cosine = np.cos(angle) * before - np.sin(angle) * across
+            # The angle as high + low: a large phase would swallow the digits of time, and the values would
+            # no longer change as the rates say.
+            turned, rest = exact_product(np.array(self.angular_frequency), np.asarray(instants, float))
+            angle, low = exact_sum(turned, np.array(self.phase))
+            low = np.where(np.isfinite(low + rest), low + rest, 0.0)
+            sine = np.sin(angle) * np.cos(low) + np.cos(angle) * np.sin(low)
+            cosine = np.cos(angle) * np.cos(low) - np.sin(angle) * np.sin(low)
             quarter_turns = (sine, cosine, -sine, -cosine)
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
             factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
@@ -125,6 +135,17 @@ class Table:
     def breaks(self) -> tuple[float, ...]:
         """The inner times of the table."""
         return self.times[1:-1]
+
+
+def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:
+    """sum_j (high_j + low_j) t^j, rounded about once."""
+    high, low = np.zeros_like(t), np.zeros_like(t)
+    for c, c_low in zip(coefficients[0][::-1], coefficients[1][::-1], strict=True):
+        product, rest = exact_product(high, t)
+        rest = rest + low * t
+        high, carry = exact_sum(product, c)
+        low = carry + (rest + c_low)
+    return high + low
 
 
 def cosine(angle: Array) -> Array:

@@ -84,6 +84,8 @@ class Motion(Samples):
         work: what it cost.
         notes: numbers that have no meaning, and why; empty if there are none.
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
+        term_sizes: for each derivative that was solved for, the largest sum of magnitudes of the terms that
+            give it, anywhere in the motion, mm/s**d; empty if it was not summed.
         resample: evaluates the motion at other instants, if the method allows it.
         prover: proves samples of the motion; called by `proof`.
     """
@@ -93,6 +95,7 @@ class Motion(Samples):
     work: Work
     notes: tuple[str, ...]
     unit: float
+    term_sizes: tuple[float, ...]
     resample: Callable[[Array], Samples] | None
     prover: Prover
 

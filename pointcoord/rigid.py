@@ -5,7 +5,9 @@ The rates of a body come from all its points by least squares. With r_i from the
     J omega = sum r_i x v_i,    J alpha = sum r_i x (a_i - omega x (omega x r_i)),
     J = sum (|r_i|^2 I - r_i r_i^T),
 
-and J is the inertia tensor of unit masses at the points: regular unless the points are in one line.
+and J is the inertia tensor of unit masses at the points: regular unless the points are in one line. Of a thin
+triangle J has the square of the condition number that the problem has, so each solution is refined with its
+own residual, the velocities that it does not explain: J d = sum r_i x (v_i - omega x r_i), omega + d.
 The paper's quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega lies in the points' plane.
 """
 
@@ -52,10 +54,17 @@ def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[A
     scale = np.ldexp(1.0, -np.frexp(np.where(size > 0.0, size, 1.0))[1])
     r, v, a = r * scale, v * scale, a * scale
     compliance = _inverse_inertia(r)
-    omega = _apply(compliance, _moment(r, v))
+    omega = _turning(compliance, r, v)
     # omega x (omega x r) = omega (omega . r) - r |omega|^2, and r x r = 0.
     pull = omega[..., None, :] * np.sum(r * omega[..., None, :], axis=-1, keepdims=True)
-    return omega, _apply(compliance, _moment(r, a - pull))
+    return omega, _turning(compliance, r, a - pull)
+
+
+def _turning(compliance: tuple[Array, ...], r: Array, v: Array) -> Array:
+    """The least squares solution of v = omega x r, refined once."""
+    omega = _apply(compliance, _moment(r, v))
+    rest = v - np.cross(omega[..., None, :], r)
+    return omega + _apply(compliance, _moment(r, rest))
 
 
 def about_centroid(vectors: Array) -> Array:

@@ -107,7 +107,7 @@ def _by_series(
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
         prover = _prover(readout, sampler.coordinates)
-        return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism)
+        return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism, sampler.term_sizes)
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -136,7 +136,7 @@ def _by_newton(
 
         prover = _prover(readout, coordinates)
         cost = pose.work + solved.work + work
-        return _motion(samples, method, pose, cost, None, prover, readout.mechanism)
+        return _motion(samples, method, pose, cost, None, prover, readout.mechanism, ())
 
     try:
         solved = solve_instants(
@@ -170,6 +170,7 @@ def _motion(
     resample: Callable[[Array], Samples] | None,
     prover: Prover,
     mechanism: Mechanism,
+    term_sizes: tuple[float, ...],
 ) -> Motion:
     notes = []
     for channel in (samples.angular_velocity, samples.angular_acceleration):
@@ -188,6 +189,7 @@ def _motion(
         work=work,
         notes=tuple(notes),
         unit=float(mechanism.unit),
+        term_sizes=term_sizes,
         resample=resample,
         prover=prover,
     )

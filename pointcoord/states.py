@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.chain import Chain, evaluate
+from pointcoord.chain import Chain, derivative_tables, evaluate
 from pointcoord.effects import Plan
 from pointcoord.errors import OutsideMotion
 from pointcoord.inputs import TimeFunction
@@ -102,6 +102,23 @@ class Sampler:
             derivatives_evaluated=self.readout.plan.derivative + 1,
             coordinates_evaluated=sum(3 * len(names) * (derivatives + 1) for names, derivatives in requests),
         )
+
+    @property
+    def term_sizes(self) -> tuple[float, ...]:
+        """Of each derivative the largest sum of magnitudes of the terms of any point, mm/s**d.
+
+        The rounding of a sum is in proportion to it, also where the sum itself is zero.
+        """
+        derivative = self.readout.plan.derivative
+        sizes = np.zeros(derivative + 1)
+        for segment, points in zip(self.chain.segments, self._point_series, strict=True):
+            terms = np.abs(np.concatenate(list(points.values()), axis=-1))
+            s = (segment.stop - segment.start) / segment.scale
+            tables = derivative_tables(terms, segment.scale, derivative)
+            powers = s ** np.arange(terms.shape[-2])
+            sums = [float(np.einsum("k,...ki->...i", powers, table).max()) for table in tables]
+            sizes = np.maximum(sizes, sums)
+        return tuple(sizes.tolist())
 
     def _requests(self, moving: list[str]) -> list[tuple[list[str], int]]:
         """Which points to evaluate to which derivative."""

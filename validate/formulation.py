@@ -27,6 +27,8 @@ class Accuracy:
         acceleration_sensitivity: the same of an acceleration, shape (N,), 1/s^2. Both are zero if the
             formulation does not know them.
         truncation: relative error of the rates that the method leaves on purpose.
+        speed_terms, acceleration_terms: largest sum of magnitudes of the terms that a velocity or an
+            acceleration of the motion was summed from, mm/s and mm/s^2; zero if it was not summed.
         stored: what a reported coordinate is rounded besides, shape (N,), mm: far from the origin, say. No
             rate sees it.
     """
@@ -38,6 +40,8 @@ class Accuracy:
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
     truncation: float = 0.0
+    speed_terms: float = 0.0
+    acceleration_terms: float = 0.0
     stored: Array | float = 0.0
 
 

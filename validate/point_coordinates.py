@@ -63,6 +63,8 @@ class PointCoordinates:
                 condition=proof.condition,
                 velocity_sensitivity=proof.velocity_sensitivity,
                 acceleration_sensitivity=proof.acceleration_sensitivity,
+                speed_terms=(*motion.term_sizes, 0.0, 0.0)[1],
+                acceleration_terms=(*motion.term_sizes, 0.0, 0.0, 0.0)[2],
                 truncation=truncation(scene.tolerance / motion.unit) if self.method == "series" else 0.0,
             ),
             notes=motion.notes,

@@ -2,7 +2,8 @@ r"""Tolerances, each derived from what two formulations say of their own accurac
 
 For a pair of formulations 1, 2 at one instant, with e the error of a pose, k the condition number, s1
 and s2 the largest change of a velocity and of an acceleration per displacement of the pose (the larger
-known value), V and A the largest speed and acceleration of any point in the scene, eps the rounding
+known value), V and A the largest speed and acceleration of any point in the scene or, if larger, of the
+terms that they are summed from (a sum that is zero is still rounded as its terms are), eps the rounding
 unit and C = 8 (each row of the linear systems takes at most 8 roundings of eps / 2 in each of two
 formulations):
 
@@ -81,8 +82,12 @@ def factors(first: Solution, second: Solution) -> Factors:
         velocity_sensitivity=np.maximum(a.velocity_sensitivity, b.velocity_sensitivity),
         acceleration_sensitivity=np.maximum(a.acceleration_sensitivity, b.acceleration_sensitivity),
         truncation=a.truncation + b.truncation,
-        speed=min(_largest(first.velocity), _largest(second.velocity)),
-        acceleration=min(_largest(first.acceleration), _largest(second.acceleration)),
+        speed=max(min(_largest(first.velocity), _largest(second.velocity)), a.speed_terms, b.speed_terms),
+        acceleration=max(
+            min(_largest(first.acceleration), _largest(second.acceleration)),
+            a.acceleration_terms,
+            b.acceleration_terms,
+        ),
     )
 
 

@@ -253,3 +253,15 @@ def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
         simulate(make_scene(points={**table, "strut_lower": (x - 200.0, y, z)}))
     assert caught.value.reduce == ""
     assert any("strut_lower" in name for name in caught.value.limits)
+
+
+def test_pieces_of_the_strut_that_would_turn_over_are_refused(
+    make_scene: Callable[..., Scene], table: Points
+) -> None:
+    # The knuckle's piece points up the strut; drawn at 100 degrees to the rod and at 120 to the way from
+    # ball joint to top, it has no sense that both agree on.
+    x, y, z = table["lower_ball_joint"]
+    folded = {**table, "strut_lower": (x + 60.0, y, z - 6.0), "strut_rod_end": (420.0, -180.0, 466.0)}
+    with pytest.raises(AssemblyError, match=r"no one meaning, .* turns over against") as caught:
+        simulate(make_scene(points=folded))
+    assert caught.value.problem.startswith("the drawing")

@@ -6,6 +6,8 @@ from itertools import chain, combinations
 import numpy as np
 import pytest
 
+import pointcoord.chain
+import pointcoord.instants
 from pointcoord import NotComputed, Scene, UnknownName, assembly, newton, simulate
 from pointcoord.effects import EFFECTS, plan_effects
 from pointcoord.linear import Factors, factorise
@@ -83,8 +85,8 @@ def test_counts_are_what_was_done(
         seen["factorisations"] += int(np.prod(matrix.shape[:-2]))
         return factorise(matrix)
 
-    monkeypatch.setattr(newton, "factorise", counted)
-    monkeypatch.setattr(assembly, "factorise", counted)
+    for module in (newton, assembly, pointcoord.chain, pointcoord.instants):
+        monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0
 

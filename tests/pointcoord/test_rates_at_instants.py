@@ -217,3 +217,21 @@ def test_newton_at_every_instant_ends_at_rounding(make_scene: Callable[..., Scen
     assert (proof.bound <= 64 * EPS * proof.condition * float(strut.unit)).all()
     again = polish(strut.map, motion.start.y)
     assert again.first_step <= motion.start.bound
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
+    make_scene: Callable[..., Scene], strut: Mechanism, method: str
+) -> None:
+    # The rack comes to 2e-8 of its way before its end. A Jacobian of Newton's last but one place, off by more
+    # than the pose's error, gave velocities wrong by 2e-3 of 3e5 mm/s.
+    scene = make_scene((np.pi / 2,), (0.0, 130.10076831981567 * (1 - 2e-8)), stop=1.0, samples=2)
+    motion = simulate(scene, method)
+    proof, names = motion.proof(), strut.layout.moving
+    ends = {s: motion.position[s][-1] - motion.position[e][-1] for s, e in strut.layout.squared_lengths}
+    speeds = {s: motion.velocity[s][-1] - motion.velocity[e][-1] for s, e in strut.layout.squared_lengths}
+    fast = max(np.abs(motion.velocity[name]).max() for name in names)
+    for name in ends:
+        # r . v = 0 for every link. Rounding: 16 eps of the products; the pose: its bound in r.
+        allowed = (16 * EPS * 600.0 + 4 * proof.bound[-1]) * 3 * fast
+        assert abs(ends[name] @ speeds[name]) <= allowed

@@ -126,3 +126,17 @@ def test_stacked_points_keep_their_order() -> None:
     stacked = stack_points([a, b])
     assert stacked.shape == (5, 2, 3)
     assert np.array_equal(stacked[:, 1], np.ones((5, 3)))
+
+
+@pytest.mark.parametrize("thin", [1e-2, 1e-4, 1e-6])
+def test_rates_of_a_thin_body_lose_digits_once_and_not_twice(thin: float) -> None:
+    # Of a triangle as thin as this the turn about its long side is known to eps / thin of the points'
+    # velocities, which are rounded. Its inertia tensor has the condition number thin^-2.
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [rng.uniform(0.2, 0.8), thin, 0.0]])
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        points, omega = points @ turn.T, rng.normal(size=3)
+        found, _ = body_rates(points, np.cross(omega, points), np.zeros((3, 3)))
+        # Points and velocities up to 4 are rounded, three of each, and enter as 1 / (0.8 thin) at most.
+        assert np.abs(found - omega).max() <= 16 * 4 * EPS / (0.8 * thin)

@@ -1,7 +1,9 @@
 """Inputs as power series, against evaluations that share nothing with them."""
 
-from math import factorial
+from fractions import Fraction
+from math import comb, factorial
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -167,3 +169,38 @@ def test_cosine_of_a_batch_is_the_cosine_of_each() -> None:
         assert np.allclose(
             together[place], cosine(angle[place]), rtol=0, atol=16 * EPS * majorant(angle[place]).max()
         )
+
+
+@plain
+@given(roots=st.lists(st.integers(1, 3), min_size=1, max_size=3), power=st.integers(2, 12))
+def test_a_polynomial_whose_terms_cancel_keeps_its_digits(roots: list[int], power: int) -> None:
+    # Double roots, as where a motion comes to rest, a little before the first of them.
+    factors = [Fraction(1)]
+    for root in (*roots, roots[0]):
+        factors = [
+            a - root * b for a, b in zip([Fraction(0), *factors], [*factors, Fraction(0)], strict=True)
+        ]
+    t = roots[0] - 10.0**-power
+    series = Polynomial(tuple(float(c) for c in factors)).series(t, 2)
+    for k in range(3):
+        exact = sum(comb(j, k) * c * Fraction(t) ** (j - k) for j, c in enumerate(factors) if j >= k)
+        terms = sum(comb(j, k) * abs(c) * Fraction(t) ** (j - k) for j, c in enumerate(factors) if j >= k)
+        # One rounding of the result, and eps^2 of the terms (Graillat, Langlois and Louvet: 4 n^2 u^2).
+        assert (
+            abs(Fraction(float(series[k])) - exact)
+            <= Fraction(EPS) * abs(exact) + 16 * 4 * Fraction(EPS) ** 2 * terms
+        )
+
+
+@pytest.mark.parametrize("phase", [0.3, 1e9, -1e16, 1e300])
+def test_a_large_phase_swallows_no_digit_of_time(phase: float) -> None:
+    frequency, instants = 3.7, np.array([0.0, 0.1, 1.7, 25.3])
+    series = Sine(2.0, frequency, phase).series(instants, 1)
+    with mpmath.workdps(400):
+        for t, (value, rate) in zip(instants.tolist(), series.tolist(), strict=True):
+            angle = mpmath.mpf(frequency) * mpmath.mpf(t) + mpmath.mpf(phase)
+            # Sine and cosine of both parts of the angle, two products and a sum: some four roundings. Of
+            # a phase so large that it takes no digit of w t, that is the low part, itself rounded.
+            spare = 4 * EPS + (EPS * frequency * t if abs(phase) > 1e16 else 0.0)
+            assert abs(value - 2 * mpmath.sin(angle)) <= spare * 2.0
+            assert abs(rate - 2 * frequency * mpmath.cos(angle)) <= (spare + 2 * EPS) * 2.0 * frequency

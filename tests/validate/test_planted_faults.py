@@ -57,7 +57,7 @@ def _half_square_term(patch: pytest.MonkeyPatch) -> None:
 
 def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
     """The second derivative of s^k taken as k^2 s^(k-2)."""
-    right = pointcoord.chain._derivative_tables
+    right = pointcoord.chain.derivative_tables
 
     def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
         tables = right(coefficients, scale, derivatives)
@@ -65,7 +65,7 @@ def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
         tables[2][:-2] = (coefficients * k * k)[2:] / scale**2
         return tables
 
-    patch.setattr(pointcoord.chain, "_derivative_tables", wrong)
+    patch.setattr(pointcoord.chain, "derivative_tables", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
