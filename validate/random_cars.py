@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.locks import arm_limits, rack_limits
-from validate.strategies import EFFECTS, FREE, PAPER, Points, mirrored
+from validate.paper_car import EFFECTS, FREE, PAPER, Points, mirrored
 
 Array = NDArray[np.float64]
 Kind = Literal["regular", "dead arm", "toggle", "singular drawing"]

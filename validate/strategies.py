@@ -16,24 +16,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from validate.paper_car import EFFECTS, FREE, PAPER, Points, mirrored
 
 Array = NDArray[np.float64]
-Points = dict[str, tuple[float, float, float]]
-
-PAPER: Points = {
-    "lower_arm_front": (270.0, -5.0, -10.0),
-    "lower_arm_rear": (540.0, -10.0, -20.0),
-    "rack_centre": (570.0, 60.0, 90.0),
-    "strut_top": (460.0, -180.0, 470.0),
-    "lower_ball_joint": (450.0, -330.0, -40.0),
-    "tie_rod_outer": (560.0, -300.0, 60.0),
-    "strut_lower": (452.0, -320.0, 20.0),
-    "strut_rod_end": (456.0, -250.0, 246.0),
-    "tie_rod_inner": (570.0, 60.0, 90.0),
-    "wheel_centre": (452.0, -410.0, 20.0),
-}
-FREE = tuple(name for name in PAPER if name not in ("strut_lower", "strut_rod_end", "tie_rod_inner"))
-EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
 
 
 def _floats(reach: float) -> st.SearchStrategy[float]:
@@ -126,8 +111,3 @@ def make_scene(
             "time": {"start": 0.0, "stop": stop, "samples": samples},
         }
     )
-
-
-def mirrored(points: Points) -> Points:
-    """The same car's other side: y changes its sign."""
-    return {name: (x, -y, z) for name, (x, y, z) in points.items()}

@@ -8,7 +8,8 @@ from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, s
 from validate.cli import DEFAULT_SCENES
 from validate.compare import compare
 from validate.formulation import FormulationError
-from validate.strategies import EFFECTS, PAPER, make_scene, scenes
+from validate.paper_car import EFFECTS, PAPER
+from validate.strategies import make_scene, scenes
 
 PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
 

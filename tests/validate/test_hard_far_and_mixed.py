@@ -14,7 +14,7 @@ from validate.formulations import formulation
 from validate.hard.case import unexpected
 from validate.hard.far_and_mixed import AWAY, CASES, SOLVERS, far, lengthened, moved_car, scaled_car
 from validate.hard.near_points import assembled
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -15,7 +15,7 @@ from validate.hard import links, numbers
 from validate.hard.case import REFUSED, unexpected
 from validate.hard.content import paper_car
 from validate.hard.sides import try_on_side
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 LINK_CASES = {case.name: case for case in links.CASES}
 NUMBER_CASES = {case.name: case for case in numbers.CASES}

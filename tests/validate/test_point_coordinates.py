@@ -12,7 +12,7 @@ from validate.compare import compare_solutions
 from validate.formulation import FormulationError
 from validate.formulations import formulation
 from validate.input_ends import Car, Linkage
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)))
 

@@ -24,7 +24,7 @@ from validate.hard.oriented import followed
 from validate.hard.sides import try_on_side
 from validate.hard.trial import Facts, Tried
 from validate.input_ends import Linkage
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 GROUP = "8. Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")

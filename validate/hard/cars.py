@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from validate.hard.content import Law, paper_car
 from validate.input_ends import Car
-from validate.strategies import PAPER, mirrored
+from validate.paper_car import PAPER, mirrored
 from validate.truth import solve_truth
 
 Array = NDArray[np.float64]

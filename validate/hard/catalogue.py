@@ -11,6 +11,7 @@ from validate.hard import (
     dead_points,
     far_and_mixed,
     flat_strut,
+    found,
     laws,
     links,
     near_points,
@@ -32,6 +33,7 @@ CASES: tuple[Case, ...] = (
     *reach.CASES,
     *links.CASES,
     *numbers.CASES,
+    *found.CASES,
 )
 
 

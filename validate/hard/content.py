@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from validate.strategies import EFFECTS, PAPER
+from validate.paper_car import EFFECTS, PAPER
 
 Triple = tuple[float, float, float]
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.

@@ -18,7 +18,7 @@ from validate.hard.last_values import car_called, last_value
 from validate.hard.oriented import followed
 from validate.hard.sides import try_on_side
 from validate.input_ends import Linkage
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 from validate.truth import count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")

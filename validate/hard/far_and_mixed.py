@@ -24,7 +24,7 @@ from validate.hard.near_points import assembled, drawn_angle, nearer
 from validate.hard.sensitivity import with_sensitivities
 from validate.hard.sides import try_on_side
 from validate.hard.trial import Tried, solved, try_scene
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 from validate.verdicts import true_solution
 
 Array = NDArray[np.float64]

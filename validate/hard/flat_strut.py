@@ -34,7 +34,7 @@ from validate.hard.cars import (
 from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected
 from validate.hard.trial import Tried, decades, scene_case
 from validate.input_ends import Car, Linkage
-from validate.strategies import EFFECTS
+from validate.paper_car import EFFECTS
 
 GROUP = "3. The strut flat"
 AXES = "xyz"

@@ -87,7 +87,7 @@ CASES: tuple[Case, ...] = (
     scene_case(
         name="strut-drawn-folded",
         group=GROUP,
-        why="random scenes drew the rod end behind the strut's top: the line through both points the other way",
+        why="random scenes drew the rod end behind the strut's top: their line points the other way",
         parameter="distance of the rod end behind the top, in parts of the strut",
         values=decades()[::2],  # near the top a refusal takes a second
         scene=_folded,

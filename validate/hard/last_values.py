@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from validate.input_ends import Car, Linkage
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 from validate.truth import InfeasibleError, SingularPoseError, solve_truth
 
 DIGITS = 15  # of the truth: only whether there is a pose counts, which is proven anyhow

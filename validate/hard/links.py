@@ -24,7 +24,7 @@ from pointcoord.topology import Topology
 from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Trial
 from validate.hard.content import decades
 from validate.hard.near_points import assembled, drawn_angle
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 if TYPE_CHECKING:
     from absolute import Model

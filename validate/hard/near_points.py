@@ -17,7 +17,7 @@ from validate.hard.case import Case, Expected
 from validate.hard.content import decades, paper_car
 from validate.hard.sides import try_on_side
 from validate.input_ends import Car, Linkage
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 from validate.truth import solve_truth
 
 Array = NDArray[np.float64]

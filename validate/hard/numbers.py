@@ -16,7 +16,7 @@ from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected,
 from validate.hard.content import SQUARE, paper_car
 from validate.hard.links import GROUP
 from validate.hard.sides import try_on_side
-from validate.singular import PAPER
+from validate.paper_car import PAPER
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 LEAST = math.ulp(0.0)  # 5e-324

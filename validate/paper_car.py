@@ -1,0 +1,26 @@
+"""The paper's strut, Table 1: what random cars and hard cases are made from."""
+
+from __future__ import annotations
+
+Points = dict[str, tuple[float, float, float]]
+
+PAPER: Points = {
+    "lower_arm_front": (270.0, -5.0, -10.0),
+    "lower_arm_rear": (540.0, -10.0, -20.0),
+    "rack_centre": (570.0, 60.0, 90.0),
+    "strut_top": (460.0, -180.0, 470.0),
+    "lower_ball_joint": (450.0, -330.0, -40.0),
+    "tie_rod_outer": (560.0, -300.0, 60.0),
+    "strut_lower": (452.0, -320.0, 20.0),
+    "strut_rod_end": (456.0, -250.0, 246.0),
+    "tie_rod_inner": (570.0, 60.0, 90.0),
+    "wheel_centre": (452.0, -410.0, 20.0),
+}
+# Points that a random car may have anywhere; of the others the strut and the rack decide.
+FREE = tuple(name for name in PAPER if name not in ("strut_lower", "strut_rod_end", "tie_rod_inner"))
+EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
+
+
+def mirrored(points: Points) -> Points:
+    """The same strut on the other side of the car."""
+    return {name: (x, -y, z) for name, (x, y, z) in points.items()}
