@@ -11,7 +11,7 @@ from absolute.drawing import Drawing
 from absolute.features import Features
 from absolute.laws import LAWS
 from absolute.rows import rows_of
-from absolute.sides import Sides, side_ends
+from absolute.sides import Sides, side_vectors
 from absolute.solution import Array
 from absolute.stack import RowStack
 
@@ -41,9 +41,9 @@ class Mechanism:
         self.drawing = drawing = Drawing(model)
         rows = rows_of(model, drawing)
         features = Features(len(drawing.bodies))
-        ends = side_ends(model, drawing, rows.senses, features)
+        vectors = side_vectors(model, drawing, rows.senses, features)
         self.stack = RowStack(rows, features)
-        self.sides = Sides(model, ends, features)
+        self.sides = Sides(model, vectors, features)
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         self._ids = [
@@ -61,14 +61,16 @@ class Mechanism:
         self._laws = [
             (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
         ]
-        placed = self.stack.place(*self.poses(self.drawn))
-        self.sides.learn(placed.world, drawing.rounding)
-        coordinates = placed.values[self.joint_rows :]
         self.drawn_inputs = np.array(
             [
-                LAWS[drive.law].invert(coordinate / factor)
-                for drive, coordinate, (_, factor) in zip(
-                    model.inputs.values(), coordinates, self._laws, strict=True
+                LAWS[drive.law].invert(
+                    float(row.direction @ drawing.line(drive.axis.through, drive.point)) / factor
+                )
+                for drive, row, (_, factor) in zip(
+                    model.inputs.values(),
+                    rows.offsets[len(rows.offsets) - len(model.inputs) :],
+                    self._laws,
+                    strict=True,
                 )
             ]
         )

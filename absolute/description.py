@@ -14,6 +14,9 @@ Vector = tuple[float, float, float]
 # Rows each joint kind takes away from the six relative freedoms of its two bodies.
 JOINT_ROWS = {"spherical": 3, "universal": 4, "cylindrical": 4, "revolute": 5, "prismatic": 5}
 
+# The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
+LARGEST_COORDINATE = 1e100
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -86,8 +89,9 @@ class Model:
         inputs: name -> Input.
         sides: name -> Side, whose signs in the drawing every pose must keep; none by default.
     Raises:
-        DescriptionError: a name is unknown, a number is not finite, an axis has no length, or
-            joints and inputs do not give six rows per moving body.
+        DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
+            LARGEST_COORDINATE, an axis has no length, or joints and inputs do not give six rows per
+            moving body.
     """
 
     points: Mapping[str, Vector]
@@ -98,7 +102,7 @@ class Model:
     sides: Mapping[str, Side] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        points = {name: vector_of(f"point {name!r}", name, value) for name, value in self.points.items()}
+        points = {name: point_of(name, value) for name, value in self.points.items()}
         object.__setattr__(self, "points", ReadOnly(points))
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
@@ -152,6 +156,20 @@ def vector_of(what: str, name: str, value: object) -> Vector:
     if array.shape != (3,) or not np.isfinite(array).all():
         raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
     return (float(array[0]), float(array[1]), float(array[2]))
+
+
+def point_of(name: str, value: object) -> Vector:
+    """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
+    point = vector_of(f"point {name!r}", name, value)
+    if max(map(abs, point)) > LARGEST_COORDINATE:
+        raise DescriptionError(
+            f"point {name!r} is {point}; products of such coordinates overflow, so they must lie "
+            f"between -{LARGEST_COORDINATE:g} and {LARGEST_COORDINATE:g} mm: correct it or use a larger "
+            "unit of length",
+            name,
+            point,
+        )
+    return point
 
 
 def _check_choice(what: str, name: str, value: str, allowed: Mapping[str, object]) -> None:
@@ -214,5 +232,5 @@ def _check_side(model: Model, name: str, side: Side) -> None:
 
 def _check_direction(what: str, name: str, value: object) -> None:
     direction = vector_of(f"a direction of {what}", name, value)
-    if not 0 < np.linalg.norm(direction) < np.inf:
+    if not any(direction):
         raise DescriptionError(f"a direction of {what} is {direction}; it must not be zero", name, direction)

@@ -1,61 +1,80 @@
 """The drawing without units: lengths divided by the size of the mechanism, measured from its middle."""
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from absolute.description import Axis, Model
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
-# A direction drawn between two points has a relative error of about eps * size / distance. Below
-# sqrt(eps) * size it has lost half of its digits.
+# Two points nearer than this to each other share half of their digits: rounding of the coordinates
+# given turns the line between them by as much as half of its digits.
 SHORTEST_AXIS = float(np.sqrt(np.finfo(float).eps))
+
+# Products of three lengths and of their squares stay normal numbers from here to LARGEST_COORDINATE.
+SMALLEST_SIZE = 1e-100
 
 
 class Drawing:
     """Points, body origins and directions of a model in units of its size.
 
+    Coordinates as given subtract with one rounding of the difference, however close the points
+    are; coordinates from the middle have been rounded before. So `line` subtracts those given, and
+    the origin of a moving body is one of its points: its arms are such lines.
+
     Attributes:
-        middle: mean of the drawn points, mm. Everything is measured from here, so that numbers do
+        middle: mean of the drawn points, mm. Positions are measured from here, so that numbers do
             not depend on the distance of the car from its origin.
         size: largest distance of a drawn point from the middle, mm: the unit of length.
-        rounding: error of a drawn coordinate, in units of size.
         bodies: body name -> index; the chassis is 0.
-        origins: (bodies, 3) origin of each body frame, in units of size. Body frames are parallel
-            to the frame of the points in the drawing.
+        origins: (bodies, 3) origin of each body frame, in units of size; the middle for the
+            chassis. Body frames are parallel to the frame of the points in the drawing.
     """
 
     def __init__(self, model: Model) -> None:
-        self._model = model
         coordinates = np.array(list(model.points.values()))
-        # Scaled before the mean: no overflow for any finite drawing.
         largest = float(np.abs(coordinates).max())
+        # Scaled before the mean and the norms: the smallest numbers have too few digits for them.
         unit = largest if largest > 0 else 1.0
         self.middle = (coordinates / unit).mean(axis=0) * unit
         spread = float(np.linalg.norm((coordinates - self.middle) / unit, axis=1).max())
         self.size = spread * unit
-        if not spread > SHORTEST_AXIS or not np.finfo(float).tiny < self.size < np.inf:
+        if not self.size >= SMALLEST_SIZE:
+            raise DescriptionError(
+                f"the points lie within {self.size:.3g} mm, too near to zero for their products; a mechanism "
+                f"of at least {SMALLEST_SIZE:g} mm is needed: draw it larger or in a smaller unit of length",
+                "points",
+                self.size,
+            )
+        if not spread > SHORTEST_AXIS:
             raise DescriptionError(
                 f"the points lie within {self.size:.3g} mm at coordinates up to {largest:.3g} mm: "
                 "too few digits tell them apart; draw the mechanism nearer to the origin",
                 "points",
                 self.size,
             )
-        self.rounding = float(np.finfo(float).eps) * max(1.0, largest / self.size)
-        self._points = dict(zip(model.points, (coordinates - self.middle) / self.size, strict=True))
+        self._given = dict(zip(model.points, coordinates, strict=True))
         self.bodies = {name: index for index, name in enumerate((model.chassis, *model.moving))}
-        self.origins = np.array(
-            [np.mean([self._points[point] for point in model.bodies[body]], axis=0) for body in self.bodies]
-        )
-        self.origins[0] = 0.0
+        self._anchors = {body: self._anchor(model.bodies[body]) for body in model.moving}
+        self.origins = np.zeros((len(self.bodies), 3))
+        for body, anchor in self._anchors.items():
+            self.origins[self.bodies[body]] = self._from_middle(anchor)
+
+    def line(self, start: str, end: str) -> Array:
+        """From one drawn point to another, in units of size, with a relative error of eps."""
+        return np.asarray((self._given[end] - self._given[start]) / self.size, dtype=float)
 
     def arm(self, body: str, point: str) -> Array:
         """From the origin of a body frame to one of its points, in units of size."""
-        return np.asarray(self._points[point] - self.origins[self.bodies[body]], dtype=float)
+        anchor = self._anchors.get(body)
+        return self._from_middle(point) if anchor is None else self.line(anchor, point)
 
     def direction(self, what: str, axis: Axis) -> Array:
         """Unit vector along a drawn axis; `what` names its owner in the message."""
         if isinstance(axis.toward, str):
-            line = self._points[axis.toward] - self._points[axis.through]
+            line = self.line(axis.through, axis.toward)
             length = float(np.linalg.norm(line))
             if length < SHORTEST_AXIS:
                 raise DescriptionError(
@@ -68,3 +87,16 @@ class Drawing:
         line = np.array(axis.toward, dtype=float)
         line = line / np.abs(line).max()
         return np.asarray(line / np.linalg.norm(line), dtype=float)
+
+    def _from_middle(self, point: str) -> Array:
+        return np.asarray((self._given[point] - self.middle) / self.size, dtype=float)
+
+    def _anchor(self, points: Sequence[str]) -> str:
+        # The point with the smallest product of distances to the others: an end of the shortest
+        # lines of the body, and these are the ones that rounding would turn.
+        def nearness(point: str) -> float:
+            lengths = [float(np.linalg.norm(self.line(point, other))) for other in points]
+            # A line of no length has no rounding either.
+            return math.fsum(math.log(length) for length in lengths if length > 0)
+
+        return min(points, key=nearness)

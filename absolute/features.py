@@ -1,5 +1,7 @@
 """Points and directions fixed to bodies, each kept once, in one table for all bodies."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from absolute.solution import Array
@@ -36,7 +38,7 @@ class Features:
                 is_point[body, : len(held), 0] = points
         return vectors, is_point
 
-    def flat(self, picks: list[tuple[Pick, ...]]) -> list[list[int]]:
+    def flat(self, picks: Sequence[Sequence[Pick]]) -> list[list[int]]:
         """Places in the flattened table."""
         width = self._width
         return [[body * width + place for body, place in pick] for pick in picks]

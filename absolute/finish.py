@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.assembly import Mechanism
-from absolute.errors import SingularError
 from absolute.march import Found
 from absolute.newton import EPS, MOST_CORRECTIONS, rounding_of
 from absolute.solution import Array, Counts
@@ -27,6 +26,8 @@ class Finished(NamedTuple):
         velocity, acceleration: (N, 6 * moving bodies) [o', w] and [o'', w'], empty without rates.
         corrections: (N,) Newton corrections in all.
         residual: (N,) largest violation of a row.
+        step: (N,) the last correction, not made.
+        closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
         kept: (N,) whether the pose is on the branch of the drawing.
         world: (N, features, 3) points and directions that tell it.
     """
@@ -37,12 +38,14 @@ class Finished(NamedTuple):
     acceleration: Array
     corrections: Counts
     residual: Array
+    step: Array
+    closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
     world: Array
 
 
-def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int, rates: bool) -> Finished:
-    """Newton with a fresh Jacobian each time until corrections are rounding, for all together.
+def finish(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool) -> Finished:
+    """Newton with a fresh Jacobian each time until corrections and rows are rounding, for all together.
 
     The Jacobian of the last, negligible correction is that of the pose itself: its factors serve
     velocity and acceleration,  J v = rate,  J a = second - drift(v).
@@ -50,7 +53,6 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int,
     Args:
         found: configurations close to their poses.
         targets: (3, N, rows) targets, their first and second rates.
-        start: index of the first of these instants in the motion.
         rates: False leaves velocity and acceleration empty.
     """
     stack = mechanism.stack
@@ -79,12 +81,14 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int,
         more = ~(size <= ROUNDING)
         for place in np.flatnonzero(more & (size > 0.5 * previous[pending])).tolist():
             more[place] = not size[place] <= rounding_of(factors[order[place]].rcond())
+        # Near a fold corrections become as small as rounding before the rows close.
+        more |= ~stack.closed(fresh, targets[0, pending])
         previous[pending] = size
         pending, steps = pending[more], steps[more]
         if not pending.size:
             break
-    if pending.size:
-        raise _stalled(mechanism, start + int(pending[0]), float(previous[pending[0]]))
+    closed = np.ones(len(q), dtype=np.bool_)
+    closed[pending] = False
     velocity = acceleration = np.empty((0, stack.count))
     if rates:
         velocity = solved(factors, targets[1])
@@ -94,7 +98,9 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, start: int,
         acceleration = solved(factors, targets[2] - drift)
     residual = np.abs(targets[0] - placed.values).max(axis=1)
     kept = mechanism.sides.kept(placed.world)
-    return Finished(rotation, origin, velocity, acceleration, corrections, residual, kept, placed.world)
+    return Finished(
+        rotation, origin, velocity, acceleration, corrections, residual, previous, closed, kept, placed.world
+    )
 
 
 def solved(factors: list[eigenpy.PartialPivLU], sides: Array) -> Array:
@@ -106,11 +112,3 @@ def poses_of(mechanism: Mechanism, q: list[Array]) -> tuple[Array, Array]:
     """Rotations (N, bodies, 3, 3) and origins (N, bodies, 3) of many configurations."""
     poses = [mechanism.poses(each) for each in q]
     return np.array([pose.rotation for pose in poses]), np.array([pose.origin for pose in poses])
-
-
-def _stalled(mechanism: Mechanism, instant: int, size: float) -> SingularError:
-    return SingularError(
-        f"instant {instant}: Newton's corrections stall at {size * mechanism.drawing.size:.3g} mm, more than "
-        "rounding explains: the pose is too close to a singular one; stay away from the limit of the motion",
-        instant,
-    )

@@ -1,10 +1,11 @@
 """The MacPherson strut of the paper, described as data."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from absolute.description import Axis, Input, Joint, Model, Side, Vector, vector_of
+from absolute.description import Axis, Input, Joint, Model, Side, Vector, point_of, vector_of
 from absolute.errors import DescriptionError
 
 BODIES = {
@@ -37,8 +38,8 @@ def macpherson(
         points: the ten points named in POINTS, mm.
         up, right: where the car's up and right point in the frame of the points; any length.
     Raises:
-        DescriptionError: a point is missing, unknown or not finite; up and right are no directions
-            at a right angle; points that make an axis coincide.
+        DescriptionError: a point is missing, unknown, not finite or beyond LARGEST_COORDINATE; up
+            and right are no directions at a right angle; points that make an axis coincide.
     """
     missing, unknown = sorted(set(POINTS) - set(points)), sorted(set(points) - set(POINTS))
     if missing or unknown:
@@ -46,7 +47,7 @@ def macpherson(
             f"a MacPherson strut has the points {list(POINTS)}; missing: {missing}, unknown: {unknown}",
             (missing or unknown)[0],
         )
-    drawn = {name: np.array(vector_of(f"point {name!r}", name, points[name])) for name in POINTS}
+    drawn = {name: np.array(point_of(name, points[name])) for name in POINTS}
     upward, rightward = (
         _unit("up", vector_of("up", "up", up)),
         _unit("right", vector_of("right", "right", right)),
@@ -67,7 +68,8 @@ def macpherson(
     pin_of_rack = _unit("tie_rod", _plain(np.cross(along, sideways)))
     pin_of_rod = np.cross(along, pin_of_rack)
     _between(drawn, "lower_arm_front", "lower_ball_joint")
-    arm_length = float(np.linalg.norm(drawn["lower_ball_joint"] - drawn["lower_arm_front"]))
+    # Without the squares of a norm, which are zero for the smallest numbers.
+    arm_length = math.hypot(*(drawn["lower_ball_joint"] - drawn["lower_arm_front"]).tolist())
     arm_axis = Axis("lower_arm_front", "lower_arm_rear")
     ball = Axis("lower_ball_joint")
     slide = _plain(rightward)

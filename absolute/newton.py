@@ -91,7 +91,9 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
     s c / (1 - c); before c is known, about s^2 / rcond, with the `rcond` of a pose nearby, as the
     rows are quadratic with second derivatives of order 1. Newton stops when that is below eps, or
     when corrections no longer shrink, and then a fresh Jacobian must find the next correction as
-    small as rounding explains. Anything else is a failure: `pose` is None.
+    small as rounding explains and the rows closed to rounding. The correction alone proves nothing
+    near a fold: there it falls as the root of the residual, and just beyond the fold, where there
+    is no pose, it is as small. Anything else is a failure: `pose` is None.
     """
     factors = None
     previous = np.inf
@@ -107,9 +109,14 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
             break
         if settled:
             pose = pose_at(mechanism, q, poses, placed, target, factors)
-            return Corrected(pose if size <= pose.floor else None, count - 1)
+            if not size <= pose.floor:
+                return Corrected(None, count - 1)
+            if mechanism.stack.closed(placed, target):
+                return Corrected(pose, count - 1)
         contraction = size / previous
         q = mechanism.moved(q, poses.rotation, step)
+        if settled:
+            continue
         if count == 1:
             settled = size * size <= EPS * rcond
             renew = size > GOOD_CONTRACTION

@@ -1,5 +1,7 @@
 """Which side of its folds a linkage is on: the signs that tell its assemblies apart."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,39 +12,57 @@ from absolute.rows import Angle
 from absolute.solution import Array, Counts
 from absolute.vectors import cross
 
-# A drawn product below this many roundings of its factors has no sign.
+EPS = float(np.finfo(float).eps)
+
+# Drawn vectors have relative errors of two roundings, and a product of three of them adds nine: a
+# smaller share than this many roundings has no sign.
 ROUNDINGS = 16
 
 
-# A vector from the first feature to the second.
-Ends = tuple[Pick, Pick]
+class SideVector(NamedTuple):
+    """A vector from one feature to another, and what it is in the drawing, in units of size."""
+
+    start: Pick
+    end: Pick
+    drawn: Array
 
 
-def side_ends(
+def side_vectors(
     model: Model, drawing: Drawing, senses: tuple[Angle, ...], features: Features
-) -> dict[str, list[Ends]]:
+) -> dict[str, list[SideVector]]:
     """The vectors of each side, put into the table of features.
 
-    The sides of the model come first, then one per pair of joint axes that must keep its sense.
+    Between two points of one body the vector itself is a feature, so that its relative error is
+    that of a rotation however short it is. The sides of the model come first, then one per pair of
+    joint axes that must keep its sense.
     """
     nothing = features.add(0, np.zeros(3), False)
-    holder = {point: body for body in reversed(drawing.bodies) for point in model.bodies[body]}
+    holders = {
+        point: [body for body in drawing.bodies if point in model.bodies[body]] for point in model.points
+    }
 
-    def ends(vector: tuple[str, str] | Vector) -> Ends:
+    def fixed(body: int, line: Array) -> SideVector:
+        return SideVector(nothing, features.add(body, line, False), line)
+
+    def vector_of(vector: tuple[str, str] | Vector) -> SideVector:
         if len(vector) == 3:
             line = np.array(vector) / np.abs(vector).max()
-            return nothing, features.add(0, line / np.linalg.norm(line), False)
+            return fixed(0, line / np.linalg.norm(line))
+        line = drawing.line(*vector)
+        shared = [body for body in holders[vector[0]] if body in holders[vector[1]]]
+        if shared:
+            return fixed(drawing.bodies[shared[0]], line)
         start, end = (
-            features.add(drawing.bodies[holder[point]], drawing.arm(holder[point], point), True)
-            for point in vector
+            features.add(drawing.bodies[body], drawing.arm(body, point), True)
+            for body, point in ((holders[point][0], point) for point in vector)
         )
-        return start, end
+        return SideVector(start, end, line)
 
-    sides = {name: [ends(vector) for vector in side.vectors] for name, side in model.sides.items()}
+    sides = {name: [vector_of(vector) for vector in side.vectors] for name, side in model.sides.items()}
     for number, sense in enumerate(senses):
         sides[f"sense {number} of joint {sense.owner}"] = [
-            (nothing, features.add(sense.first, sense.direction, False)),
-            (nothing, features.add(sense.second, sense.partner, False)),
+            fixed(sense.first, sense.direction),
+            fixed(sense.second, sense.partner),
         ]
     return sides
 
@@ -57,51 +77,34 @@ class Sides:
         drawn: (sides,) products in the drawing as shares, see `shares`.
     """
 
-    def __init__(self, model: Model, sides: dict[str, list[Ends]], features: Features) -> None:
+    def __init__(self, model: Model, sides: dict[str, list[SideVector]], features: Features) -> None:
         self.told = bool(model.sides)
         # Products of three first, so that one vector product serves them all.
         ordered = sorted(sides.items(), key=lambda side: -len(side[1]))
         self.names = tuple(name for name, _ in ordered)
         self._count = len(ordered)
-        self._triples = sum(len(ends) == 3 for _, ends in ordered)
-        picks: list[tuple[Pick, ...]] = [
-            *(ends[0] for _, ends in ordered),
-            *(ends[1] for _, ends in ordered),
-            *(ends[2] for _, ends in ordered[: self._triples]),
+        self._triples = sum(len(vectors) == 3 for _, vectors in ordered)
+        every = [
+            *(vectors[0] for _, vectors in ordered),
+            *(vectors[1] for _, vectors in ordered),
+            *(vectors[2] for _, vectors in ordered[: self._triples]),
         ]
+        picks = [(vector.start, vector.end) for vector in every]
         flat = np.array(features.flat(picks), dtype=np.int64).reshape(-1, 2)
         self._starts: Counts = flat[:, 0].copy()
         self._ends: Counts = flat[:, 1].copy()
-        self.wanted = self.drawn = np.zeros(self._count)
-
-    def learn(self, world: Array, rounding: float) -> None:
-        """Take the signs of the drawing, whose features are placed here with errors of `rounding`."""
-        lengths = self._lengths(world)
-        slack = sum(np.prod(np.delete(lengths, at, axis=0), axis=0) for at in range(3))
-        products = self.products(world)
-        clear = np.abs(products) > ROUNDINGS * rounding * slack
-        self.wanted = np.where(clear, np.sign(products), 0.0)
-        self.drawn = self.shares(world)
+        # The drawing's own differences: a side may be short beside the car.
+        drawn = np.array([vector.drawn for vector in every]).reshape(-1, 3)
+        self.drawn = self._shares(drawn)
+        self.wanted = np.where(np.abs(self.drawn) > ROUNDINGS * EPS, np.sign(self.drawn), 0.0)
 
     def products(self, world: Array) -> Array:
         """(..., sides) a . b or (a x b) . c from placed features (..., features, 3)."""
-        vectors = world.take(self._ends, -2)
-        vectors -= world.take(self._starts, -2)
-        count, triples = self._count, self._triples
-        first, second = vectors[..., :count, :], vectors[..., count : 2 * count, :]
-        if triples:
-            # In place: these vectors are needed no more.
-            first[..., :triples, :] = cross(first[..., :triples, :], second[..., :triples, :])
-            second[..., :triples, :] = vectors[..., 2 * count :, :]
-        products: Array = np.vecdot(first, second)
-        return products
+        return self._products(self._vectors(world))
 
     def shares(self, world: Array) -> Array:
         """(sides,) products divided by the lengths of their factors, between -1 and 1."""
-        lengths = np.prod(self._lengths(world), axis=0)
-        products = self.products(world)
-        shares: Array = np.divide(products, lengths, out=np.zeros_like(products), where=lengths > 0)
-        return shares
+        return self._shares(self._vectors(world))
 
     def kept(self, world: Array) -> NDArray[np.bool_]:
         """(...) whether all sides are those of the drawing."""
@@ -112,10 +115,23 @@ class Sides:
         """The side whose share is furthest on the wrong side at one pose."""
         return int(np.argmin(self.shares(world) * self.wanted))
 
-    def _lengths(self, world: Array) -> Array:
-        """(3, sides) lengths of the factors at one pose; 1 for a factor that is not there."""
-        found = np.linalg.norm(world.take(self._ends, -2) - world.take(self._starts, -2), axis=-1)
-        lengths = np.ones((3, self._count))
-        lengths[0], lengths[1] = found[: self._count], found[self._count : 2 * self._count]
-        lengths[2, : self._triples] = found[2 * self._count :]
-        return lengths
+    def _vectors(self, world: Array) -> Array:
+        vectors: Array = world.take(self._ends, -2)
+        vectors -= world.take(self._starts, -2)
+        return vectors
+
+    def _products(self, vectors: Array) -> Array:
+        """Uses up the vectors."""
+        count, triples = self._count, self._triples
+        first, second = vectors[..., :count, :], vectors[..., count : 2 * count, :]
+        if triples:
+            # In place: these vectors are needed no more.
+            first[..., :triples, :] = cross(first[..., :triples, :], second[..., :triples, :])
+            second[..., :triples, :] = vectors[..., 2 * count :, :]
+        products: Array = np.vecdot(first, second)
+        return products
+
+    def _shares(self, vectors: Array) -> Array:
+        # Of unit vectors, so that short ones do not multiply to nothing.
+        length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+        return self._products(np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0))

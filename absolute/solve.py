@@ -7,7 +7,7 @@ import numpy as np
 from absolute.assemble import branch_error
 from absolute.assembly import Mechanism
 from absolute.description import Model
-from absolute.errors import AbsoluteError, InputError
+from absolute.errors import AbsoluteError, InputError, SingularError
 from absolute.finish import BATCH, finish
 from absolute.march import March
 from absolute.motion import Record
@@ -75,14 +75,24 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
         except AbsoluteError as error:
             failure, found = error, journey.found
         if found:
-            finished = finish(
-                journey.mechanism, found, targets[:, done : done + len(found)], record.written, rates
+            finished = finish(journey.mechanism, found, targets[:, done : done + len(found)], rates)
+            good = (
+                finished.closed
+                & finished.kept
+                & (np.isfinite(finished.acceleration).all(axis=1) if rates else True)
             )
-            good = finished.kept & (np.isfinite(finished.acceleration).all(axis=1) if rates else True)
             count = len(found) if good.all() else int(np.argmin(good))
             record.store(finished, count)
             if count < len(found):
                 bad = record.written
+                if not finished.closed[count]:
+                    raise _stalled(
+                        journey.mechanism,
+                        bad,
+                        values[bad - begin],
+                        finished.residual[count],
+                        finished.step[count],
+                    )
                 if finished.kept[count]:
                     raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
                 if again == bad:
@@ -92,6 +102,21 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
                 continue
         if failure is not None:
             raise failure
+
+
+def _stalled(
+    mechanism: Mechanism, instant: int, values: list[float], residual: float, step: float
+) -> SingularError:
+    size = mechanism.drawing.size
+    return SingularError(
+        f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
+        f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "
+        "singular one, or just beyond it; stay away from the limit of the motion",
+        instant,
+        mechanism.named(values),
+        {},
+        residual * size,
+    )
 
 
 def _overflow(mechanism: Mechanism, instant: int, rates: list[list[float]]) -> InputError:

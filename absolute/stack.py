@@ -3,14 +3,17 @@
 Every row is a . e, with a a direction of the first body and e = f - g the difference of two
 features: the partner direction and nothing (right angle), or point 2 and point 1 (offset). The
 unknown velocities of a body are those of its frame's origin and its angular velocity, in world
-axes: [o', w]. A feature f of a body moves with w x (f - c), c the origin for a point and zero for
-a direction, so the row has the rate
-    offset only:  a . (o2' - o1')     both:  w1 . (a x (f - c1)) - w2 . (a x (f - c2)).
+axes: [o', w]. A point p of a body moves with o' + w x r, r its arm from the origin, a direction d
+with w x d. With r1 and r2 the arms of both points, or nothing and the partner direction, the row
+has the rate
+    offset only:  a . (o2' - o1')     both:  w1 . (a x (r1 + e)) - w2 . (a x r2).
+The arms are turned by themselves: as differences of points far out they would be rounded as those.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from absolute.features import Features
 from absolute.rows import Angle, Offset, Rows
@@ -20,6 +23,12 @@ from absolute.vectors import LAST, NEXT
 # w @ _WHEEL is the transposed matrix of "w x", row by row: features are kept as rows.
 _WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 
+# A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
+# meet in it: four from the quaternion, four from its products, three from the turning, two from the
+# origin, eleven from the direction, three from the last product. Independent ones add up to
+# sqrt(27 / 3) of eps / 2, or 1.5 eps; more than 4 eps is not rounding alone.
+ROUNDINGS = 4 * float(np.finfo(float).eps)
+
 
 class Placed(NamedTuple):
     """Rows evaluated at poses.
@@ -27,9 +36,10 @@ class Placed(NamedTuple):
     Attributes:
         turned: (..., bodies, places, 3) features of each body turned to world axes, without its origin.
         world: (..., bodies * places, 3) the features where they are.
-        parts: (..., 5, rows, 3) the vectors a, f, g, c1, c2 of every row.
+        parts: (..., 5, rows, 3) the vectors a, f, g, r1, r2 of every row.
         reach: (..., rows, 3) e = f - g.
         values: (..., rows) a . e.
+        origin: (..., bodies, 3) of the bodies.
     """
 
     turned: Array
@@ -37,6 +47,7 @@ class Placed(NamedTuple):
     parts: Array
     reach: Array
     values: Array
+    origin: Array
 
 
 class RowStack:
@@ -48,24 +59,29 @@ class RowStack:
         self.count = count = len(every)
         bodies = features.bodies
         nothing = features.add(0, np.zeros(3), False)
-        origins = [features.add(body, np.zeros(3), True) for body in range(bodies)]
+        partners = [features.add(r.second, r.partner, False) for r in rows.angles]
         picks = [
-            (
-                features.add(r.first, r.direction, False),
-                features.add(r.second, r.partner, False),
-                *[nothing] * 3,
-            )
-            for r in rows.angles
+            (features.add(r.first, r.direction, False), partner, nothing, nothing, partner)
+            for r, partner in zip(rows.angles, partners, strict=True)
         ] + [
             (
                 features.add(r.first, r.direction, False),
                 features.add(r.second, r.second_arm, True),
                 features.add(r.first, r.first_arm, True),
-                origins[r.first],
-                origins[r.second],
+                features.add(r.first, r.first_arm, False),
+                features.add(r.second, r.second_arm, False),
             )
             for r in rows.offsets
         ]
+        # What the terms of a row add up to at most, apart from the distances of the origins.
+        self._spans = np.array(
+            [1.0] * len(rows.angles)
+            + [np.linalg.norm(r.first_arm) + np.linalg.norm(r.second_arm) for r in rows.offsets]
+        )
+        # The chassis has its origin at zero: nothing to add for angles.
+        self._between = np.array(
+            [[0, 0]] * len(rows.angles) + [[r.first, r.second] for r in rows.offsets], dtype=np.int64
+        ).reshape(-1, 2)
         self._local, self._is_point = features.tables()
         self._picks = np.array(features.flat(picks)).T.copy()
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
@@ -82,12 +98,11 @@ class RowStack:
                 source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
         # Column by column, the order in which a factorisation reads without a copy.
         self._source = source[:, 1:].reshape(count, -1).T.copy()
-        # Numbers in the flat parts from which a x (f - c1) and (f - c2) x a are multiplied out.
-        part = np.arange(5 * count * 3).reshape(5, count, 3)
-        a, f, c1, c2 = part[0], part[1], part[3], part[4]
+        # Numbers in the flat parts from which a x (r1 + e) and r2 x a are multiplied out.
+        part = np.arange(3 * count * 3).reshape(3, count, 3)
+        a, r1, r2 = part
         self._turn_a = np.array([[a[:, NEXT], a[:, LAST]], [a[:, LAST], a[:, NEXT]]])
-        self._turn_f = np.array([[f[:, LAST], f[:, NEXT]], [f[:, NEXT], f[:, LAST]]])
-        self._turn_c = np.array([[c1[:, LAST], c1[:, NEXT]], [c2[:, NEXT], c2[:, LAST]]])
+        self._turn_r = np.array([[r1[:, LAST], r1[:, NEXT]], [r2[:, NEXT], r2[:, LAST]]])
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
@@ -96,19 +111,28 @@ class RowStack:
         world = world.reshape(*world.shape[:-3], -1, 3)
         parts: Array = world.take(self._picks, -2)
         reach = parts[..., 1, :, :] - parts[..., 2, :, :]
-        return Placed(turned, world, parts, reach, np.vecdot(parts[..., 0, :, :], reach))
+        return Placed(turned, world, parts, reach, np.vecdot(parts[..., 0, :, :], reach), origin)
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""
         lead = placed.parts.shape[:-3]
-        numbers = placed.parts.reshape(*lead, -1)
-        arms = numbers.take(self._turn_f, -1) - numbers.take(self._turn_c, -1)
-        products = numbers.take(self._turn_a, -1) * arms
+        arms = placed.parts[..., (0, 3, 4), :, :]
+        arms[..., 1, :, :] += placed.reach
+        numbers = arms.reshape(*lead, -1)
+        products = numbers.take(self._turn_a, -1) * numbers.take(self._turn_r, -1)
         turning = (products[..., 0, :, :] - products[..., 1, :, :]).reshape(*lead, -1)
         along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
         entries = np.concatenate((np.zeros((*lead, 1)), along, -along, turning), -1)
         matrix: Array = entries.take(self._source, -1)
         return matrix.swapaxes(-1, -2)
+
+    def closed(self, placed: Placed, target: Array) -> NDArray[np.bool_]:
+        """(...) whether no row misses its target by more than rounding: ROUNDINGS times the lengths of
+        the vectors that add up to it."""
+        far = np.sqrt(np.vecdot(placed.origin, placed.origin))
+        rounding = ROUNDINGS * (self._spans + far.take(self._between, -1).sum(-1))
+        closed: NDArray[np.bool_] = np.asarray((np.abs(target - placed.values) <= rounding).all(-1))
+        return closed
 
     def drift(self, placed: Placed, velocity: Array, spin: Array) -> Array:
         """Second rate of the rows when no body accelerates: a''.e + 2 a'.e' + a.e''.

@@ -1,0 +1,163 @@
+"""A vector between two points of a body is as accurate as the coordinates given, however short it is."""
+
+import importlib.util
+from collections.abc import Callable
+from fractions import Fraction
+from math import isqrt
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import absolute
+from absolute import Axis
+from absolute.assembly import Mechanism
+from absolute.drawing import Drawing
+
+Array = NDArray[np.float64]
+Table = dict[str, tuple[float, float, float]]
+EPS = float(np.finfo(float).eps)
+# Pairs of one body, and how much of their distance is left; below 1e-8 of the size a line is refused.
+PAIRS = [
+    ("lower_arm_front", "lower_arm_rear"),
+    ("lower_arm_rear", "lower_arm_front"),
+    ("lower_ball_joint", "strut_lower"),
+    ("strut_lower", "lower_ball_joint"),
+    ("strut_top", "strut_rod_end"),
+    ("strut_rod_end", "strut_top"),
+    ("lower_ball_joint", "lower_arm_front"),
+    ("tie_rod_outer", "wheel_centre"),
+]
+SHARES = [1e-4, 1e-5, 1e-6, 1e-7]
+
+
+def load(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+exact = load("exact_form")
+
+
+def drawn_close(table: Table, fixed: str, moved: str, share: float, seed: int) -> dict[str, Array]:
+    """A car of no round numbers, its strut drawn nearly on its line, with two points near each other."""
+    random = np.random.default_rng(seed)
+    car = {name: np.array(point) + random.uniform(-30, 30, 3) for name, point in table.items()}
+    ball, top = car["lower_ball_joint"], car["strut_top"]
+    for name, along in (("strut_lower", 0.12), ("strut_rod_end", 0.5)):
+        car[name] = ball + along * (top - ball) + random.uniform(-2, 2, 3)
+    car[moved] = car[fixed] + share * (car[moved] - car[fixed])
+    return car
+
+
+def fractions(point: Array) -> list[Fraction]:
+    return [Fraction(float(value)) for value in point]
+
+
+def exact_unit(start: Array, end: Array) -> list[Fraction]:
+    """Unit vector between two points as given, to 40 digits."""
+    line = [b - a for a, b in zip(fractions(start), fractions(end), strict=True)]
+    square, scale = sum(x * x for x in line), 10**60
+    length = Fraction(isqrt(square.numerator * scale**2 // square.denominator), scale)
+    return [x / length for x in line]
+
+
+def error_of(found: Array, wanted: list[Fraction]) -> float:
+    return max(abs(float(a - b)) for a, b in zip(fractions(found), wanted, strict=True))
+
+
+@pytest.mark.parametrize(("fixed", "moved"), PAIRS)
+@pytest.mark.parametrize("share", SHARES)
+def test_axes_are_drawn_with_the_digits_of_the_coordinates_given(
+    table: Table, fixed: str, moved: str, share: float
+) -> None:
+    for seed in range(5):
+        car = drawn_close(table, fixed, moved, share, seed)
+        drawing = Drawing(absolute.macpherson(car))
+        found = drawing.direction("axis", Axis(fixed, moved))
+        # A subtraction, a division, a norm and a division: five roundings of eps / 2 at most.
+        assert error_of(found, exact_unit(car[fixed], car[moved])) <= 2.5 * EPS
+
+
+@pytest.mark.parametrize(("fixed", "moved"), PAIRS)
+@pytest.mark.parametrize("share", SHARES)
+def test_points_near_each_other_keep_their_vector_in_the_body_that_holds_them(
+    table: Table, fixed: str, moved: str, share: float
+) -> None:
+    for seed in range(5):
+        car = drawn_close(table, fixed, moved, share, seed)
+        model = absolute.macpherson(car)
+        drawing = Drawing(model)
+        for body in model.moving:
+            if {fixed, moved} <= set(model.bodies[body]):
+                vector = drawing.arm(body, moved) - drawing.arm(body, fixed)
+                length = float(np.linalg.norm(vector))
+                assert abs(length * drawing.size / np.linalg.norm(car[moved] - car[fixed]) - 1) <= 4 * EPS
+                assert error_of(vector / length, exact_unit(car[fixed], car[moved])) <= 4 * EPS
+
+
+def exact_product(car: dict[str, Array], side: absolute.Side) -> tuple[Fraction, float]:
+    """The product of a side's vectors from the coordinates given, and the product of their lengths."""
+    vectors = []
+    for vector in side.vectors:
+        start, end = (np.zeros(3), np.array(vector)) if len(vector) == 3 else (car[name] for name in vector)
+        vectors.append([b - a for a, b in zip(fractions(start), fractions(end), strict=True)])
+    lengths = float(np.prod([np.linalg.norm([float(x) for x in vector]) for vector in vectors]))
+    if len(vectors) == 3:
+        (a, b), c = vectors[:2], vectors[2]
+        vectors = [[a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)], c]
+    return sum((x * y for x, y in zip(*vectors, strict=True)), Fraction(0)), lengths
+
+
+@pytest.mark.parametrize(("fixed", "moved"), PAIRS[:7])
+def test_sides_of_short_lines_are_those_of_the_coordinates_given(
+    table: Table, fixed: str, moved: str
+) -> None:
+    for share in SHARES:
+        car = drawn_close(table, fixed, moved, share, 1)
+        model = absolute.macpherson(car)
+        mechanism = Mechanism(model)
+        sides = mechanism.sides
+        placed = mechanism.stack.place(*mechanism.poses(mechanism.drawn)).world
+        for name, side in model.sides.items():
+            product, lengths = exact_product(car, side)
+            number = sides.names.index(name)
+            # Nine roundings at most in the drawing; placed, points of two bodies far apart are
+            # rounded as the size, a few hundred mm.
+            assert abs(sides.drawn[number] - float(product) / lengths) <= 9 * EPS
+            assert sides.wanted[number] == np.sign(float(product))
+            assert abs(sides.shares(placed)[number] - float(product) / lengths) <= 32 * EPS
+
+
+@pytest.mark.parametrize("share", SHARES)
+def test_the_drawn_angle_of_a_short_arm_is_that_of_the_coordinates_given(table: Table, share: float) -> None:
+    car = drawn_close(table, "lower_ball_joint", "lower_arm_front", share, 3)
+    angle = Mechanism(absolute.macpherson(car)).drawn_inputs[0]
+    # The arc cosine of a ratio with three roundings, at an angle whose sine is above a half.
+    assert np.sin(angle) > 0.5
+    assert abs(angle - exact.drawn_angle(car)) <= 4 * EPS
+
+
+@pytest.mark.parametrize(("fixed", "moved"), PAIRS)
+@pytest.mark.parametrize("share", SHARES)
+def test_cars_with_points_near_each_other_stand_where_exact_circles_and_spheres_meet(
+    table: Table, held: Callable[[float, float], dict[str, Array]], fixed: str, moved: str, share: float
+) -> None:
+    for seed in range(6):
+        car = drawn_close(table, fixed, moved, share, seed)
+        rack = float((car["rack_centre"] - car["tie_rod_inner"])[1]) + 5.0
+        goal = exact.drawn_angle(car) + 0.05, rack
+        expected = exact.exact_form(car, *goal)
+        assert expected is not None
+        motion = absolute.solve(absolute.macpherson(car), held(*goal), rates=False, conditions=True)
+        assert motion.condition is not None
+        # Size below 500 mm; rounding of the rows, magnified by the condition number.
+        tolerance = 2 * EPS * 500 * motion.condition[0]
+        for name, place in expected[0].items():
+            assert exact.distance(place, motion.position[name][0]) <= tolerance, name
