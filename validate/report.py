@@ -13,7 +13,7 @@ from validate.paper import WHY_NOT_EQUAL, PaperRow, root_mean_square
 from validate.tolerance import EPS, ROUNDINGS
 
 # Columns of words, which read better from the left.
-LEFT = ("worst at", "wrong quantity", "erratum", "slip of print", "verdict")
+LEFT = ("formulation", "outcome", "worst at", "wrong quantity", "erratum", "slip of print", "verdict")
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -24,9 +24,10 @@ ARM_ANGLES = (1.25, 1.5707963267948966, 1.9)  # rad, at which the rack is driven
 
 # Where pointcoord has to be right, by how it comes near the end. Held: a path is followed until its steps
 # shrink below 1e-13 of it, which is at 1e-12 of the way to the end from the drawing, half a range away; ten
-# times that is always reached. Moving: a motion ends where a segment is 1e-11 of the whole; segments are some
-# tenth of the time that is left, so that the motion goes on to 1e-10 of its way, half a range as well.
-RIGHT_FROM = {"held": 1e-11, "moving": 1e-10}
+# times that is always reached. Moving: a motion goes on while a segment, some tenth of the time that is left,
+# is 1e-15 of the whole. Two branches 1e-6 of the car apart, the root of 1e-12, are told apart where the
+# condition number, 1e6 or some ten times that, leaves half of the digits; ten times that always is.
+RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
 BEYOND = {"pointcoord": REFUSED, "absolute": REFUSED}
 OUTSIDE = "refused: there is no pose"
 

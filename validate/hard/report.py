@@ -18,6 +18,10 @@ SHORT = 90  # characters of a reason in a table
 OURS, OTHER = "pointcoord", "absolute"
 
 
+# What nothing has to be said of.
+PLAIN = {"truth": "answers"}
+
+
 def listing(cases: Sequence[Case]) -> str:
     """Names and reasons of cases, under the headings of their groups."""
     lines: list[str] = []
@@ -40,7 +44,7 @@ def case_text(result: Examined, every_value: bool = False) -> str:
     ]
     if every_value:
         lines.append(_indented(table(_VALUE_HEAD, _value_rows(result))))
-        lines += [f"  at {t.value:g}: {_facts(t.facts)}" for t in result.trials if t.facts]
+        lines += [f"  at {t.value:g}: {_facts(t.facts)}" for t in result.trials if t.facts != PLAIN]
     lines += [
         f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
         for value, answer in result.unexpected
@@ -49,22 +53,31 @@ def case_text(result: Examined, every_value: bool = False) -> str:
 
 
 def _head(case: Case) -> tuple[str, ...]:
-    size = f"error [{case.unit}]"
-    return ("formulation", "tried", *OUTCOMES, size, "of its bound", "condition", "verdict")
+    sizes = f"error [{case.unit}]", f"bound [{case.unit}]"
+    return ("formulation", "tried", *OUTCOMES, *sizes, "of its bound", "condition", "verdict")
 
 
 def _row(result: Examined, name: str) -> tuple[str, ...]:
     given = result.answers(name)
     outcomes = Counter(answer.outcome for _, answer in given)
-    largest = (_largest([getattr(a, what) for _, a in given]) for what in ("error", "share", "condition"))
+    sizes = ("error", "bound", "share", "condition")
+    largest = (_largest([getattr(a, what) for _, a in given]) for what in sizes)
+    other = any(answer.formulation == name for _, answer in result.unexpected)
+    verdict = "NOT as expected" if other else "as expected"
     stop = result.gives_up(name)
-    where = "" if stop is None else f"gives up at {given[stop[0]][0]:g}: {short(stop[1].reason)}"
-    return (name, str(len(given)), *(str(outcomes[o] or ".") for o in OUTCOMES), *largest, where)
+    if stop is not None:
+        verdict += f"; gives up at {given[stop[0]][0]:g}: {short(stop[1].reason)}"
+    return (name, str(len(given)), *(str(outcomes[o] or ".") for o in OUTCOMES), *largest, verdict)
 
 
 def _largest(numbers: Sequence[float | None]) -> str:
     known = [number for number in numbers if number is not None]
-    return f"{max(known):.2g}" if known else "-"
+    return _digits(max(known)) if known else "-"
+
+
+def _digits(number: float) -> str:
+    """Two digits; what is just below 1, as a share of a bound may be, is not rounded up to it."""
+    return "0.99" if 0.99 < number < 1.0 else f"{number:.2g}"
 
 
 def short(reason: str) -> str:
@@ -91,7 +104,7 @@ _VALUE_HEAD = ("value", "formulation", "outcome", "error", "bound", "of its boun
 def _value_rows(result: Examined) -> Iterable[tuple[str, ...]]:
     for trial in result.trials:
         for a in trial.answers:
-            numbers = ("-" if x is None else f"{x:.2g}" for x in (a.error, a.bound, a.share, a.condition))
+            numbers = ("-" if x is None else _digits(x) for x in (a.error, a.bound, a.share, a.condition))
             yield f"{trial.value:g}", a.formulation, a.outcome, *numbers, short(a.reason)
 
 
