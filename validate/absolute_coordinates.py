@@ -18,6 +18,7 @@ EPS = float(np.finfo(float).eps)
 # A row of the model (a rotation applied to a body point, twice, and a difference) takes some 16
 # roundings of eps / 2 on numbers as large as the mechanism.
 ROUNDINGS = 8.0
+LARGEST = 1e300  # mm: four times that, and sums of ten coordinates, stay finite
 
 
 class AbsoluteCoordinates:
@@ -36,26 +37,27 @@ class AbsoluteCoordinates:
         heave = inputs.pop("heave", None)
         chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
         needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
+        origin = near_origin(part)
+        near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(part.points, up=part.up, right=part.right)
+            model = absolute.macpherson(near, up=part.up, right=part.right)
             solved = absolute.solve(model, inputs, chassis=chassis, rates=needs_rates, conditions=True)
         except absolute.AbsoluteError as error:
             raise FormulationError(self.name, error) from error
         condition = np.ones(len(times)) if solved.condition is None else solved.condition
-        corners = np.array(list(part.points.values()))
-        size = float((corners.max(axis=0) - corners.min(axis=0)).max())
-        distance = float(np.abs(np.stack(list(solved.position.values()))).max())
+        position = {name: place + origin for name, place in solved.position.items()}
+        distance = float(np.abs(np.stack(list(position.values()))).max())
         return Solution(
             formulation=self.name,
             times=times,
-            position=solved.position,
+            position=position,
             velocity=solved.velocity if "velocity" in wanted else {},
             acceleration=solved.acceleration if "acceleration" in wanted else {},
             angular_velocity=_knuckle(solved.angular_velocity, wanted),
             angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
             wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
             accuracy=Accuracy(
-                pose_error=ROUNDINGS * EPS * condition * size,
+                pose_error=ROUNDINGS * EPS * condition * extent(part),
                 stored=np.full(len(times), EPS * distance),
                 carried_gain=np.ones(len(times)),  # every point rides on its body alike
                 proven=False,
@@ -68,6 +70,27 @@ class AbsoluteCoordinates:
 
 def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> dict[str, Array]:
     return {"knuckle": rates_of_bodies["knuckle"]} if "knuckle_rates" in wanted else {}
+
+
+def extent(part: MechanismPart) -> float:
+    """Size of the car: the longest side of the box around its points, mm."""
+    corners = np.array(list(part.points.values()))
+    with np.errstate(over="ignore"):
+        return float((corners.max(axis=0) - corners.min(axis=0)).max())
+
+
+def near_origin(part: MechanismPart) -> Array:
+    """A place near the car from which its points are measured without rounding, shape (3,), mm.
+
+    The model returns positions, and an angle between points that were rounded far away would be off by as
+    much. On a grid of powers of two above four sizes the difference is exact; 0 near the user's origin.
+    """
+    size = extent(part)
+    if not 0.0 < size < LARGEST:
+        return np.zeros(3)  # the model refuses such a car itself
+    grid = 4.0 * np.ldexp(1.0, np.frexp(size)[1])
+    middle = np.array(list(part.points.values())).mean(axis=0)
+    return np.asarray(np.trunc(middle / grid) * grid + 0.0)
 
 
 def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, Array]:
