@@ -55,6 +55,7 @@ class Drawing:
                 "points",
                 self.size,
             )
+        self._drawn = model.points
         self._given = dict(zip(model.points, coordinates, strict=True))
         self.bodies = {name: index for index, name in enumerate((model.chassis, *model.moving))}
         self._anchors = {body: self._anchor(model.bodies[body]) for body in model.moving}
@@ -95,7 +96,7 @@ class Drawing:
         # The point with the smallest product of distances to the others: an end of the shortest
         # lines of the body, and these are the ones that rounding would turn.
         def nearness(point: str) -> float:
-            lengths = [float(np.linalg.norm(self.line(point, other))) for other in points]
+            lengths = [math.dist(self._drawn[point], self._drawn[other]) for other in points]
             # A line of no length has no rounding either.
             return math.fsum(math.log(length) for length in lengths if length > 0)
 

@@ -69,10 +69,14 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool
         for instant, step in zip(order, steps, strict=True):
             q[instant] = mechanism.moved(q[instant], rotation[instant], step)
         corrections[pending] += 1
-        rotation[pending], origin[pending] = poses_of(mechanism, [q[instant] for instant in order])
-        fresh = stack.place(rotation[pending], origin[pending])
-        for whole, part in zip(placed, fresh, strict=True):
-            whole[pending] = part
+        poses = poses_of(mechanism, [q[instant] for instant in order])
+        fresh = stack.place(*poses)
+        if len(order) == len(q):
+            (rotation, origin), placed = poses, fresh
+        else:
+            rotation[pending], origin[pending] = poses
+            for whole, part in zip(placed, fresh, strict=True):
+                whole[pending] = part
         for instant, jacobian in zip(order, stack.jacobian(fresh), strict=True):
             factors[instant] = eigenpy.PartialPivLU(jacobian)
         steps = solved([factors[instant] for instant in order], targets[0, pending] - fresh.values)

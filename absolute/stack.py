@@ -36,7 +36,7 @@ class Placed(NamedTuple):
     Attributes:
         turned: (..., bodies, places, 3) features of each body turned to world axes, without its origin.
         world: (..., bodies * places, 3) the features where they are.
-        parts: (..., 5, rows, 3) the vectors a, f, g, r1, r2 of every row.
+        parts: (..., 5, rows, 3) the vectors a, f, g, r1 + e, r2 of every row.
         reach: (..., rows, 3) e = f - g.
         values: (..., rows) a . e.
         origin: (..., bodies, 3) of the bodies.
@@ -74,14 +74,12 @@ class RowStack:
             for r in rows.offsets
         ]
         # What the terms of a row add up to at most, apart from the distances of the origins.
-        self._spans = np.array(
-            [1.0] * len(rows.angles)
-            + [np.linalg.norm(r.first_arm) + np.linalg.norm(r.second_arm) for r in rows.offsets]
-        )
-        # The chassis has its origin at zero: nothing to add for angles.
-        self._between = np.array(
-            [[0, 0]] * len(rows.angles) + [[r.first, r.second] for r in rows.offsets], dtype=np.int64
-        ).reshape(-1, 2)
+        arms = np.array([(r.first_arm, r.second_arm) for r in rows.offsets]).reshape(-1, 2, 3)
+        self._spans = np.append(np.ones(len(rows.angles)), np.linalg.norm(arms, axis=-1).sum(axis=1))
+        # How often the distance of a body's origin counts in a row: not at all for angles.
+        self._between = np.zeros((bodies, count))
+        for row, offset in enumerate(rows.offsets, len(rows.angles)):
+            self._between[[offset.first, offset.second], row] = 1.0
         self._local, self._is_point = features.tables()
         self._picks = np.array(features.flat(picks)).T.copy()
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
@@ -99,8 +97,8 @@ class RowStack:
         # Column by column, the order in which a factorisation reads without a copy.
         self._source = source[:, 1:].reshape(count, -1).T.copy()
         # Numbers in the flat parts from which a x (r1 + e) and r2 x a are multiplied out.
-        part = np.arange(3 * count * 3).reshape(3, count, 3)
-        a, r1, r2 = part
+        part = np.arange(5 * count * 3).reshape(5, count, 3)
+        a, r1, r2 = part[0], part[3], part[4]
         self._turn_a = np.array([[a[:, NEXT], a[:, LAST]], [a[:, LAST], a[:, NEXT]]])
         self._turn_r = np.array([[r1[:, LAST], r1[:, NEXT]], [r2[:, NEXT], r2[:, LAST]]])
 
@@ -111,14 +109,13 @@ class RowStack:
         world = world.reshape(*world.shape[:-3], -1, 3)
         parts: Array = world.take(self._picks, -2)
         reach = parts[..., 1, :, :] - parts[..., 2, :, :]
+        parts[..., 3, :, :] += reach
         return Placed(turned, world, parts, reach, np.vecdot(parts[..., 0, :, :], reach), origin)
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""
         lead = placed.parts.shape[:-3]
-        arms = placed.parts[..., (0, 3, 4), :, :]
-        arms[..., 1, :, :] += placed.reach
-        numbers = arms.reshape(*lead, -1)
+        numbers = placed.parts.reshape(*lead, -1)
         products = numbers.take(self._turn_a, -1) * numbers.take(self._turn_r, -1)
         turning = (products[..., 0, :, :] - products[..., 1, :, :]).reshape(*lead, -1)
         along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
@@ -130,7 +127,7 @@ class RowStack:
         """(...) whether no row misses its target by more than rounding: ROUNDINGS times the lengths of
         the vectors that add up to it."""
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
-        rounding = ROUNDINGS * (self._spans + far.take(self._between, -1).sum(-1))
+        rounding = ROUNDINGS * (self._spans + far @ self._between)
         closed: NDArray[np.bool_] = np.asarray((np.abs(target - placed.values) <= rounding).all(-1))
         return closed
 
@@ -151,5 +148,6 @@ class RowStack:
 
     def _parts(self, features: Array) -> Array:
         flat = features.reshape(*features.shape[:-3], -1, 3)
-        picked: Array = flat.take(self._picks, -2)
+        # The vectors a, f and g: arms have no rates of their own in a row.
+        picked: Array = flat.take(self._picks[:3], -2)
         return picked
