@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.lib.stride_tricks import as_strided
 
 from absolute.description import Model
 from absolute.drawing import Drawing
@@ -21,6 +22,11 @@ class Poses(NamedTuple):
 
     rotation: Array
     origin: Array
+
+
+def address(array: Array) -> int:
+    """Where the first number of an array is kept."""
+    return int(array.ctypes.data)
 
 
 class Mechanism:
@@ -46,18 +52,20 @@ class Mechanism:
         self.sides = Sides(model, vectors, features)
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
-        self._ids = [
+        for body in model.moving:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
-            for body in model.moving
-        ]
         # After the last joint and frame: data made earlier would be too small.
         self.pin_data = self.pin_model.createData()
         self.drawn = pin.neutral(self.pin_model)
         self.drawn.reshape(-1, 7)[:, :3] = drawing.origins[1:]
-        # Views into the data of Pinocchio; `poses` copies them out.
-        placements = [self.pin_data.oMi[index] for index in self._ids]
-        self._rotations = [np.eye(3)] + [placement.rotation for placement in placements]
-        self._origins = [np.zeros(3)] + [placement.translation for placement in placements]
+        # Pinocchio keeps the placements one after the other, the universe first: two views reach
+        # them all, and `poses` copies these out.
+        placements = self.pin_data.oMi
+        rotation, origin = placements[0].rotation, placements[0].translation
+        apart = address(placements[1].rotation) - address(rotation)
+        count = len(drawing.bodies)
+        self._rotations = as_strided(rotation, (count, 3, 3), (apart, *rotation.strides))
+        self._origins = as_strided(origin, (count, 3), (apart, *origin.strides))
         self._laws = [
             (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
         ]
@@ -78,7 +86,7 @@ class Mechanism:
     def poses(self, q: Array) -> Poses:
         """Poses of all bodies at a configuration."""
         pin.forwardKinematics(self.pin_model, self.pin_data, q)
-        return Poses(np.array(self._rotations), np.array(self._origins))
+        return Poses(self._rotations.copy(), self._origins.copy())
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configuration after a step [o', w] per body in world axes; Pinocchio takes body axes."""
