@@ -60,10 +60,8 @@ def test_no_rate_knows_how_far_the_origin_is(value: float) -> None:
     ratios = {n: float(fact) for n, fact in far(value).facts.items() if n.endswith("at home")}
     assert len(ratios) == 5 * len(SOLVERS)
     for name, ratio in ratios.items():
-        # The angles of the absolute model are made from stored positions: see the catalogue.
-        if not name.startswith("error of wheel of absolute"):
-            # Errors of a few roundings differ by a few.
-            assert ratio < 100.0, name
+        # Errors of a few roundings differ by a few.
+        assert ratio < 100.0, name
 
 
 @pytest.mark.parametrize("quantity", ["position", "velocity", "angular_acceleration"])

@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
-from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Case, Expected
+from validate.hard.case import REFUSED, Case, Expected
 from validate.hard.trial import decades, scene_case
 from validate.input_ends import Car, Linkage
 
@@ -28,20 +28,27 @@ ARM_ANGLES = (1.25, 1.5707963267948966, 1.9)  # rad, at which the rack is driven
 # is 1e-15 of the whole. Two branches 1e-6 of the car apart, the root of 1e-12, are told apart where the
 # condition number, 1e6 or some ten times that, leaves half of the digits; ten times that always is.
 RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
+# The absolute model stops where its condition number exceeds 6.7e7, the inverse root of the rounding unit. In
+# its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
+# the range, and at ten times the nearest decade above that no end is near enough to be a reason.
+ABSOLUTE_FROM = 1e-11
 BEYOND = {"pointcoord": REFUSED, "absolute": REFUSED}
 OUTSIDE = "refused: there is no pose"
 
 
 def near_end(law: str) -> dict[str, Expected]:
-    """The absolute model promises nothing close to an end: it may refuse, but with a reason."""
-    return {"pointcoord": Expected(("right", "refused"), RIGHT_FROM[law]), "absolute": RIGHT_OR_REFUSED}
+    """Right down to where each model can still tell the two assemblies apart; then refused with a reason."""
+    return {
+        "pointcoord": Expected(("right", "refused"), RIGHT_FROM[law]),
+        "absolute": Expected(("right", "refused"), ABSOLUTE_FROM),
+    }
 
 
 def inside(law: str) -> str:
     """What is expected of values inside an end."""
     return (
-        f"pointcoord is right within its bound down to {RIGHT_FROM[law]:g}, "
-        "then right or refused with a reason; the absolute model is right or refuses"
+        f"right within the bound, by pointcoord down to {RIGHT_FROM[law]:g} and by the absolute model down "
+        f"to {ABSOLUTE_FROM:g}; nearer right or refused with a reason"
     )
 
 

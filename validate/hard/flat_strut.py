@@ -4,12 +4,13 @@ With d = p8 - p4 along the strut, the printed rows of two parallel lines are, fo
 
     e_y d_z - e_z d_y = 0,    e_x d_z - e_z d_x = 0,
 
-the x and y components of a cross product. For d_z = 0 both say e_z = 0: a row is lost, and nothing keeps e
-along d in the plane. So the singular place is a strut at right angles to the frame's z axis, whichever way
-the car stands: not a quarter turn as such (the paper's strut leans, so after a quarter turn about x it
-still rises), but the turn that lays the assembled strut flat. Close to it the condition number grows as
-1 / d_z, unless the strut lies along x or y, where one row keeps e_x or e_y at zero by itself. A motion
-whose strut passes the horizontal cannot be followed. The slide's own coordinates have no preferred axis.
+the x and y components of a cross product. For d_z = 0 both say e_z = 0: of each pair a row is lost, which
+leaves rank 13 of 15, and nothing keeps e along d in the plane. So the singular place is a strut at right
+angles to the frame's z axis, whichever way the car stands: not a quarter turn as such (the paper's strut
+leans, so after a quarter turn about x it still rises), but the turn that lays the assembled strut flat.
+Close to it the condition number grows as 1 / d_z, unless the strut lies along x or y, where one row keeps
+e_x or e_y at zero by itself. A motion whose strut passes the horizontal cannot be followed. The slide's own
+coordinates have no preferred axis.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ ANGLE, SPIN = 1.5707963267948966, 0.4  # rad, rad/s
 OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
 ALWAYS = "pointcoord and the absolute model are right however the car is turned"
 # The condition number stays below the inverse of the rounding unit down to 1e-14, with some digits left at
-# 1e-8: positions and velocities, which have no other erratum, must be right there. At 0 a row is lost.
+# 1e-8: positions and velocities, which have no other erratum, must be right there. At 0 two rows are lost.
 PRINTED = Expected(("right", "refused", "noted"), 1e-8)
 
 
@@ -159,7 +160,7 @@ def _flat_case(
     return scene_case(
         name=name,
         group=GROUP,
-        why="the assembled strut comes to lie at right angles to z, where two printed rows become one",
+        why="the assembled strut comes to lie at right angles to z, where each pair of printed rows is one",
         parameter="sine of the strut's angle with the horizontal plane",
         values=values,
         scene=content,
@@ -174,7 +175,7 @@ def _exactly_flat_case() -> Case:
     return scene_case(
         name="strut-exactly-flat",
         group=GROUP,
-        why="the strut is drawn at right angles to z to the last bit, along no axis: a printed row is lost",
+        why="the strut is drawn at right angles to z to the last bit, along no axis: two printed rows lost",
         parameter="angle of the strut with the y axis, rad",
         values=decades(-12, 0),
         scene=_held(flat, lambda value: rotation(2, math.cos(value), math.sin(value))),

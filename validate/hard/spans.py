@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from validate.hard.case import RIGHT_OR_REFUSED, Case, Expected
+from validate.hard.case import Case
 from validate.hard.content import SQUARE, paper_car
-from validate.hard.dead_points import RIGHT_FROM, rack_ends
+from validate.hard.dead_points import inside, near_end, rack_ends
 from validate.hard.laws import law_case
 from validate.hard.trial import decades
 
@@ -77,13 +77,9 @@ CASES: tuple[Case, ...] = (
         "time left to the lock, s, of a way that takes one second",
         decades(-12, -1),
         _before_a_lock,
-        "right within the bound down to 1e-10, then right or refused",
-        {
-            # As for `dead_points`, with the lock at the end of the whole way.
-            "pointcoord": Expected(("right", "refused"), RIGHT_FROM["moving"]),
-            "pointcoord-newton": Expected(("right", "refused"), RIGHT_FROM["moving"]),
-            "absolute": RIGHT_OR_REFUSED,
-        },
+        inside("moving"),
+        # As for `dead_points`: the lock is at the end of the whole way.
+        near_end("moving") | {"pointcoord-newton": near_end("moving")["pointcoord"]},
     ),
     law_case(
         "fine-tolerance",
