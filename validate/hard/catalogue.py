@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from validate.hard import (
     body_rates,
     branches,
+    contradictions,
     dead_points,
     far_and_mixed,
     flat_strut,
@@ -32,6 +33,7 @@ CASES: tuple[Case, ...] = (
     *branches.CASES,
     *reach.CASES,
     *links.CASES,
+    *contradictions.CASES,
     *numbers.CASES,
     *found.CASES,
 )
