@@ -26,17 +26,19 @@ def orientation(factors: Factors) -> Array:
     return np.asarray(np.linalg.slogdet(factors.matrix)[0])
 
 
-def on_branch(system: QuadraticMap, side: Array, series: Array, s: float, reached: Converged) -> Array:
+def on_branch(
+    system: QuadraticMap, side: Array, series: Array, s: float, reached: Converged, factors: Factors
+) -> Array:
     """Whether a series leads to this end and not to another assembly, shape (...,).
 
     Args:
         side: orientation at the start, shape (...,).
         series: coefficients, shape (..., order + 1, size). s: its parameter at the end.
-        reached: the end, as Newton's method found it from the series.
+        reached: the end, as Newton's method found it from the series. factors: of C_u there.
     """
     last, order = np.abs(series[..., -2:, :]), series.shape[-2] - 1
     left_out = (last[..., 0, :] * s ** (order - 1) + last[..., 1, :] * s**order).max(axis=-1)
     weights = np.ones((*reached.y.shape[:-1], system.unknowns))
-    omega = system.lipschitz(reached.factors.preconditioner, weights)
+    omega = system.lipschitz(factors.preconditioner, weights)
     alone = omega * (reached.first_step + left_out) <= 2.0 * NEAR
-    return np.asarray(alone & (orientation(reached.factors) == side))
+    return np.asarray(alone & (orientation(factors) == side))

@@ -25,8 +25,8 @@ Floating point: C(y) is taken in twice the working precision (see `doubled`), ab
 that the user's numbers mean (`Mechanism.known_data`). What is left of uncertainty in C(y), d, adds
 |X| d to e; products with X add gamma_n of Higham's book, in z as well. Not covered: the rounding of the
 bound's own last operations, made up for by a factor of 1 + 1e-6; it is evaluated in ordinary rounding,
-not in interval arithmetic. Nor is the rounding of an input's law: the bound holds for the value that the
-law has in double precision.
+not in interval arithmetic. Nor is one rounding of an input's value: the bound holds for the double nearest
+to what the law gives; what its computation is off from that is counted (see `inputs`).
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from pointcoord.assembly import Pose, stopped
 from pointcoord.branch import on_branch, orientation
-from pointcoord.errors import AssemblyError, MotionTooLong
+from pointcoord.errors import AssemblyError, MotionTooLong, MotionTooRough
 from pointcoord.inputs import TimeFunction
 from pointcoord.linear import EPS, Factors, factorise
 from pointcoord.mechanism import Mechanism
@@ -27,8 +27,6 @@ from pointcoord.work import Work
 
 Array = NDArray[np.float64]
 
-# Instants per matrix product: the powers and the results of a block stay in a second-level cache.
-BLOCK = 1024
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
 SHORTEST = 1e-15
@@ -38,6 +36,8 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-6
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
+# A pose with a smaller condition number is far from any lock.
+REGULAR = 1e3
 # Unit of time of a series, s, at least: raised to an order of 20 it stays far above the smallest
 # number, 2^-1022, so that no coefficient is lost in a motion however short.
 SHORTEST_UNIT = 2.0**-50
@@ -105,27 +105,27 @@ def build_chain(
     Raises:
         AssemblyError: the motion meets a pose that it cannot pass; `partial` is the chain up to there.
         MotionTooLong: it takes more than MOST_SEGMENTS segments; likewise.
+        MotionTooRough: no step follows an input where the mechanism could; likewise.
     """
     settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
     breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
-    y, work = pose.y, Work()
+    y, members = pose.y, int(np.prod(pose.y.shape[:-1]))
+    # Newton's factors are of the place before its last step, which may be farther off than the bound.
+    factors, work = factorise(mechanism.map.jacobian(y)), Work(factorisations=members)
     scale = _power_of_two(stop - start)
     segments: list[Segment] = []
-    instant, side = start, orientation(pose.factors)
+    instant, side = start, orientation(factors)
     # Shorter steps in time than this are lost in the rounding of the instant itself.
     shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
             raise MotionTooLong(MOST_SEGMENTS, instant, start, stop, Chain(tuple(segments), work))
         limit = next((b for b in breaks if b > instant), stop)
-        # Newton's factors are of the place before its last step, which may be farther off than the bound.
-        factors = factorise(mechanism.map.jacobian(y))
         series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
         work += Work(
             segments=1,
-            factorisations=int(np.prod(y.shape[:-1])),
             series_orders=settings.order,
-            rate_solves=settings.order * int(np.prod(y.shape[:-1])),
+            rate_solves=settings.order * members,
         )
         if limit == instant:
             segments.append(Segment(instant, stop, scale, series))
@@ -138,9 +138,12 @@ def build_chain(
             reached = _end(mechanism, functions, series, end, s)
             work += reached.work
             # What rounding alone makes of a step is no truncation, however small the tolerance.
-            good = reached.converged & (reached.first_step <= settings.tolerance + 2.0 * reached.noise)
+            noise = reached.noise + _law_noise(mechanism, functions, reached, end)
+            good = reached.converged & (reached.first_step <= settings.tolerance + 2.0 * noise)
             if good.all():
-                good = on_branch(mechanism.map, side, series, s, reached)
+                ahead = factorise(mechanism.map.jacobian(reached.y))
+                work += Work(factorisations=members)
+                good = on_branch(mechanism.map, side, series, s, reached, ahead)
             if good.all():
                 break
             length = 0.5 * (end - instant)
@@ -148,50 +151,9 @@ def build_chain(
             partial = Chain(tuple(segments), work) if segments else None
             raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial)
         segments.append(Segment(instant, end, scale, series))
-        instant, y = end, reached.y
+        instant, y, factors = end, reached.y, ahead
         scale = _power_of_two(length)
     return Chain(tuple(segments), work)
-
-
-def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: int) -> Array:
-    """Sum series at instants by matrix products.
-
-    Args:
-        columns: for each segment its coefficients of the wanted coordinates, shape (..., order + 1, m).
-        instants: in any order, inside the chain, shape (N,), s.
-        derivatives: highest time derivative wanted.
-    Returns:
-        Shape (derivatives + 1, ..., N, m), per s**derivative.
-    """
-    order = np.argsort(instants, kind="stable")
-    ordered = instants[order]
-    result = np.empty((derivatives + 1, *columns[0].shape[:-2], len(instants), columns[0].shape[-1]))
-    starts = [segment.start for segment in chain.segments]
-    edges = [0, *np.searchsorted(ordered, starts[1:], side="left").tolist(), len(instants)]
-    for segment, piece, first, last in zip(chain.segments, columns, edges[:-1], edges[1:], strict=True):
-        tables = derivative_tables(piece, segment.scale, derivatives) if first < last else []
-        for low in range(first, last, BLOCK):
-            high = min(low + BLOCK, last)
-            s = (ordered[low:high] - segment.start) / segment.scale
-            powers = np.vander(s, piece.shape[-2], increasing=True)
-            for values, table in zip(result, tables, strict=True):
-                np.matmul(powers, table, out=values[..., low:high, :])
-    if (order[1:] > order[:-1]).all():
-        return result
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    return result[..., back, :]
-
-
-def derivative_tables(coefficients: Array, scale: float, derivatives: int) -> list[Array]:
-    """Coefficients of a series and of its time derivatives, each of shape (..., order + 1, m)."""
-    tables = [coefficients]
-    powers = np.arange(coefficients.shape[-2], dtype=float)[:, None]
-    for _ in range(derivatives):
-        lower = np.zeros_like(coefficients)
-        lower[..., :-1, :] = (tables[-1] * powers)[..., 1:, :] / scale
-        tables.append(lower)
-    return tables
 
 
 def _expand(
@@ -227,6 +189,18 @@ def _end(
     known = mechanism.known_series({name: f.series(end, 0) for name, f in functions.items()})
     guess[..., mechanism.map.unknowns :] = known[..., 0, :]
     return polish(mechanism.map, guess)
+
+
+def _law_noise(
+    mechanism: Mechanism, functions: Mapping[str, TimeFunction], reached: Converged, end: float
+) -> Array:
+    """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
+    off = {name: f.rounding(np.array(end)) for name, f in functions.items()}
+    if not any(doubt.any() for doubt in off.values()):
+        return np.zeros(reached.y.shape[:-1])
+    _, data = mechanism.known_data(reached.y, off)
+    rows = mechanism.map.uncertainty(reached.y, data)
+    return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
 
 
 def _length(series: Array, settings: Settings) -> float:
@@ -275,7 +249,7 @@ def _cannot_pass(
     instant: float,
     stop: float,
     partial: Chain | None,
-) -> AssemblyError:
+) -> AssemblyError | MotionTooRough:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
     # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not.
@@ -286,4 +260,5 @@ def _cannot_pass(
     problem = "the motion cannot pass a singular pose"
     error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, np.asarray(change))
     error.partial = partial
-    return error
+    # Near a lock the condition number has grown as the inverse root of the shortest step.
+    return error if error.condition > REGULAR else MotionTooRough(error.reduce, instant, partial)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,9 @@ from pointcoord.mechanism import Mechanism
 from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
+
+LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
+FACTORIALS = np.array([1.0, 1.0, 2.0])
 
 
 @dataclass(frozen=True)
@@ -42,18 +44,23 @@ class ChassisMotion:
         """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing moves the chassis.
 
         Raises:
-            InputOutOfRange: a value or a rate is not finite.
+            InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
         """
         sums: list[Array] = []
         for name, function in self.functions.items():
-            series = function.series(instants, derivatives)
-            if not np.isfinite(series).all():
-                order = int(np.argwhere(~np.isfinite(series))[0, -1])
+            with np.errstate(over="ignore", invalid="ignore"):
+                series = function.series(instants, derivatives) * FACTORIALS[: derivatives + 1]
+            if not (np.abs(series) < LARGEST).all():
+                place, order = np.argwhere(~(np.abs(series) < LARGEST))[0]
+                what = ("values", "rates", "accelerations")[order]
                 raise InputOutOfRange(
-                    name, float(series[~np.isfinite(series)][0]), f"a finite derivative of order {order}"
+                    name,
+                    float(series[place, order]),
+                    f"{what} below {LARGEST:g} mm{('', '/s', '/s^2')[order]} in size",
+                    float(instants[place]),
                 )
             along = self.directions[name][..., None, :]
-            parts = [factorial(d) * series[..., d, None] * along for d in range(derivatives + 1)]
+            parts = [series[..., d, None] * along for d in range(derivatives + 1)]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
         return sums
 
@@ -61,13 +68,14 @@ class ChassisMotion:
         """Rounding of the displacement and of its sum with an origin, (..., N, 3), mm.
 
         k inputs take k products and k - 1 sums, each rounded by at most u of the sum of the products'
-        magnitudes; the sum with the origin is rounded by u of itself. An axis along which nothing moves
-        is not rounded at all.
+        magnitudes; the sum with the origin is rounded by u of itself; the laws have their own. An axis
+        along which nothing moves is not rounded at all.
         """
-        magnitude = np.zeros((*np.shape(instants), 3))
+        magnitude, laws = np.zeros((*np.shape(instants), 3)), np.zeros((*np.shape(instants), 3))
         for name, function in self.functions.items():
-            value = np.abs(function.series(instants, 0))
-            magnitude = magnitude + value * np.abs(self.directions[name][..., None, :])
+            along = np.abs(self.directions[name][..., None, :])
+            magnitude = magnitude + np.abs(function.series(instants, 0)) * along
+            laws = laws + function.rounding(instants)[:, None] * along
         count = 2.0 * len(self.functions)
         total = UNIT_ROUNDOFF * (count * magnitude + np.abs(origin[..., None, :]) + magnitude)
-        return np.where(magnitude > 0.0, 1.01 * total, 0.0)
+        return np.where(magnitude + laws > 0.0, 1.01 * (total + laws), 0.0)

@@ -53,8 +53,12 @@ class Drive(Protocol):
         """The coordinate's series from the input's."""
         ...
 
-    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
-        """What the computed coordinate of an input lacks, and how uncertain it is with that added."""
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
+        """What the computed coordinate of an input lacks, and how uncertain it is with that added.
+
+        Args:
+            law: how far the input's value may be off, rad or mm.
+        """
         ...
 
     def drawn(self, drawing: Drawing) -> Array:
@@ -93,16 +97,17 @@ class ArmAngle:
         with np.errstate(over="ignore", invalid="ignore"):
             return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
 
-    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """The length's rounding is known, so the rise lacks it in proportion.
 
-        The cosine is rounded to 1 unit in the last place at worst, which is 2 u, and the product by u.
+        The cosine is rounded to 1 unit in the last place at worst, which is 2 u, and the product by u; its
+        angle's uncertainty enters as the sine, at most 1.
         """
         length = drawing.distance(self.pivot, self.point)
         square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
         own, own_rest = exact_product(length, length)
         lacking = ((square - own) + (rest - own_rest)) / (2.0 * length * length)
-        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate)
+        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate) + 1.01 * length * law
 
     def drawn(self, drawing: Drawing) -> Array:
         """Height of the drawn point over its pivot."""
@@ -128,9 +133,9 @@ class Travel:
         """The displacement in the mechanism's units."""
         return value / np.asarray(drawing.unit)[..., None]
 
-    def rounding(self, coordinate: Array, drawing: Drawing) -> tuple[Array, Array]:
-        """None: a quotient by a power of two."""
-        return np.zeros_like(coordinate), np.zeros_like(coordinate)
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
+        """None of its own: a quotient by a power of two."""
+        return np.zeros_like(coordinate), np.broadcast_to(law / drawing.unit, coordinate.shape)
 
     def drawn(self, drawing: Drawing) -> Array:
         """The travel at which the drawn point stands: against the direction is positive (eq. 14)."""

@@ -149,6 +149,25 @@ class MotionTooLong(PointcoordError):
         )
 
 
+class MotionTooRough(PointcoordError):
+    """An input that changes too fast, or from too large terms, for any step of a series to follow.
+
+    Args:
+        name: the input. instant: how far the motion came, s.
+        partial: the motion up to the instant, if any.
+    """
+
+    def __init__(self, name: str, instant: float, partial: object) -> None:
+        self.name = name
+        self.instant = instant
+        self.partial = partial
+        super().__init__(
+            f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that time "
+            "can tell apart follows it to the tolerance, though the mechanism could; smooth it there, allow "
+            "a larger tolerance, or use the method 'newton', which solves at the scene's instants only"
+        )
+
+
 class SingularConfiguration(PointcoordError):
     """The equations lose rank at a pose: a direction is free and the rates are not determined."""
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from pointcoord.doubled import exact_product, exact_sum
+from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,10 @@ class TimeFunction(Protocol):
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
+        ...
+
+    def rounding(self, instants: Array) -> Array:
+        """How far the computed value may be from the law's own, rounded once, shape (N,)."""
         ...
 
     @property
@@ -62,6 +67,13 @@ class Polynomial:
                 result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
         return result
 
+    def rounding(self, instants: Array) -> Array:
+        """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
+        count = len(self.coefficients)
+        with np.errstate(over="ignore"):
+            terms = np.polynomial.polynomial.polyval(np.abs(instants), np.abs(self.coefficients))
+        return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """None: a polynomial is analytic everywhere."""
@@ -80,19 +92,40 @@ class Sine:
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
         with np.errstate(over="ignore", invalid="ignore"):
-            # The angle as high + low: a large phase would swallow the digits of time, and the values would
-            # no longer change as the rates say.
-            turned, rest = exact_product(np.array(self.angular_frequency), np.asarray(instants, float))
-            angle, low = exact_sum(turned, np.array(self.phase))
-            low = np.where(np.isfinite(low + rest), low + rest, 0.0)
+            angle, low = self._angle(np.asarray(instants, dtype=float))
             sine = np.sin(angle) * np.cos(low) + np.cos(angle) * np.sin(low)
             cosine = np.cos(angle) * np.cos(low) - np.sin(angle) * np.sin(low)
             quarter_turns = (sine, cosine, -sine, -cosine)
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
             factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
             result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
-            result[..., 0] += self.offset
+            # The offset may all but cancel a large swing: product and sum are rounded once together.
+            swing, rest = exact_product(np.array(self.amplitude), sine)
+            value, carry = exact_sum(swing, np.array(self.offset))
+            exact = value + (carry + rest)
+            result[..., 0] = np.where(np.isfinite(exact), exact, swing + self.offset)
         return result
+
+    def _angle(self, instants: Array) -> tuple[Array, Array]:
+        """The angle as high + low.
+
+        A large phase would swallow the digits of time, and the values would no longer change as the rates
+        say.
+        """
+        turned, rest = exact_product(np.array(self.angular_frequency), instants)
+        angle, low = exact_sum(turned, np.array(self.phase))
+        return angle, np.where(np.isfinite(low + rest), low + rest, 0.0)
+
+    def rounding(self, instants: Array) -> Array:
+        """Of the sine 4 u: two functions right to a unit in the last place; of a low part of its angle u.
+
+        Next to a tie that may round the value the other way, by a unit in its last place.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            _, low = self._angle(instants)
+            swing = abs(self.amplitude) * (4.0 + np.abs(low)) if self.amplitude else np.zeros_like(instants)
+            turned = np.where(swing > 0.0, 2.0 * np.abs(self.series(instants, 0)[..., 0]), 0.0)
+        return np.asarray(UNIT_ROUNDOFF * (swing + turned))
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -104,7 +137,8 @@ class Sine:
 class Table:
     """The cubic spline through (times, values), not-a-knot at its ends.
 
-    Its value, rate and acceleration are continuous; its third derivative jumps at the times.
+    Its value, rate and acceleration are continuous; its third derivative jumps at the times. What it means
+    is what scipy's CubicSpline computes: the rounding of the spline's own equations is not told apart.
     """
 
     times: tuple[float, ...]
@@ -117,6 +151,10 @@ class Table:
         for k in range(min(order, 3) + 1):
             result[..., k] = self._spline(t, nu=k) / factorial(k)
         return result
+
+    def rounding(self, instants: Array) -> Array:
+        """None: the computed spline is the law."""
+        return np.zeros_like(instants)
 
     @property
     def finite(self) -> bool:

@@ -99,12 +99,14 @@ class Mechanism:
             for drive in self.topology.drives
         }
 
-    def known_data(self, y: Array) -> tuple[Array, Array]:
+    def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
         Drawn points, directions and constants are exact. What a squared length lacks was kept when it was
         drawn; of a drive its kind knows (see `drives`).
 
+        Args:
+            laws: how far the value of each input may be off, shape (...,), rad or mm; nothing unless given.
         Returns:
             Two arrays of shape (..., size): y plus the first is right to within the second.
         """
@@ -112,7 +114,9 @@ class Mechanism:
         lacking, uncertainty = np.zeros_like(y), np.zeros_like(y)
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
-            lacking[..., place], uncertainty[..., place] = drive.rounding(y[..., place], self.drawing)
+            lacking[..., place], uncertainty[..., place] = drive.rounding(
+                y[..., place], self.drawing, 0.0 if laws is None else laws[drive.input]
+            )
         links = layout.size - len(layout.squared_lengths)
         lacking[..., links:] = self.drawn_lacks[..., links:]
         uncertainty[..., links:] = 256 * UNIT_ROUNDOFF**2 * y[..., links:]

@@ -58,6 +58,7 @@ def prove(
     reported: Mapping[str, Array],
     offset: Array,
     rounding: Array,
+    laws: Mapping[str, Array],
 ) -> Proof:
     """Prove poses in blocks.
 
@@ -72,6 +73,7 @@ def prove(
         reported: position of every point at the times, (N, 3), mm.
         offset: what was added to every point to report it, (N, 3), mm.
         rounding: of the offset itself, at most, (N, 3), mm.
+        laws: how far the value of each driving input may be off, (N,), rad or mm.
     """
     parts = []
     for low in range(0, len(times), BLOCK):
@@ -82,7 +84,8 @@ def prove(
             _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
             for order in (0, 1)
         )
-        lacking, uncertainty = mechanism.known_data(y)
+        off = {name: doubt[low : low + BLOCK] for name, doubt in laws.items()}
+        lacking, uncertainty = mechanism.known_data(y, off)
         certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
         local = {
             name: _local(mechanism, place[low : low + BLOCK], offset[low : low + BLOCK])

@@ -17,6 +17,7 @@ from pointcoord.errors import (
     InputOutOfRange,
     MechanismError,
     MotionTooLong,
+    MotionTooRough,
     SceneError,
     UnknownName,
 )
@@ -52,6 +53,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         InputOutOfRange: an input leaves the values for which it has a meaning.
         AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there.
         MotionTooLong: the motion takes too many series; likewise.
+        MotionTooRough: no series follows an input; likewise.
     """
     if method not in ("series", "newton", "printed"):
         raise UnknownName("method", method, ("series", "newton", "printed"))
@@ -106,12 +108,12 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        prover = _prover(readout, sampler.coordinates)
+        prover = _prover(readout, functions, sampler.coordinates)
         return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism, sampler.term_sizes)
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
-    except (AssemblyError, MotionTooLong) as error:
+    except (AssemblyError, MotionTooLong, MotionTooRough) as error:
         if isinstance(error.partial, Chain):
             error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
         raise
@@ -134,7 +136,7 @@ def _by_newton(
             places = np.searchsorted(solved.times, instants)
             return [state[places] for state in solved.states]
 
-        prover = _prover(readout, coordinates)
+        prover = _prover(readout, functions, coordinates)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, cost, None, prover, readout.mechanism, ())
 
@@ -149,7 +151,9 @@ def _by_newton(
     return motion(solved)
 
 
-def _prover(readout: Readout, coordinates: Callable[[Array], list[Array]]) -> Prover:
+def _prover(
+    readout: Readout, functions: Mapping[str, TimeFunction], coordinates: Callable[[Array], list[Array]]
+) -> Prover:
     mechanism = readout.mechanism
 
     def prover(samples: Samples) -> Proof:
@@ -157,7 +161,8 @@ def _prover(readout: Readout, coordinates: Callable[[Array], list[Array]]) -> Pr
         added = readout.offset(times)
         offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
         rounding = readout.chassis.rounding(times, mechanism.origin)
-        return prove(mechanism, times, coordinates, samples.position, offset, rounding)
+        laws = {name: function.rounding(times) for name, function in functions.items()}
+        return prove(mechanism, times, coordinates, samples.position, offset, rounding, laws)
 
     return prover
 

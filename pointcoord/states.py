@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.chain import Chain, derivative_tables, evaluate
+from pointcoord.chain import Chain
 from pointcoord.effects import Plan
 from pointcoord.errors import OutsideMotion
 from pointcoord.inputs import TimeFunction
@@ -21,6 +21,7 @@ from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Samples
 from pointcoord.readout import Readout
 from pointcoord.rigid import carried_series
+from pointcoord.summation import derivative_tables, evaluate
 from pointcoord.work import Work
 
 Array = NDArray[np.float64]

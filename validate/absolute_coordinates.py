@@ -35,7 +35,8 @@ class AbsoluteCoordinates:
         part, times, wanted = scene.mechanism, scene.instants, scene.effects
         inputs = {name: rates(law, times) for name, law in scene.inputs.items()}
         heave = inputs.pop("heave", None)
-        chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
+        with np.errstate(invalid="ignore"):  # the model refuses what is not finite
+            chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
         needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
@@ -46,7 +47,9 @@ class AbsoluteCoordinates:
             raise FormulationError(self.name, error) from error
         condition = np.ones(len(times)) if solved.condition is None else solved.condition
         position = {name: place + origin for name, place in solved.position.items()}
-        distance = float(np.abs(np.stack(list(position.values()))).max())
+        # Whatever is added to a position rounds it, also where the sum is small again.
+        moved = 0.0 if heave is None else float(np.abs(heave[:, 0]).max())
+        distance = float(np.abs(np.stack(list(position.values()))).max()) + 2.0 * moved
         return Solution(
             formulation=self.name,
             times=times,

@@ -15,6 +15,7 @@ from pointcoord import (
     AssemblyError,
     Motion,
     MotionTooLong,
+    MotionTooRough,
     PointcoordError,
     Scene,
     SceneError,
@@ -208,7 +209,7 @@ def _simulate(options: argparse.Namespace) -> int:
     scene = Scene.load(options.scene)
     try:
         write_motion(options.output, simulate(scene))
-    except (AssemblyError, MotionTooLong) as error:
+    except (AssemblyError, MotionTooLong, MotionTooRough) as error:
         # What was solved before the motion stopped is kept, and the status says that it is not all.
         if isinstance(error.partial, Motion):
             write_motion(options.output, error.partial)

@@ -1,12 +1,11 @@
 """Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
 
-Polynomials are summed in fractions and sines taken in many digits, then rounded once: their terms may cancel,
-and an angle may be many turns. What differs between two models is then not the law that they were given.
+Polynomials and sines are taken in many digits and rounded once: their terms may cancel, and an angle may be
+many turns. A table means scipy's cubic spline, for every model and for the truth.
 """
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 
 import mpmath
@@ -18,7 +17,8 @@ from pointcoord.scene import InputPart, SinePart
 
 Array = NDArray[np.float64]
 
-DIGITS = 40  # of a sine, beside those that its angle has before the point
+DIGITS = 40  # of a sine, beside those that its angle has before the point; half of them of a polynomial
+MOST_DIGITS = 1000  # terms that cancel further than this cancel to zero
 
 
 def rates(part: InputPart, times: Array) -> Array:
@@ -52,17 +52,21 @@ def _of_sine(wave: SinePart, t: float) -> list[float]:
 
 
 def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
-    derivatives = [[Fraction(c) for c in coefficients]]
-    for _ in range(2):
-        derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
-    return np.array([[_sum(law, Fraction(t)) for law in derivatives] for t in instants.tolist()])
+    derivatives = [[mpmath.mpf(c) for c in coefficients]]
+    with mpmath.workdps(DIGITS):
+        for _ in range(2):
+            derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
+    return np.array([[_sum(law, t) for law in derivatives] for t in instants.tolist()])
 
 
-def _sum(coefficients: list[Fraction], t: Fraction) -> float:
-    total = Fraction(0)
-    for c in reversed(coefficients):
-        total = total * t + c
-    try:
-        return float(total)
-    except OverflowError:
-        return math.inf if total > 0 else -math.inf
+def _sum(coefficients: list[mpmath.mpf], t: float) -> float:
+    """Horner's rule with as many digits as the terms cancel, and `DIGITS` more."""
+    digits = DIGITS
+    while True:
+        with mpmath.workdps(digits):
+            total = size = mpmath.mpf(0)
+            for c in reversed(coefficients):
+                total, size = total * t + c, size * abs(t) + abs(c)
+            if digits >= MOST_DIGITS or abs(total) * mpmath.mpf(10) ** (digits - DIGITS // 2) >= size:
+                return float(total)
+            digits *= 2

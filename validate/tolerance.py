@@ -92,8 +92,15 @@ def factors(first: Solution, second: Solution) -> Factors:
 
 
 def _largest(vectors: Mapping[str, Array]) -> float:
-    norms = [float(np.max(np.linalg.norm(v, axis=-1))) for v in vectors.values() if v.size]
-    return max(norms, default=0.0)
+    return max((_length(v) for v in vectors.values() if v.size), default=0.0)
+
+
+def _length(vectors: Array) -> float:
+    """Largest length of vectors, shape (..., 3), whose squares may overflow."""
+    size = float(np.abs(vectors).max())
+    if size == 0.0 or not np.isfinite(size):
+        return size
+    return size * float(np.max(np.linalg.norm(vectors / size, axis=-1)))
 
 
 def point_tolerances(f: Factors) -> dict[str, Array]:

@@ -77,7 +77,7 @@ def test_heave_that_is_not_given_is_no_heave(make_scene: Callable[..., Scene]) -
 
 
 @pytest.mark.parametrize("method", ["series", "newton"])
-@pytest.mark.parametrize("height", [1e3, 1e9, 1e300])
+@pytest.mark.parametrize("height", [1e3, 1e9, 1e299])
 def test_height_of_the_chassis_costs_a_rate_no_digit(
     make_scene: Callable[..., Scene], method: str, height: float
 ) -> None:
@@ -103,6 +103,8 @@ def test_a_heave_of_any_speed_leaves_the_series_as_they_are(make_scene: Callable
 
 def test_a_heave_too_fast_for_the_arithmetic_is_named(make_scene: Callable[..., Scene]) -> None:
     sine = {"sine": {"amplitude": 1e200, "angular_frequency": 1e100}}
-    with pytest.raises(InputOutOfRange, match=r"'heave' is .*finite derivative of order 2") as caught:
+    with pytest.raises(
+        InputOutOfRange, match=r"'heave' is .* at t = .*; allowed: accelerations below 1e\+300"
+    ) as caught:
         simulate(make_scene(heave=sine))
     assert caught.value.name == "heave"

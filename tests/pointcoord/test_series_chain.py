@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
 from pointcoord.assembly import assemble
-from pointcoord.chain import Chain, Segment, Settings, build_chain, evaluate
+from pointcoord.chain import Chain, Segment, Settings, build_chain
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
 from pointcoord.mechanism import Mechanism
+from pointcoord.summation import evaluate
 from pointcoord.suspensions.macpherson import MACPHERSON
 from pointcoord.work import Work
 

@@ -12,6 +12,7 @@ import pointcoord.chain
 import pointcoord.instants
 import pointcoord.readout
 import pointcoord.rigid
+import pointcoord.summation
 import pointcoord.wheel
 import validate.absolute_coordinates
 from pointcoord import Scene
@@ -57,7 +58,7 @@ def _half_square_term(patch: pytest.MonkeyPatch) -> None:
 
 def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
     """The second derivative of s^k taken as k^2 s^(k-2)."""
-    right = pointcoord.chain.derivative_tables
+    right = pointcoord.summation.derivative_tables
 
     def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
         tables = right(coefficients, scale, derivatives)
@@ -65,7 +66,7 @@ def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
         tables[2][:-2] = (coefficients * k * k)[2:] / scale**2
         return tables
 
-    patch.setattr(pointcoord.chain, "derivative_tables", wrong)
+    patch.setattr(pointcoord.summation, "derivative_tables", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
