@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from pointcoord import (
@@ -100,7 +101,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     hard.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     hard.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
-    hard.add_argument("--json", metavar="FILE", help="write every trial as JSON; - for standard output")
+    hard.add_argument(
+        "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
+    )
     hard.set_defaults(run=_hard)
 
     scenes = commands.add_parser("scenes", help="list the built-in scenes")
@@ -183,10 +186,15 @@ def _hard(options: argparse.Namespace) -> int:
         cases = catalogue.chosen(options.cases)
     except catalogue.UnknownCase as error:
         raise UsageError(str(error)) from None
-    if options.list:
-        print(hard_report.listing(cases))
-        return 0
     speak = options.json != "-"
+    if options.json and speak:
+        _require_writable(options.json)
+    if options.list:
+        if speak:
+            print(hard_report.listing(cases))
+        if options.json:
+            write_json(options.json, hard_report.listing_data(cases))
+        return 0
     headings: list[str] = []
 
     def tell(result: run.Examined) -> None:
@@ -203,6 +211,24 @@ def _hard(options: argparse.Namespace) -> int:
     if options.json:
         write_json(options.json, hard_report.results_data(results))
     return 0 if run.as_expected(results) else 1
+
+
+def _require_writable(target: str) -> None:
+    """Find out whether a file can be written, and leave it as it is.
+
+    Raises:
+        OutputError: it cannot be.
+    """
+    path = Path(target)
+    new = not path.exists()
+    if not new and not path.is_file() and not path.is_dir():
+        return  # a pipe or a device, which closing might end
+    try:
+        path.open("ab").close()
+        if new:
+            path.unlink()
+    except OSError as error:
+        raise OutputError(target, f"cannot be written ({error.strerror})") from None
 
 
 def _simulate(options: argparse.Namespace) -> int:

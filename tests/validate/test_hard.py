@@ -216,7 +216,7 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     assert refused.gives_up("absolute") == (1, Answer("absolute", "refused", "why"))
     assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in case_text(refused)
     assert "gives up at 0.1: why" in case_text(refused)
-    assert "NOT as expected: 1 answers, 0 of them wrong" in summary_text([refused])
+    assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in summary_text([refused])
     # A value without an answer breaks the trial, not the run.
     broken = examine(replace(made_case({1.0: Answer("absolute", "right")}), values=(1.0, 2.0)))
     assert [answer.outcome for _, answer in broken.answers("absolute")] == ["right", "unjudged"]

@@ -19,8 +19,16 @@ from validate.hard.branches import (
     from_a_flat_drawing,
     through_the_meeting,
 )
+from validate.hard.case import unexpected
 from validate.hard.content import paper_car
-from validate.hard.counting import beside_meeting, counted, meeting, near_greatest_rack, near_lowest_arm
+from validate.hard.counting import (
+    DEGREE,
+    beside_meeting,
+    counted,
+    meeting,
+    near_greatest_rack,
+    near_lowest_arm,
+)
 from validate.hard.oriented import followed, sides
 from validate.hard.sides import drawn_choices, try_on_side
 from validate.hard.trial import Tried
@@ -152,3 +160,15 @@ def test_all_assemblies_that_can_exist_are_found_far_from_a_singular_pose(
     # The search knows nothing of the closed forms, which allow two assemblies at least: both sides.
     assert float(facts["assemblies found, proven"]) == float(facts["assemblies possible"]) >= 2.0
     assert float(facts["starts"]) >= 1000.0
+
+
+@pytest.mark.parametrize("share", BY_NAME["assemblies-counted-drawing"].values)
+def test_at_the_drawing_and_beside_it_all_assemblies_are_found_and_the_drawn_one_is_answered(
+    share: float,
+) -> None:
+    case = BY_NAME["assemblies-counted-drawing"]
+    trial = case.examine(share)
+    assert not unexpected(case, trial)
+    found = float(trial.facts["assemblies found, proven"])
+    assert 2.0 <= found == float(trial.facts["assemblies possible"]) <= DEGREE
+    assert all(answer.condition is not None and answer.condition < 1e3 for answer in trial.answers)

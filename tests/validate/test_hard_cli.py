@@ -68,12 +68,15 @@ def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest
         assert case.group in out.splitlines()
 
 
-def test_a_name_that_no_case_has_ends_with_2_and_near_names(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "at-rests"]) == 2
+@pytest.mark.parametrize("name", ["at-rests", "AT-REST"])
+def test_a_name_that_no_case_has_ends_with_2_and_near_names(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["hard", name]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     (line,) = err.splitlines()
-    assert "'at-rests'" in line
+    assert repr(name) in line
     assert "near names: at-rest" in line
     assert "pointcoord hard --list" in line
 
@@ -83,8 +86,18 @@ def test_a_wrong_number_without_a_warning_ends_with_1(capsys: pytest.CaptureFixt
     assert main(["hard"]) == 1
     out, _ = capsys.readouterr()
     assert "NOT AS EXPECTED: pointcoord is wrong at 1: far off" in out
-    assert "NOT as expected: 2 answers, 2 of them wrong without a warning, in ours-fails, quiet." in out
+    assert "NOT as expected: 2 answers, 2 wrong without a warning, in ours-fails, quiet." in out
     assert out.count("== 0. Made") == 1
+    assert "2 cases, 2 scenes:" in out
+
+
+@pytest.mark.usefixtures("made")
+def test_one_is_counted_as_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "quiet"]) == 1
+    out, _ = capsys.readouterr()
+    assert "1 case, 1 scene:" in out
+    assert "parameter: a number, 1, 1 value\n" in out
+    assert "NOT as expected: 1 answer, 1 wrong without a warning, in quiet." in out
 
 
 def test_names_are_unique_and_every_case_leads_somewhere() -> None:
@@ -94,6 +107,53 @@ def test_names_are_unique_and_every_case_leads_somewhere() -> None:
         assert case.values, case.name
         assert case.expected, case.name
         assert len(set(case.values)) == len(case.values), case.name
+
+
+def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "--list", "--json", "-"]) == 0
+    listed = json.loads(capsys.readouterr().out)["cases"]
+    assert [case["name"] for case in listed] == [case.name for case in catalogue.CASES]
+    assert all(case["why"] and case["values"] and case["expected"] for case in listed)
+    target = tmp_path / "list.json"
+    assert main(["hard", "at-rest", "--list", "--json", str(target)]) == 0
+    assert "  at-rest: " in capsys.readouterr().out
+    (case,) = json.loads(target.read_text())["cases"]
+    assert case["name"] == "at-rest"
+    assert "trials" not in case
+
+
+@pytest.mark.parametrize("more", [[], ["--list"]])
+def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
+    more: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(value: float) -> Trial:
+        raise AssertionError("tried")
+
+    case = Case("untried", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", never)
+    monkeypatch.setattr(catalogue, "CASES", (case,))
+    for target in (tmp_path / "no" / "x.json", tmp_path):
+        assert main(["hard", *more, "--json", str(target)]) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        (line,) = err.splitlines()
+        assert f"{target}: cannot be written" in line
+
+
+@pytest.mark.parametrize("before", [None, "kept"])
+def test_an_interrupted_run_leaves_the_file_as_it_was(
+    before: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(value: float) -> Trial:
+        raise KeyboardInterrupt
+
+    case = Case("stop", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", interrupted)
+    monkeypatch.setattr(catalogue, "CASES", (case,))
+    target = tmp_path / "hard.json"
+    if before is not None:
+        target.write_text(before)
+    with pytest.raises(KeyboardInterrupt):
+        main(["hard", "--json", str(target)])
+    assert (target.read_text() if target.exists() else None) == before
 
 
 def test_without_the_packages_of_the_truth_one_line_says_what_to_install() -> None:

@@ -44,7 +44,8 @@ class UnknownCase(Exception):
 
     def __init__(self, name: str) -> None:
         self.name = name
-        near = get_close_matches(name, [case.name for case in CASES], n=3)
+        # All names are in lower case.
+        near = get_close_matches(name.lower(), [case.name for case in CASES], n=3)
         hint = f"; near names: {', '.join(near)}" if near else ""
         super().__init__(f"no hard case is called {name!r}{hint}; pointcoord hard --list names all")
 

@@ -1,4 +1,4 @@
-"""How many assemblies a pose has, near the singular poses where two of them merge.
+"""How many assemblies a pose has, at the drawing and near the singular poses where two of them merge.
 
 A search from a thousand starts lists those that it finds, each with its proof; closed forms say how many can
 exist. The literature reduces this strut to a polynomial of degree 64, which bounds them from above.
@@ -12,9 +12,9 @@ from functools import cache, partial
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from validate.hard.case import Case, Expected, Trial
+from validate.hard.case import RIGHT, Case, Expected, Trial
 from validate.hard.content import SQUARE, decades, paper_car
-from validate.hard.last_values import car_called, last_value
+from validate.hard.last_values import car_called, home, last_value
 from validate.hard.oriented import followed
 from validate.hard.sides import try_on_side
 from validate.input_ends import Linkage
@@ -23,7 +23,7 @@ from validate.truth import count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 STARTS = 1000
-DEGREE = 64.0  # of the polynomial in the literature
+DEGREE = 64  # of the polynomial in the literature
 
 
 @cache
@@ -63,6 +63,12 @@ def beside_meeting(share: float) -> tuple[float, float]:
     return angle, rack + 10.0 * share
 
 
+def beside_drawing(share: float) -> tuple[float, float]:
+    """Arm angle and rack travel some ordinary way from those of the drawing, far from every singular pose."""
+    drawn = home("paper", level=False)
+    return drawn["arm_angle"] - 0.2 * share, drawn["rack"] + 30.0 * share
+
+
 def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial:
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share)
@@ -71,28 +77,64 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
     facts: dict[str, float | str] = {
         "assemblies found, proven": float(len(listed.found)),
         "assemblies possible": float(listed.possible),
-        "assemblies by the degree in the literature": DEGREE,
         "starts": float(listed.starts),
     }
     return Trial(share, trial.answers, {**trial.facts, **facts})
 
 
 def counting_cases(group: str, expected: Expected) -> tuple[Case, ...]:
-    """One case for each singular pose that is approached."""
+    """One case for each singular pose that is approached, and one at the drawing.
+
+    Args:
+        expected: of the solvers near a singular pose.
+    """
+    near = decades(-12, -1)[::3]
+    merging = (
+        "A pose has up to sixteen assemblies by closed forms, and near a singular pose two of them merge."
+    )
     return tuple(
         Case(
             name=f"assemblies-counted-{where}",
             group=group,
-            why="A pose has up to sixteen assemblies, and near a singular pose two of them merge.",
+            why=why,
             parameter=parameter,
-            values=decades(-12, -1)[::3],
-            expected=dict.fromkeys(SOLVERS, expected),
+            values=values,
+            expected=dict.fromkeys(SOLVERS, allowed),
             behaviour="of all assemblies that a search finds, the one of the drawing",
             examine=partial(counted, pose=pose),
         )
-        for where, parameter, pose in (
-            ("rack", "distance from the greatest rack travel, in parts of its range", near_greatest_rack),
-            ("arm", "distance from the greatest arm angle, in parts of its range", near_lowest_arm),
-            ("meeting", "rack travel beyond the meeting of two branches, in parts of 10 mm", beside_meeting),
+        for where, why, parameter, pose, values, allowed in (
+            (
+                "drawing",
+                f"Of all assemblies of an ordinary pose, up to {DEGREE} by the literature, one is meant.",
+                "arm and rack from the drawing, in parts of 0.2 rad and 30 mm; then at it",
+                beside_drawing,
+                (1.0, 0.1, 0.0),
+                RIGHT,
+            ),
+            (
+                "rack",
+                merging,
+                "distance from the greatest rack travel, in parts of its range",
+                near_greatest_rack,
+                near,
+                expected,
+            ),
+            (
+                "arm",
+                merging,
+                "distance from the greatest arm angle, in parts of its range",
+                near_lowest_arm,
+                near,
+                expected,
+            ),
+            (
+                "meeting",
+                merging,
+                "rack travel beyond the meeting of two branches, in parts of 10 mm",
+                beside_meeting,
+                near,
+                expected,
+            ),
         )
     )

@@ -37,7 +37,7 @@ def case_text(result: Examined, every_value: bool = False) -> str:
     case, values = result.case, result.case.values
     lines = [
         f"{case.name}: {case.why}",
-        f"  parameter: {case.parameter}, {values[0]:g} to {values[-1]:g}, {len(values)} values",
+        f"  parameter: {case.parameter}, {_span(values)}",
         f"  expected: {case.behaviour}",
         _indented(table(_head(case), [_row(result, name) for name in case.expected])),
         *(f"  {line}" for line in _who_gives_up_first(result)),
@@ -50,6 +50,11 @@ def case_text(result: Examined, every_value: bool = False) -> str:
         for value, answer in result.unexpected
     ]
     return "\n".join(lines)
+
+
+def _span(values: Sequence[float]) -> str:
+    ends = f"{values[0]:g} to {values[-1]:g}, " if len(values) > 1 else f"{values[0]:g}, "
+    return ends + numbered(len(values), "value")
 
 
 def _head(case: Case) -> tuple[str, ...]:
@@ -78,6 +83,11 @@ def _largest(numbers: Sequence[float | None]) -> str:
 def _digits(number: float) -> str:
     """Two digits; what is just below 1, as a share of a bound may be, is not rounded up to it."""
     return "0.99" if 0.99 < number < 1.0 else f"{number:.2g}"
+
+
+def numbered(count: int, noun: str) -> str:
+    """A count with its noun: 1 case, 2 cases."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def short(reason: str) -> str:
@@ -124,7 +134,7 @@ def summary_text(results: Sequence[Examined]) -> str:
     ]
     trials = sum(len(result.trials) for result in results)
     lines = [
-        f"{len(results)} cases, {trials} scenes:",
+        f"{numbered(len(results), 'case')}, {numbered(trials, 'scene')}:",
         table(("formulation", "answers", *OUTCOMES), rows),
     ]
     wrong = sum(len(result.wrong) for result in results)
@@ -135,10 +145,15 @@ def summary_text(results: Sequence[Examined]) -> str:
         )
     else:
         lines.append(
-            f"NOT as expected: {sum(len(r.unexpected) for r in other)} answers, "
-            f"{wrong} of them wrong without a warning, in {', '.join(result.case.name for result in other)}."
+            f"NOT as expected: {numbered(sum(len(r.unexpected) for r in other), 'answer')}, "
+            f"{wrong} wrong without a warning, in {', '.join(result.case.name for result in other)}."
         )
     return "\n".join(lines)
+
+
+def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
+    """What cases are and what is expected of them, as plain data; none of them tried."""
+    return {"cases": [_description(case) for case in cases]}
 
 
 def results_data(results: Sequence[Examined]) -> dict[str, Any]:
@@ -150,8 +165,7 @@ def results_data(results: Sequence[Examined]) -> dict[str, Any]:
     }
 
 
-def _case_data(result: Examined) -> dict[str, Any]:
-    case = result.case
+def _description(case: Case) -> dict[str, Any]:
     return {
         "name": case.name,
         "group": case.group,
@@ -161,6 +175,12 @@ def _case_data(result: Examined) -> dict[str, Any]:
         "unit": case.unit,
         "behaviour": case.behaviour,
         "expected": {name: _expected_data(one) for name, one in case.expected.items()},
+    }
+
+
+def _case_data(result: Examined) -> dict[str, Any]:
+    return {
+        **_description(result.case),
         "seconds": result.seconds,
         "trials": [
             {
