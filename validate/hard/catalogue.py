@@ -8,11 +8,13 @@ from difflib import get_close_matches
 from validate.hard import (
     body_rates,
     branches,
+    cancelling,
     contradictions,
     dead_points,
     far_and_mixed,
     flat_strut,
     found,
+    heaves,
     laws,
     links,
     near_points,
@@ -30,11 +32,13 @@ CASES: tuple[Case, ...] = (
     *far_and_mixed.CASES,
     *laws.CASES,
     *spans.CASES,
+    *cancelling.CASES,
     *branches.CASES,
     *reach.CASES,
     *links.CASES,
     *contradictions.CASES,
     *numbers.CASES,
+    *heaves.CASES,
     *found.CASES,
 )
 

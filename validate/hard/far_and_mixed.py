@@ -139,6 +139,13 @@ def scaled_car(scale: float) -> dict[str, Any]:
     )
 
 
+def heaved_back(value: float) -> dict[str, Any]:
+    """The car drawn far up, with a heave that brings it back to where it is at home."""
+    distance = 1.0 / value
+    points = {name: [x, y, z + distance] for name, (x, y, z) in PAPER.items()}
+    return paper_car((1.5, 0.25, 0.125), (0.0, 30.0, 10.0), (-distance, 20.0), points=points, stop=0.4)
+
+
 def lengthened(value: float, moved: tuple[str, ...], base: str) -> dict[str, Array]:
     """Points moved away from another until they are 1 / value times as far from it."""
     p = assembled()
@@ -195,6 +202,16 @@ CASES: tuple[Case, ...] = (
         expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=far,
+    ),
+    Case(
+        name="far-and-heaved-back",
+        group=GROUP,
+        why="Drawn far up and heaved back, a car comes to stand near the origin by two far coordinates.",
+        parameter="1 mm over the distance along up, which the heave cancels",
+        values=decades(-9),
+        expected=dict.fromkeys(SOLVERS, RIGHT),
+        behaviour="right within the bound, rates and angles as right as at home",
+        examine=lambda value: try_scene(value, heaved_back(value), SOLVERS),
     ),
     _sizes(
         "sizes-by-powers-of-two",
