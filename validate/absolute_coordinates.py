@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +45,11 @@ class AbsoluteCoordinates:
             model = absolute.macpherson(near, up=part.up, right=part.right)
             solved = absolute.solve(model, inputs, chassis=chassis, rates=needs_rates, conditions=True)
         except absolute.AbsoluteError as error:
+            if isinstance(error.partial, absolute.Solution):
+                error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
             raise FormulationError(self.name, error) from error
         condition = np.ones(len(times)) if solved.condition is None else solved.condition
-        position = {name: place + origin for name, place in solved.position.items()}
+        position = _moved(solved.position, origin)
         # Whatever is added to a position rounds it, also where the sum is small again.
         moved = 0.0 if heave is None else float(np.abs(heave[:, 0]).max())
         distance = float(np.abs(np.stack(list(position.values()))).max()) + 2.0 * moved
@@ -69,6 +72,10 @@ class AbsoluteCoordinates:
                 acceleration_sensitivity=np.zeros(len(times)),
             ),
         )
+
+
+def _moved(position: Mapping[str, Array], origin: Array) -> dict[str, Array]:
+    return {name: place + origin for name, place in position.items()}
 
 
 def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> dict[str, Array]:
