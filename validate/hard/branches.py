@@ -183,7 +183,7 @@ CASES: tuple[Case, ...] = (
             "distance of both instants from their ends, in parts of half the range",
             partial(whole_range, driven=driven),
             CLEAR,
-            EVEN[1:],
+            FEW[1:],
         )
         for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
     ),

@@ -198,7 +198,7 @@ CASES: tuple[Case, ...] = (
     # The motion turns the strut by some hundredths of a radian, so it passes the horizontal on its way.
     _flat_case(
         "strut-passes-flat",
-        (*decades(-12, -2)[::2], 0.0),
+        (*decades(-12, -2)[::5], 0.0),
         _moving(PAPER_CAR, flat_turn),
         FAILS,
         "cannot follow",
