@@ -23,6 +23,9 @@ from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
+# rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
+SMALL_ANGLE = 2.0**-27
+
 
 class TimeFunction(Protocol):
     """A scalar function of time that is analytic between its breaks.
@@ -92,9 +95,11 @@ class Sine:
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
         with np.errstate(over="ignore", invalid="ignore"):
-            angle, low = self._angle(np.asarray(instants, dtype=float))
-            sine = np.sin(angle) * np.cos(low) + np.cos(angle) * np.sin(low)
-            cosine = np.cos(angle) * np.cos(low) - np.sin(angle) * np.sin(low)
+            angle, *rests = self._angle(np.asarray(instants, dtype=float))
+            sine, cosine = np.sin(angle), np.cos(angle)
+            for low in rests:
+                across, along = np.sin(low), np.cos(low)
+                sine, cosine = sine * along + cosine * across, cosine * along - sine * across
             quarter_turns = (sine, cosine, -sine, -cosine)
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
             factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
@@ -106,24 +111,26 @@ class Sine:
             result[..., 0] = np.where(np.isfinite(exact), exact, swing + self.offset)
         return result
 
-    def _angle(self, instants: Array) -> tuple[Array, Array]:
-        """The angle as high + low.
+    def _angle(self, instants: Array) -> tuple[Array, ...]:
+        """The angle as a sum of three numbers, without rounding.
 
         A large phase would swallow the digits of time, and the values would no longer change as the rates
-        say.
+        say; a large frequency would swallow the phase.
         """
         turned, rest = exact_product(np.array(self.angular_frequency), instants)
         angle, low = exact_sum(turned, np.array(self.phase))
-        return angle, np.where(np.isfinite(low + rest), low + rest, 0.0)
+        return angle, *(np.where(np.isfinite(part), part, 0.0) for part in (rest, low))
 
     def rounding(self, instants: Array) -> Array:
-        """Of the sine 4 u: two functions right to a unit in the last place; of a low part of its angle u.
+        """Of the sine 4 u: functions right to a unit in the last place, a sum; for each further part of the
+        angle that is more than a rounding of it 6 u more, for two products more.
 
         Next to a tie that may round the value the other way, by a unit in its last place.
         """
         with np.errstate(over="ignore", invalid="ignore"):
-            _, low = self._angle(instants)
-            swing = abs(self.amplitude) * (4.0 + np.abs(low)) if self.amplitude else np.zeros_like(instants)
+            _, *rests = self._angle(np.asarray(instants, dtype=float))
+            parts = sum((np.abs(low) > SMALL_ANGLE).astype(float) for low in rests)
+            swing = abs(self.amplitude) * (4.0 + 6.0 * parts)
             turned = np.where(swing > 0.0, 2.0 * np.abs(self.series(instants, 0)[..., 0]), 0.0)
         return np.asarray(UNIT_ROUNDOFF * (swing + turned))
 

@@ -52,7 +52,7 @@ class AbsoluteCoordinates:
         position = _moved(solved.position, origin)
         # Whatever is added to a position rounds it, also where the sum is small again.
         moved = 0.0 if heave is None else float(np.abs(heave[:, 0]).max())
-        distance = float(np.abs(np.stack(list(position.values()))).max()) + 2.0 * moved
+        distance = float(np.abs(np.stack(list(position.values()))).max())
         return Solution(
             formulation=self.name,
             times=times,
@@ -64,7 +64,7 @@ class AbsoluteCoordinates:
             wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
             accuracy=Accuracy(
                 pose_error=ROUNDINGS * EPS * condition * extent(part),
-                stored=np.full(len(times), EPS * distance),
+                stored=np.full(len(times), EPS * distance + 2.0 * EPS * moved),
                 carried_gain=np.ones(len(times)),  # every point rides on its body alike
                 proven=False,
                 condition=condition,
