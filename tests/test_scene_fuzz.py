@@ -25,9 +25,9 @@ FILES = 10_000 if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else 300
 BLOCK = 25
 # Every so many files are solved by all formulations as well.
 COMPARED = 10
-# Processor time, s, so that a busy machine changes nothing. A motion of the most segments that are allowed
-# takes some ten; a comparison solves a scene three times.
-LIMIT = {"simulate": 30.0, "validate": 90.0}
+# Processor time, s, so that a busy machine changes nothing: a scene may take ten. A motion of the most
+# segments that are allowed takes some three; a comparison solves a scene three times.
+LIMIT = {"simulate": 10.0, "validate": 30.0}
 
 
 class TooLong(BaseException):
