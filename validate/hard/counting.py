@@ -19,7 +19,7 @@ from validate.hard.oriented import followed
 from validate.hard.sides import try_on_side
 from validate.input_ends import Linkage
 from validate.paper_car import PAPER
-from validate.truth import count_assemblies
+from validate.truth import Choices, count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 STARTS = 1000
@@ -78,8 +78,15 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
         "assemblies found, proven": float(len(listed.found)),
         "assemblies possible": float(listed.possible),
         "starts": float(listed.starts),
+        "signs of arm, strut, rod and tie rod": "; ".join(signs(one.choices) for one in listed.found),
     }
     return Trial(share, trial.answers, {**trial.facts, **facts})
+
+
+def signs(choices: Choices) -> str:
+    """The name of an assembly: the signs of its four choices."""
+    each = (choices.arm, choices.strut, choices.rod, choices.tie)
+    return "".join("+" if sign > 0 else "-" for sign in each)
 
 
 def counting_cases(group: str, expected: Expected) -> tuple[Case, ...]:
