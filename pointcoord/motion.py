@@ -84,10 +84,9 @@ class Motion(Samples):
         work: what it cost.
         notes: numbers that have no meaning, and why; empty if there are none.
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
-        term_sizes: for each derivative that was solved for, the largest sum of magnitudes of the terms that
-            give it, anywhere in the motion, mm/s**d; empty if it was not summed.
         resample: evaluates the motion at other instants, if the method allows it.
         prover: proves samples of the motion; called by `proof`.
+        sizer: sums the magnitudes of terms; called by `term_sizes`.
     """
 
     method: str
@@ -95,13 +94,20 @@ class Motion(Samples):
     work: Work
     notes: tuple[str, ...]
     unit: float
-    term_sizes: tuple[float, ...]
     resample: Callable[[Array], Samples] | None
     prover: Prover
+    sizer: Callable[[], tuple[float, ...]]
 
     def proof(self) -> Proof:
         """Proven error bound, condition number and sensitivity of the pose at each of the times."""
         return self.prover(self)
+
+    def term_sizes(self) -> tuple[float, ...]:
+        """Of each derivative solved for the largest sum of magnitudes of the terms that give it, mm/s**d.
+
+        Taken anywhere in the motion; empty if the derivatives were not summed.
+        """
+        return self.sizer()
 
     def at(self, instants: ArrayLike) -> Samples:
         """The same results at any instants inside the motion, without a new solve.

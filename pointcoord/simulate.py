@@ -138,7 +138,7 @@ def _by_newton(
 
         prover = _prover(readout, functions, coordinates)
         cost = pose.work + solved.work + work
-        return _motion(samples, method, pose, cost, None, prover, readout.mechanism, ())
+        return _motion(samples, method, pose, cost, None, prover, readout.mechanism, tuple)
 
     try:
         solved = solve_instants(
@@ -175,7 +175,7 @@ def _motion(
     resample: Callable[[Array], Samples] | None,
     prover: Prover,
     mechanism: Mechanism,
-    term_sizes: tuple[float, ...],
+    sizer: Callable[[], tuple[float, ...]],
 ) -> Motion:
     notes = []
     for channel in (samples.angular_velocity, samples.angular_acceleration):
@@ -194,7 +194,7 @@ def _motion(
         work=work,
         notes=tuple(notes),
         unit=float(mechanism.unit),
-        term_sizes=term_sizes,
         resample=resample,
         prover=prover,
+        sizer=sizer,
     )

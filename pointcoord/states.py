@@ -104,7 +104,6 @@ class Sampler:
             coordinates_evaluated=sum(3 * len(names) * (derivatives + 1) for names, derivatives in requests),
         )
 
-    @property
     def term_sizes(self) -> tuple[float, ...]:
         """Of each derivative the largest sum of magnitudes of the terms of any point, mm/s**d.
 

@@ -46,6 +46,7 @@ class PointCoordinates:
                 f"at t = {motion.times[first]:.10g} s",
             )
             raise FormulationError(self.name, reason)
+        sizes = (*motion.term_sizes(), 0.0, 0.0, 0.0)
         return Solution(
             formulation=self.name,
             times=motion.times,
@@ -63,8 +64,8 @@ class PointCoordinates:
                 condition=proof.condition,
                 velocity_sensitivity=proof.velocity_sensitivity,
                 acceleration_sensitivity=proof.acceleration_sensitivity,
-                speed_terms=(*motion.term_sizes, 0.0, 0.0)[1],
-                acceleration_terms=(*motion.term_sizes, 0.0, 0.0, 0.0)[2],
+                speed_terms=sizes[1],
+                acceleration_terms=sizes[2],
                 truncation=truncation(scene.tolerance / motion.unit) if self.method == "series" else 0.0,
             ),
             notes=motion.notes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -81,7 +82,8 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
             arrays[name] = arrays[name] + lost
             # It knows that digits are lost, and says so, so that its own bounds hold.
             accuracy = replace(solution.accuracy, pose_error=solution.accuracy.pose_error + 1e3 * lost)
-            return replace(solution, accuracy=accuracy, **{quantity: arrays})  # type: ignore[arg-type]
+            changes: dict[str, Any] = {"accuracy": accuracy, quantity: arrays}
+            return replace(solution, **changes)
 
     far(value)  # the car at home is solved before the model is replaced
     monkeypatch.setattr(

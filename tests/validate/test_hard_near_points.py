@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.hard.case import wrong_without_warning
+from validate.hard.case import Case, wrong_without_warning
 from validate.hard.content import paper_car
 from validate.hard.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
@@ -57,14 +57,14 @@ def test_points_are_as_near_as_the_value_says(value: float) -> None:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_a_car_without_near_points_is_solved_by_all(case: object) -> None:
-    trial = case.examine(1.0)  # type: ignore[attr-defined]
+def test_a_car_without_near_points_is_solved_by_all(case: Case) -> None:
+    trial = case.examine(1.0)
     assert {answer.outcome for answer in trial.answers} == {"right"}
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: object) -> None:
-    trial = case.examine(1e-12)  # type: ignore[attr-defined]
+def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: Case) -> None:
+    trial = case.examine(1e-12)
     assert not wrong_without_warning(trial)
     assert not any(answer.outcome == "unjudged" for answer in trial.answers)
 

@@ -126,11 +126,11 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     assert fault_of_kept(caught.value, scene, end, "rack") == ""
     place = {name: array.copy() for name, array in motion.position.items()}
     place["tie_rod_outer"][1, 2] += 1e-6
-    moved = SimpleNamespace(partial=replace(motion, position=place))
-    assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")  # type: ignore[arg-type]
+    moved: Any = SimpleNamespace(partial=replace(motion, position=place))
+    assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
     short = {name: array[:-1] for name, array in place.items()}
-    cut = SimpleNamespace(partial=replace(motion, position=short))
-    assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")  # type: ignore[arg-type]
+    cut: Any = SimpleNamespace(partial=replace(motion, position=short))
+    assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
 
 
 @pytest.mark.parametrize(
@@ -149,11 +149,12 @@ def test_a_way_is_blocked_where_the_truth_loses_its_pose(
     scene = Scene.from_mapping(paper_car(end["arm_angle"], end["rack"]))
     with pytest.raises(FormulationError) as caught:
         formulation("absolute").solve(scene)
-    reached: dict[str, float] = caught.value.reason.reached  # type: ignore[attr-defined]
-    told = Exception("no way on")
+    refusal: Any = caught.value.reason
+    reached: dict[str, float] = refusal.reached
+    told: Any = Exception("no way on")
     for edit, outcome in ((lambda r, _: r, "right"), (change, "wrong")):
         values = {name: float(value) for name, value in edit(reached, end).items()}
-        told.reached = values  # type: ignore[attr-defined]
+        told.reached = values
         answer = blocked_ways.judged("absolute", told, end)
         assert answer.outcome == outcome
     assert says in answer.reason

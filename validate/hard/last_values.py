@@ -100,10 +100,16 @@ def reachable(car: str, values: Mapping[str, Fraction | float]) -> bool:
     A pose that is singular to 400 digits counts as existing: it is the end itself.
     """
     hardpoints = car_called(car)
-    axes = {"up": hardpoints.up, "right": hardpoints.right, "side": hardpoints.side}
     inputs = {name: (value, 0, 0) for name, value in values.items()}
     try:
-        solve_truth(hardpoints.points, inputs, **axes, digits=DIGITS)  # type: ignore[arg-type]
+        solve_truth(
+            hardpoints.points,
+            inputs,
+            up=hardpoints.up,
+            right=hardpoints.right,
+            side=hardpoints.side,
+            digits=DIGITS,
+        )
     except InfeasibleError:
         return False
     except SingularPoseError:
