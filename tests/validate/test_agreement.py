@@ -5,10 +5,10 @@ import pytest
 from hypothesis import assume, given, note
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
-from validate.cli import DEFAULT_SCENES
 from validate.compare import compare
 from validate.formulation import FormulationError
 from validate.paper_car import EFFECTS, PAPER
+from validate.paper_scenes import DEFAULT_SCENES
 from validate.strategies import make_scene, scenes
 
 PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
