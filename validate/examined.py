@@ -165,6 +165,8 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
             outcomes.append(found)
         elif found is not None:
             failures.append(found)
+        if any(_failure(one) is not None for one in once.values()):
+            break  # a scene that fills the memory once would do so again, after a long time
     against, unprinted = None, None
     if printed and isinstance(once[names[0]].answer, Solution):
         formulas = Once(formulation("printed"))
@@ -187,11 +189,11 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
 
 
 def _compared(scene: Scene, name: str, first: Once, second: Once) -> Outcome | Failure | None:
-    """The comparison of a pair; None where one of them has no answer, after both were asked."""
+    """The comparison of a pair; None where one of them has no answer: where it refuses, both were asked."""
     try:
         return compare(scene, first, second, shown(name))
     except Exception as error:
-        if first.asked is not None:
+        if first.asked is not None and _failure(first) is None:
             second.ask(first.asked)
         if isinstance(first.answer, Solution) and isinstance(second.answer, Solution):
             return failure_of(f"the comparison of {first.name} with {second.name}", error)
