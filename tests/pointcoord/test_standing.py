@@ -9,7 +9,7 @@ from pointcoord import Scene, simulate, standing
 def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
     found = standing(Scene.load("bounce"))
     low, high = (np.rad2deg(end.value) for end in found.reach["arm_angle"])
-    # Closed form, with the rack at 0: the ball joint's circle crosses the vertical plane through the arm's axis.
+    # Closed form: the ball joint's circle crosses the vertical plane through the arm's axis; the rack is at 0.
     assert low == pytest.approx(32.228, abs=1e-3)
     assert high == pytest.approx(152.013, abs=1e-3)
     for end in found.reach["arm_angle"]:
@@ -20,8 +20,8 @@ def test_the_rack_reaches_as_far_as_tie_rod_and_steering_arm_lie_in_line() -> No
     scene = Scene.load("off-axis-strut")
     found = standing(scene)
     points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
-    # With the arm held, the tie rod's outer end runs on a circle about the line from the ball joint to the strut
-    # top; the farthest and the nearest it comes to the inner end is the tie rod's length where it locks.
+    # With the arm held, the tie rod's outer end runs on a circle about the line from ball joint to strut top;
+    # the farthest and the nearest it comes to the inner end is the tie rod's length where it locks.
     ball, top, outer = (points[name] for name in ("lower_ball_joint", "strut_top", "tie_rod_outer"))
     along = (top - ball) / np.linalg.norm(top - ball)
     centre = ball + ((outer - ball) @ along) * along
