@@ -9,7 +9,7 @@ from pointcoord import Scene, simulate, standing
 def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
     found = standing(Scene.load("bounce"))
     low, high = (np.rad2deg(end.value) for end in found.reach["arm_angle"])
-    # Closed form: the ball joint's circle crosses the vertical plane through the arm's axis; the rack is at 0.
+    # Closed form: the ball joint's circle crosses the vertical plane through the arm's axis (rack at 0).
     assert low == pytest.approx(32.228, abs=1e-3)
     assert high == pytest.approx(152.013, abs=1e-3)
     for end in found.reach["arm_angle"]:
