@@ -33,6 +33,11 @@ def short_scene(folder: Path, name: str = "short.toml", **changes: str) -> str:
 PAST_ITS_END = {"arm_angle": "{ polynomial = [0.8, 0.8] }"}
 
 
+def complaints(err: str) -> list[str]:
+    """The lines on standard error that are no warnings: the paper's car warns of its drawing."""
+    return [line for line in err.splitlines() if not line.startswith("pointcoord: warning: ")]
+
+
 def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
     """Run the program to its end."""
     options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more

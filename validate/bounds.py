@@ -59,7 +59,7 @@ def _run(options: argparse.Namespace, console: Console) -> ExitStatus:
     status = ExitStatus.DISAGREE if done.broken else ExitStatus.AGREE
     if options.json:
         write_json(options.json, head.document(bounds_data(done), status, True), console)
-    console.quiet = options.json == "-"
+    console.mute = options.json == "-"
     console.say(bounds_text(done))
     return status
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
+from validate.closing import closing_data, closing_of, warnings_of
 from validate.compare import Outcome, compare
 from validate.exit_status import ExitStatus, combined
 from validate.formulation import Formulation, FormulationError, Solution
@@ -71,8 +72,8 @@ class Examined:
         if self.problem is not None:
             found.append(ExitStatus.WRONG_INPUT)
         if self.refusals:
-            # Hardpoints that no formulation makes a mechanism of are the file's fault.
-            wrong = not self.solved and any(r.error == SceneError.__name__ for r in self.refusals)
+            # Hardpoints that make no mechanism, or another car than is drawn, are the file's fault.
+            wrong = any(refusal.error == SceneError.__name__ for refusal in self.refusals)
             found.append(ExitStatus.WRONG_INPUT if wrong else ExitStatus.NO_VERDICT)
         return combined(found)
 
@@ -175,6 +176,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
             against = found
         else:
             unprinted = _refusal(formulas, name, scene)
+    moved = closing_of(scene)
     return Examined(
         name=shown(name),
         title=shown(scene.title),
@@ -185,6 +187,8 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
         unprinted=unprinted,
         solved=tuple(one.name for one in once.values() if isinstance(one.answer, Solution)),
         advice=_advice(once.values()),
+        warnings=warnings_of(moved),
+        closing=closing_data(moved),
     )
 
 

@@ -14,6 +14,10 @@ class MissingPackage(ImportError):
     def __init__(self, part: str, error: ImportError) -> None:
         self.part = part
         self.package = error.name or "pin"
+        if "pointcoord[validate]" in str(error):
+            # The part says it itself.
+            super().__init__(str(error), name=error.name)
+            return
         missing = isinstance(error, ModuleNotFoundError)
         problem = "is not installed" if missing else f"does not load ({' '.join(str(error).split())})"
         super().__init__(

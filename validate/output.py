@@ -26,12 +26,14 @@ class Console:
 
     Attributes:
         quiet: whether only results that were asked for and errors are said.
+        mute: whether standard output belongs to a result, so that nothing else is said there.
         written: the files that the run has written, in words, for the one who interrupts it.
     """
 
     def __init__(self, program: str = "pointcoord") -> None:
         self.program = program
         self.quiet = False
+        self.mute = False
         self.written: list[str] = []
         self._reader_gone = False
 
@@ -45,12 +47,12 @@ class Console:
             raise OutputError(STANDARD_OUTPUT, f"is closed; {what_else}")
 
     def say(self, text: str) -> None:
-        """Lines for people; nothing if the run is quiet.
+        """Lines for people; nothing if the run is quiet or mute.
 
         Raises:
             OutputError: standard output does not take them.
         """
-        if not self.quiet:
+        if not self.quiet and not self.mute:
             self.write(text + "\n")
             self.flush()
 

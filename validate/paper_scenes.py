@@ -1,6 +1,6 @@
-"""The paper's scenes: `validate` takes them without a name, and tries the printed formulas on them alone.
+"""The built-in scenes that `validate` takes without a name."""
 
-The last is the chassis motion that is the paper's third degree of freedom.
-"""
-
-DEFAULT_SCENES = ("bounce", "steer", "bounce-and-steer", "bounce-on-a-heaving-chassis")
+# The paper's examples, and the chassis motion that is its third degree of freedom; the paper's formulas as
+# printed are tried on them alone.
+PAPER_SCENES = ("bounce", "steer", "bounce-and-steer", "bounce-on-a-heaving-chassis")
+DEFAULT_SCENES = (*PAPER_SCENES, "off-axis-strut")

@@ -10,7 +10,7 @@ import pytest
 from pointcoord import Scene, built_in_scenes, simulate
 from validate import cli
 from validate.cli import main
-from validate.paper_scenes import DEFAULT_SCENES
+from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
 
 
 def scene_file(folder: Path, *changes: tuple[str, str]) -> str:
@@ -27,7 +27,8 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> str:
 def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate"]) == 0
     out, err = capsys.readouterr()
-    assert err == ""
+    assert [line.split(":")[2].strip() for line in err.splitlines()] == list(PAPER_SCENES)
+    assert all("warning: " in line and "moves wheel_centre by 16.8 mm" in line for line in err.splitlines())
     for name in built_in_scenes():
         assert f"{name}: pointcoord and absolute" in out
     assert "DISAGREES" not in out
@@ -35,11 +36,11 @@ def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureF
     assert "Table 2" in out
     assert "Table 3" in out
     assert "cannot be matched to better than about 10 mm" in out
-    assert "4 of 4 scenes agree" in out
+    assert "5 of 5 scenes agree" in out
 
 
 def test_json_goes_alone_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["validate", "steer", "--json", "-"]) == 0
+    assert main(["validate", "steer", "--json", "-", "--quiet"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     data = json.loads(out)

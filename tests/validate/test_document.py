@@ -17,6 +17,7 @@ from validate import bounds
 from validate.cli import main
 from validate.document import SCHEMA_VERSION, json_text, schema_text
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.paper_scenes import DEFAULT_SCENES
 
 SCHEMA = json.loads(schema_text())
 CHECK = jsonschema.Draft202012Validator(SCHEMA)
@@ -103,7 +104,7 @@ def test_the_main_job_keeps_to_the_schema(tmp_path: Path) -> None:
     assert main(["validate", "--quiet", "--json", str(target)]) == 0
     data = document(target.read_text())
     pairs = [comparison["formulations"] for scene in data["scenes"] for comparison in scene["comparisons"]]
-    assert pairs == [["pointcoord", "absolute"], ["pointcoord-newton", "absolute"]] * 4
+    assert pairs == [["pointcoord", "absolute"], ["pointcoord-newton", "absolute"]] * len(DEFAULT_SCENES)
     # The steering scene's printed omega is 0/0.
     assert None in [finding["worst"]["difference"] for finding in data["printed_formulas"]]
 

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from program import ENVIRONMENT, PAST_ITS_END, PROGRAM, ROOT, in_shell, run, short_scene
+from program import ENVIRONMENT, PAST_ITS_END, PROGRAM, ROOT, complaints, in_shell, run, short_scene
 
 LONG = "400000"  # samples that take far longer than any test waits
 
 
-def only_line(text: str) -> str:
-    (line,) = text.splitlines()
+def only_line(err: str) -> str:
+    (line,) = complaints(err)
     return line
 
 
@@ -39,7 +39,7 @@ def test_a_reader_that_goes_away_does_not_change_the_status(
     words = [scene if word == "SHORT" else word for word in words]
     # `head -0` has gone before the first line comes.
     done = in_shell('"$@" | head -0; exit ${PIPESTATUS[0]}', *words)
-    assert (done.returncode, done.stderr) == (status, "")
+    assert (done.returncode, complaints(done.stderr)) == (status, [])
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_a_terminal_of_ascii_shows_other_characters_as_escapes(tmp_path: Path) -
         {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
     ):
         done = run("plan", scene, env=ENVIRONMENT | more)
-        assert (done.returncode, done.stderr) == (0, "")
+        assert (done.returncode, complaints(done.stderr)) == (0, [])
         assert "Gr\\xf6\\xdfe \\x1b[2J \\u202e" in done.stdout.splitlines()[0]
         assert done.stdout.isascii()
         assert "\x1b" not in done.stdout

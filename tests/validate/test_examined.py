@@ -6,15 +6,15 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from program import PAST_ITS_END, short_scene
+from program import PAST_ITS_END, complaints, short_scene
 
 from pointcoord import Scene
 from validate.absolute_coordinates import AbsoluteCoordinates
 from validate.cli import main
 from validate.examined import Once, examine
 from validate.exit_status import ExitStatus, combined
-from validate.formulations import formulation
 from validate.point_coordinates import PointCoordinates
 from validate.running import ROOT, asked_for, check_what_is_run, has_job, modules_with_a_job
 
@@ -84,33 +84,71 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     # The hint can be followed, here and where the scene is only solved.
     assert main(["validate", path, "--first", "pointcoord-newton"]) == 0
     assert main(["simulate", path, "-o", str(tmp_path / "x.csv")]) == 3
-    assert "(--method newton); what was solved" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "(--method newton); closing the drawing moves wheel_centre by 16.8 mm" in said
+    assert "; what was solved, one instant up to t = 0 s, is in " in said
     assert main(["simulate", path, "--method", "newton", "-o", str(tmp_path / "x.csv")]) == 0
 
 
-def test_hardpoints_that_only_one_formulation_refuses_are_no_wrong_input() -> None:
-    """Where another formulation solves the scene, its file is not what is wrong."""
+def test_hardpoints_that_make_no_mechanism_are_a_wrong_input_whoever_solves_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     scene = Scene.load("bounce")
     assert examine("bounce", scene, PAIRS[:1], False).status is ExitStatus.AGREE
     points = {**scene.mechanism.points, "lower_ball_joint": scene.mechanism.points["strut_lower"]}
     bent = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
-    assert examine("bent", bent, PAIRS[:1], False).status is ExitStatus.WRONG_INPUT
-    answer = formulation("absolute").solve(scene)
-
-    class Solves:
-        name = "absolute"
-
-        def solve(self, scene: Scene) -> Any:
-            return answer
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            "validate.examined.formulation", lambda n: Solves() if n == "absolute" else formulation(n)
-        )
-        found = examine("bent", bent, PAIRS[:1], False)
-    assert found.status is ExitStatus.NO_VERDICT
+    found = examine("bent", bent, PAIRS[:1], False)
+    assert found.status is ExitStatus.WRONG_INPUT
     assert found.complaint.startswith("bent: mechanism.points: link ")
+    assert found.complaint.endswith("; refused by pointcoord (SceneError) and absolute (DescriptionError)")
+    answer = AbsoluteCoordinates().solve(scene)
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda self, scene: answer)
+    found = examine("bent", bent, PAIRS[:1], False)
+    assert found.status is ExitStatus.WRONG_INPUT
     assert found.complaint.endswith("; refused by pointcoord (SceneError); solved by absolute")
+
+
+def drawn(folder: Path, moved: str) -> str:
+    """The paper's car as drawn, its strut_rod_end moved."""
+    path = Path(short_scene(folder, strut_rod_end=moved))
+    text = path.read_text()
+    path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("closure")) + "\n")
+    return str(path)
+
+
+@pytest.mark.parametrize("command", ["validate", "simulate", "plan"])
+@pytest.mark.parametrize(("off", "status"), [(0.09, 0), (0.11, 0), (4.7, 0), (5.3, 2)])
+def test_a_drawing_that_does_not_close_is_warned_of_and_then_refused(
+    command: str, off: float, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The strut's rod end beside the axis: it alone moves. One percent of the car's longest side is 5.1 mm.
+
+    Half of the axis, h, away from the strut's top, it goes to the axis at its drawn distance D from there:
+    its movement is that of the corner of a triangle with the sides `off` and D - h.
+    """
+    top, lower = np.array([460.0, -180.0, 470.0]), np.array([452.0, -320.0, 20.0])
+    beside = np.cross(top - lower, [1.0, 0.0, 0.0])
+    place = lower + 0.5 * (top - lower) + off * beside / np.linalg.norm(beside)
+    path = drawn(tmp_path, str(place.tolist()))
+    target = tmp_path / "out.json"
+    more = {"validate": ["--json", str(target)], "simulate": ["-o", str(tmp_path / "x.csv")], "plan": []}
+    assert main([command, path, *more[command]]) == status
+    lines = capsys.readouterr().err.splitlines()
+    if off < 0.1:
+        assert lines == []
+    else:
+        (line,) = lines
+        assert line.startswith(f"pointcoord: {'' if status else 'warning: '}{path}: ")
+        assert f"closing the drawing moves strut_rod_end by {off:.3g} mm" in line
+        assert ("another car" in line) == (status == 2)
+    if command == "validate":
+        (scene,) = json.loads(target.read_text())["scenes"]
+        assert scene["closing"]["point"] == "strut_rod_end"
+        half = 0.5 * np.linalg.norm(top - lower)
+        moved = np.hypot(off, np.hypot(half, off) - half)
+        assert scene["closing"]["largest"] == pytest.approx(moved, abs=1e-9)
+        assert scene["closing"]["largest"] == max(scene["closing"]["movements"].values())
+        assert len(scene["warnings"]) == (off > 0.1)
 
 
 def test_each_formulation_solves_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,10 +183,10 @@ def test_printed_formulas_that_refuse_a_scene_change_no_verdict(
         arm_angle="{ polynomial = [1.65, 0.1] }",
         stop="0.1",
     )
-    monkeypatch.setattr("validate.commands.comparison.DEFAULT_SCENES", (path,))
-    assert main(["validate"]) == 0
+    monkeypatch.setattr("validate.commands.comparison.PAPER_SCENES", (path,))
+    assert main(["validate", path]) == 0
     out, err = capsys.readouterr()
-    assert err == ""
+    assert complaints(err) == []
     assert f"The paper's formulas as printed cannot solve {path}: " in out
 
 
@@ -182,7 +220,7 @@ def test_a_failure_at_one_scene_leaves_the_others_solved_and_ends_with_4(
     first, second = short_scene(tmp_path, "1.toml", title='"first"'), short_scene(tmp_path, "2.toml")
     assert main(["validate", first, second, "--json", "-"]) == 4
     out, err = capsys.readouterr()
-    (line,) = err.splitlines()
+    (line,) = complaints(err)
     assert line.startswith(f"pointcoord: {first}: {words}")
     assert line.endswith("; solved by pointcoord")
     data = json.loads(out)
@@ -205,8 +243,8 @@ def test_one_bad_file_leaves_the_others_solved_and_written(
     target = tmp_path / "out.json"
     assert main(["validate", "nowhere.toml", short_scene(tmp_path), "--json", str(target)]) == 2
     out, err = capsys.readouterr()
-    assert "nowhere.toml: cannot be read" in err
-    assert len(err.splitlines()) == 1
+    (line,) = complaints(err)
+    assert "nowhere.toml: cannot be read" in line
     assert "1 of 2 scenes agree" in out
     data = json.loads(target.read_text())
     assert [scene["verdict"] for scene in data["scenes"]] == ["wrong input", "agree"]

@@ -23,7 +23,7 @@ from validate.exit_status import ExitStatus, combined
 from validate.formulations import NAMES, formulation
 from validate.output import Console, shown
 from validate.paper import PaperRow, compare_with_paper
-from validate.paper_scenes import DEFAULT_SCENES
+from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.refusals import Refusal
 
 FIRST, SECOND = "pointcoord", "absolute"
@@ -92,8 +92,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     require_target(options.json, "--json", tuple(names))
-    console.quiet = options.quiet or options.json == "-"
-    if not console.quiet or options.json == "-":
+    console.quiet, console.mute = options.quiet, options.json == "-"
+    if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
     for name in dict.fromkeys(name for pair in pairs for name in pair):
         formulation(name)  # found before any scene is read
@@ -103,7 +103,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     try:
         for name, scene in _loaded(names, console):
             if isinstance(scene, Scene):
-                _say(examined := examine(name, scene, pairs, name in DEFAULT_SCENES), console)
+                _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
             else:
                 examined = scene
             results.add(examined)
@@ -153,8 +153,12 @@ def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | E
 def _say(examined: Examined, console: Console) -> None:
     if examined.complaint:
         console.complain(examined.complaint)
+    else:
+        for warning in examined.warnings:
+            console.warn(f"{examined.name}: {warning}")
     for outcome in examined.outcomes[:1]:
-        console.say(report.outcome_text(outcome) + "\n")
+        closing = "".join(f"\n  note: {warning}" for warning in examined.warnings)
+        console.say(report.outcome_text(outcome) + closing + "\n")
     for outcome in examined.outcomes[1:]:
         # The tables of a further pair would say nearly the same.
         text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)

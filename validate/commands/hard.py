@@ -42,8 +42,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         cases = catalogue.chosen(options.cases)
     except catalogue.UnknownCase as error:
         raise UsageError(str(error)) from None
-    console.quiet = options.quiet or options.json == "-"
-    if not console.quiet or options.json == "-":
+    console.quiet, console.mute = options.quiet, options.json == "-"
+    if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
     kind = "hard-list" if options.list else "hard"
     journal = Journal(options.json, Head.of(kind, options.command), console)

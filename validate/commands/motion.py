@@ -14,6 +14,7 @@ from pointcoord import (
     simulate,
 )
 from pointcoord.simulate import Method
+from validate.closing import warnings_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -64,7 +65,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene = load_scene(options.scene)
     name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
     try:
-        _write(target, simulate(scene, options.method), console)
+        motion = simulate(scene, options.method)
+        for warning in warnings_of(motion.closing):
+            console.warn(f"{name}: {warning}")
+        _write(target, motion, console)
     except SceneError as error:
         raise SceneError(name, error.key, error.problem, error.allowed) from error
     except PointcoordError as error:
@@ -84,8 +88,9 @@ def _kept(target: str | None, error: PointcoordError, console: Console) -> str:
         return "; nothing is written"
     _write(target, partial, console)
     instants = f"{len(partial.times)} instants" if len(partial.times) > 1 else "one instant"
+    moved = "".join(f"; {warning}" for warning in warnings_of(partial.closing))
     return (
-        f"; what was solved, {instants} up to t = {partial.times[-1]:.10g} s, is "
+        f"{moved}; what was solved, {instants} up to t = {partial.times[-1]:.10g} s, is "
         f"{f'on {STANDARD_OUTPUT}' if target is None else f'in {target}'}"
     )
 

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from pointcoord import Scene, built_in_scenes
+import numpy as np
+
+from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
 from pointcoord.effects import EFFECTS, plan_effects
+from pointcoord.standing import End
+from validate.closing import warnings_of
 from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
 from validate.exit_status import ExitStatus
 from validate.output import Console, shown
@@ -45,7 +49,51 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
         f"for the knuckle's points: {plan.derivative_of_knuckle}",
     ]
     console.say("\n".join(lines))
+    return _say_where_it_stands(scene, name, console)
+
+
+def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
+    """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
+    try:
+        stands = standing(scene)
+    except SceneError as error:
+        raise SceneError(name, error.key, error.problem, error.allowed) from None
+    except AssemblyError as error:
+        console.complain(f"{name}: {error}")
+        return ExitStatus.NO_VERDICT
+    lines = [
+        f"drawn {input_name} = {_told(input_name, value)}; from there, the others held, it can go from "
+        f"{' to '.join(_end(input_name, end) for end in stands.reach[input_name])}"
+        for input_name, value in stands.inputs.items()
+    ]
+    inner = "wheel_axis_inner" if "wheel_axis_inner" in scene.mechanism.points else "strut_lower (by default)"
+    angles = ", ".join(f"{n} {_degrees(getattr(stands, n))} deg" for n in ("camber", "kingpin"))
+    lines.append(f"there: {angles}; the wheel turns about the line from {inner} to wheel_centre")
+    lines.append(stands.closing.words)
+    console.say("\n".join(lines))
+    if stands.closing.changes_the_car and scene.mechanism.closure == "drawn":
+        console.complain(
+            f"{name}: mechanism.points: {stands.closing.words}: that is another car, and no solver takes it; "
+            "draw the points that miss where they belong"
+        )
+        return ExitStatus.WRONG_INPUT
+    for warning in warnings_of(stands.closing):
+        console.warn(f"{name}: {warning}")
     return ExitStatus.AGREE
+
+
+def _degrees(angle: float) -> str:
+    """An angle to a thousandth of a degree, and zero without a sign."""
+    return f"{round(float(np.degrees(angle)), 3) + 0.0:g}"
+
+
+def _told(name: str, value: float) -> str:
+    return f"{value:.6g} rad ({np.degrees(value):.5g} deg)" if name == "arm_angle" else f"{value:.6g} mm"
+
+
+def _end(name: str, end: End) -> str:
+    held = f" (limited by {end.limits[0]})" if end.limits else ""
+    return _told(name, end.value) + held
 
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
