@@ -142,7 +142,7 @@ class Once:
             return self._inner.solve(scene)
         except MemoryError as error:
             # Its traceback holds on to what filled the memory.
-            return MemoryError(*error.args)
+            return MemoryError(str(error))
         # A defect of one formulation must not end the run: it is recorded, and the status says so.
         except Exception as error:
             return error
