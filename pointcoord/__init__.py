@@ -7,6 +7,7 @@ motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
 
 from pointcoord.errors import (
     AssemblyError,
+    InputNotKnown,
     InputOutOfRange,
     MechanismError,
     MotionTooLong,
@@ -24,6 +25,7 @@ from pointcoord.simulate import simulate
 
 __all__ = [
     "AssemblyError",
+    "InputNotKnown",
     "InputOutOfRange",
     "MechanismError",
     "Motion",

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import comb
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,6 +63,14 @@ def jumping() -> pointcoord.Scene:
     return changed(inputs={"arm_angle": arm}, time={"start": 0.5 - 2e-8, "stop": 0.5 + 2e-9})
 
 
+def cancelling(power_of_two: int) -> pointcoord.Scene:
+    """The rack goes 16 (t - start)^6 mm, multiplied out: terms of up to 20 start^6 each cancel to that."""
+    start = 2.0**power_of_two
+    terms = [16.0 * comb(6, k) * (-start) ** (6 - k) for k in range(7)]
+    laws = {"rack": {"polynomial": terms}, "arm_angle": {"constant": 1.6}}
+    return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
+
+
 def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
     return absolute.solve(absolute.macpherson({**TABLE, **points}), inputs)
 
@@ -114,6 +123,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: pointcoord.simulate(changed(inputs={"arm_angle": {"constant": 3.5}})),
         ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
         {"name": "arm_angle", "value": 3.5, "instant": 0.0, "allowed": bool},
+    ),
+    "pointcoord.errors.InputNotKnown": Recipe(
+        lambda *_: pointcoord.simulate(cancelling(15)),
+        ("input 'rack' is not known at t = 32768 s", "its polynomial cancel to 0", "off by 3.1", "a table"),
+        {"name": "rack", "law": "polynomial", "value": 0.0, "doubt": lambda doubt: 3.0 < doubt < 3.2},
     ),
     "pointcoord.errors.AssemblyError": Recipe(
         lambda *_: pointcoord.simulate(
