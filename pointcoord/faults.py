@@ -43,7 +43,9 @@ def shown_key(key: int | str) -> str:
 
 
 def plain_number(value: object) -> object:
-    """A scalar of numpy as a number of Python's own; anything else as it is."""
+    """A scalar of numpy as one of Python's own; anything else as it is."""
+    if isinstance(value, np.bool_):
+        return bool(value)  # which is no number, whereas numpy's passes for one
     if isinstance(value, np.integer):
         return int(value)
     return float(value) if isinstance(value, np.floating) else value
