@@ -126,6 +126,16 @@ def test_a_law_is_not_named_where_nothing_hangs_on_its_doubt(make_scene: Make) -
     assert 1e-4 < motion.proof().bound.max() < 1e-2
 
 
+def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(make_scene: Make) -> None:
+    with pytest.raises(AssemblyError) as caught:
+        simulate(make_scene([1.6], [0.0, 200.0]))
+    # The end of the rack's range, where two assemblies meet: the law is known to 1e-29 mm, which is more
+    # than such a tolerance allows, and is not what leaves the pose unproven.
+    law = [caught.value.reached["rack"], 1e-300]
+    motion = simulate(make_scene([1.6], law, samples=2, effects=(), tolerance=1e-300), "newton")
+    assert not np.isfinite(motion.proof().bound).all()
+
+
 def with_rod(table: Points, share: float) -> tuple[Points, float]:
     """The rod's end at a share of the least distance from its top, and how far the ball joint is."""
     top, ball = np.array(table["strut_top"]), np.array(table["lower_ball_joint"])

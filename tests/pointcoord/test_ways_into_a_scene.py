@@ -169,6 +169,13 @@ def test_instants_of_any_times_lie_between_them_and_do_not_go_back(
     assert np.abs(instants - even).max() <= spare
 
 
+def test_instants_of_the_shortest_motions_do_not_pass_their_stop() -> None:
+    # Steps below the smallest normal number are rounded to whole units of 5e-324.
+    instants = even_instants(0.0, 1e-320, 131)
+    assert (instants <= 1e-320).all()
+    assert instants[-1] == 1e-320
+
+
 # ------------------------------------------------------------------------------------------------- text
 
 
