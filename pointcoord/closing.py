@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,4 +88,4 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
             misses[constraint.labels[0].removesuffix(" (x)")] = unit * miss
         first = last
     size = unit * float(np.max(np.ptp(stack, axis=0)))
-    return Closing(MappingProxyType(movements), MappingProxyType(misses), size)
+    return Closing(movements, misses, size)
