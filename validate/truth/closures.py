@@ -53,6 +53,7 @@ class Equations(Protocol):
 
 
 CLOSURES: dict[str, Equations] = {"drawn": drawn, "collinear": straight}
+DEFAULT = "collinear"
 
 
 def equations_for(closure: str) -> Equations:
