@@ -19,7 +19,8 @@ axis the strut top is. The 13 equations C(y) = 0 are
 Then p_i = p5 + R k_i for what the knuckle carries, and p8 = p4 + R k_8 with k_8 along u, as long as d_84
 and to the side on which it is drawn. Nothing here needs the ball joint off or on the axis, nor the points
 5, 6 and 7 in a triangle. Every equation is at most quadratic, so the Jacobian is linear in y. The equations
-also hold for the mirror image of the knuckle, det R = -1, which is no assembly (see `handedness`).
+also hold for the mirror image of the knuckle, det R = -1, which is no assembly: `implied` turns only, so no
+certificate's box keeps to a mirrored zero.
 """
 
 from __future__ import annotations
