@@ -12,12 +12,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import mpmath
+from hypothesis import Phase
 from hypothesis import strategies as st
 from mpmath import mpf
 
 from validate.truth.vectors import Vector, cross, dot, minus, plus, times
 
 Points = dict[str, Vector]
+
+# Without shrinking: a failure is told in seconds, and a car of round numbers explains no more.
+PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
 
 # A strut of a real car's size, mm; the ball joint is a few centimetres beside the strut's axis.
 BASE: Points = {

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from mpmath import mpf
 from truth.off_axis_cars import (
     BASE,
+    PHASES,
     OffAxisCar,
     Points,
     closing,
@@ -47,7 +48,7 @@ angles = st.fractions(Fraction(-1, 4), Fraction(1, 4), max_denominator=512)
 
 
 @given(car=off_axis_cars(), turn=angles, travel=travels, heave=travels)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, phases=PHASES)
 def test_the_pose_is_the_closed_form_s_to_the_proven_radius(
     car: OffAxisCar, turn: Fraction, travel: Fraction, heave: Fraction
 ) -> None:
@@ -65,7 +66,7 @@ def test_the_pose_is_the_closed_form_s_to_the_proven_radius(
 
 
 @given(car=off_axis_cars(), turn=angles, travel=travels)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30, deadline=None, phases=PHASES)
 def test_the_equations_vanish_on_the_closed_form_and_expose_a_change_of_any_number(
     car: OffAxisCar, turn: Fraction, travel: Fraction
 ) -> None:
@@ -88,7 +89,7 @@ def test_the_equations_vanish_on_the_closed_form_and_expose_a_change_of_any_numb
 
 
 @given(car=off_axis_cars())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, phases=PHASES)
 def test_what_is_drawn_comes_back(car: OffAxisCar) -> None:
     closed = closed_drawing(car.points, **car.frame, closure="drawn")
     bound = closed.instant.error_bound["position"]
@@ -98,6 +99,26 @@ def test_what_is_drawn_comes_back(car: OffAxisCar) -> None:
         assert abs(got - want) < mpf("1e-70")
     again = solve(car, {"arm_angle": (closed.arm_angle, 0, 0), "rack": (closed.rack, 0, 0)})
     assert apart(again.position, car.points) <= again.radius
+
+
+def test_what_is_drawn_comes_back_with_strut_lower_above_the_strut_top_or_below_the_ball_joint() -> None:
+    top, along = CAR.points["strut_top"], minus(CAR.points["strut_lower"], CAR.points["strut_top"])
+    for share, side in ((Fraction(-1, 4), -1), (Fraction(3, 2), 1)):
+        car = replace(CAR, points={**CAR.points, "strut_lower": plus(top, times(along, share))})
+        closed = closed_drawing(car.points, closure="drawn")
+        assert closed.farthest[1] < mpf("1e-70")
+        assert closed.instant.choices.strut == side
+        pose = drawn_pose(car, car.drawn[0] + mpf("0.1"), car.drawn[1] + 5)
+        assert pose is not None
+        inputs = {"arm_angle": (car.drawn[0] + mpf("0.1"), 0, 0), "rack": (car.drawn[1] + 5, 0, 0)}
+        assert apart(solve(car, inputs).position, pose.points) < mpf("1e-70")
+
+
+def test_what_is_drawn_comes_back_with_the_steering_arm_along_the_strut_s_axis() -> None:
+    axis = minus(CAR.points["strut_lower"], CAR.points["strut_top"])
+    outer = plus(CAR.points["lower_ball_joint"], times(axis, Fraction(-1, 4)))
+    closed = closed_drawing({**CAR.points, "tie_rod_outer": outer}, closure="drawn")
+    assert closed.farthest[1] < mpf("1e-70")
 
 
 def test_a_rod_end_drawn_beside_the_axis_moves_onto_it_and_nothing_else_moves() -> None:
@@ -242,7 +263,7 @@ def test_the_search_finds_the_closed_form_s_assemblies_and_no_other(turn: str) -
 
 
 @given(car=off_axis_cars(), turn=st.fractions(-1, 1, max_denominator=99), travel=st.integers(-150, 150))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, phases=PHASES)
 def test_as_many_assemblies_can_exist_as_the_closed_form_has(
     car: OffAxisCar, turn: Fraction, travel: int
 ) -> None:

@@ -9,7 +9,17 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
-from truth.off_axis_cars import BASE, OffAxisCar, Points, closing, drawn_pose, numbers, off_axis_cars, size
+from truth.off_axis_cars import (
+    BASE,
+    PHASES,
+    OffAxisCar,
+    Points,
+    closing,
+    drawn_pose,
+    numbers,
+    off_axis_cars,
+    size,
+)
 
 from validate.truth import solve_truth
 from validate.truth.vectors import Vector, cross, dot, minus, plus, times
@@ -43,7 +53,7 @@ def close(a: Vector, b: Vector, limit: mpf) -> bool:
 
 
 @given(car=off_axis_cars(), law=st.tuples(*[rates] * 6), heave=st.tuples(*[rates] * 3))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15, deadline=None, phases=PHASES)
 def test_velocities_and_accelerations_are_the_derivatives_of_the_closed_form(
     car: OffAxisCar, law: tuple[Fraction, ...], heave: tuple[Fraction, ...]
 ) -> None:
@@ -72,7 +82,7 @@ def test_velocities_and_accelerations_are_the_derivatives_of_the_closed_form(
 
 
 @given(car=off_axis_cars(), law=st.tuples(*[rates] * 6))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15, deadline=None, phases=PHASES)
 def test_one_turn_explains_all_points_of_the_knuckle_and_the_slide_the_strut_top(
     car: OffAxisCar, law: tuple[Fraction, ...]
 ) -> None:

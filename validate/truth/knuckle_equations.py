@@ -106,13 +106,13 @@ def implied(points: Mapping[int, Vector], known: Known) -> list[Scalar]:
     """R by columns, and s, of assembled points.
 
     Two vectors a, b of the knuckle that are k, m in its own frame give R: it takes k, m, k x m to a, b,
-    a x b. Of all pairs the one is taken that errors of the points harm least.
+    a x b. Of the pairs of r6, r7 and the rod the one is taken that errors of the points harm least.
     """
-    vectors = {n: (k, minus(points[n], points[5])) for n, k in known.knuckle.items() if n not in (AXIS, 8)}
     along = known.knuckle[8]
     shorter = (dot(along, along) / known.squared_length[8, 4]).sqrt()
-    vectors[8] = along, times(minus(points[8], points[4]), shorter)
-    (k, a), (m, b) = max(combinations(vectors.values(), 2), key=lambda pair: _spread(pair[0][0], pair[1][0]))
+    vectors = [(known.knuckle[n], minus(points[n], points[5])) for n in (6, 7)]
+    vectors.append((along, times(minus(points[8], points[4]), shorter)))
+    (k, a), (m, b) = max(combinations(vectors, 2), key=lambda pair: _spread(pair[0][0], pair[1][0]))
     frame = turning(k, m, a, b)
     axis = known.knuckle[AXIS]
     slide = dot(minus(points[4], points[7]), turned(frame, axis)) / dot(axis, axis)
