@@ -1,8 +1,9 @@
 """What the rows of a solved pose are rounded from, and how far their equations may be off for it.
 
 Independent roundings of eps / 2, n of them, have a standard deviation of sqrt(n / 3) eps / 2. Taken three
-times, n roundings of terms whose magnitudes add up to M leave `spread(n)` M. They are not added up like
-this from row to row: there, the worst signs are assumed.
+times, n roundings of terms whose magnitudes add up to M leave `spread(n)` M: more than they do, as most
+of them round one term and not all. From row to row they are independent again and add up in squares.
+What is left of an equation as computed is known, and adds up as it is.
 """
 
 import math
@@ -41,42 +42,40 @@ TARGET = spread(6)
 
 
 class Doubt(NamedTuple):
-    """How far the equations of N poses may be off, each (N, rows), in units of size and s.
+    """How far each row of an equation may be off, (N, rows) each, in units of size and s.
 
     Attributes:
-        pose: of  rows = target. rate: of  J v = rate. second: of  J a = second - drift.
+        known: what is left of it as computed. rounded: three standard deviations of its rounding.
     """
 
-    pose: Array
-    rate: Array
-    second: Array
+    known: Array
+    rounded: Array
 
 
-def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Array:
-    """(N, rows): what is left of each row, and what the row is rounded from."""
+def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Doubt:
+    """Of  rows = target."""
     stack = mechanism.stack
     offsets = stack.offset_rows
-    doubt: Array = np.abs(target - placed.values) + REACH * length(placed.reach) + TARGET * np.abs(target)
+    rounded: Array = REACH * length(placed.reach) + TARGET * np.abs(target)
     # The partner of a right angle is another direction; points have arms, and are somewhere.
-    doubt[:, : offsets.start] += DIRECTION
+    rounded[:, : offsets.start] += DIRECTION
     second, first = placed.parts[:, 1, offsets], placed.parts[:, 2, offsets]
-    doubt[:, offsets] += PLACE * (length(first) + length(second))
+    rounded[:, offsets] += PLACE * (length(first) + length(second))
     r1 = placed.parts[:, 3, offsets] - placed.reach[:, offsets]
-    doubt[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
-    return doubt
+    rounded[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
+    return Doubt(np.abs(target - placed.values), rounded)
 
 
-def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Array:
-    """(N, rows): what is left of  J v = target,  and what its terms are rounded from."""
+def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Doubt:
+    """Of  J v = target."""
     left = target - np.einsum("nij,nj->ni", jacobian, rates)
-    doubt: Array = np.abs(left) + RATE * pushes(motion) + TARGET * np.abs(target)
-    return doubt
+    return Doubt(np.abs(left), RATE * pushes(motion) + TARGET * np.abs(target))
 
 
 def second_doubt(
     motion: RowMotion, bending: RowMotion, jacobian: Array, seconds: Array, drift: Array, target: Array
-) -> Array:
-    """(N, rows): what is left of  J a = target - drift,  and what its terms are rounded from.
+) -> Doubt:
+    """Of  J a = target - drift.
 
     Args:
         motion, bending: rows at the velocities and at the accelerations of the bodies.
@@ -86,8 +85,7 @@ def second_doubt(
     e, r1, r2 = length(motion.e), length(motion.r1), length(motion.r2)
     speeds = length(motion.s1) + length(motion.s2) + w1 * r1 + w2 * r2
     terms = w1 * w1 * (e + r1) + w2 * w2 * r2 + 2.0 * w1 * speeds
-    doubt: Array = np.abs(left) + RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target)
-    return doubt
+    return Doubt(np.abs(left), RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target))
 
 
 def pushes(motion: RowMotion) -> Array:
