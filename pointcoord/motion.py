@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.assembly import Pose
+from pointcoord.closing import Closing
 from pointcoord.errors import NotComputed, UnknownName
 from pointcoord.proof import Proof
 from pointcoord.work import Work
@@ -108,6 +109,7 @@ class Motion(Samples):
     Attributes:
         method: how it was solved: series, newton or printed.
         start: the assembled pose at the first instant, with its condition number and proven bound.
+        closing: how far the drawing's points moved to close.
         work: what it cost.
         notes: numbers that have no meaning, and why, and where it was not solved as the scene asks; empty
             if there is nothing to note.
@@ -119,6 +121,7 @@ class Motion(Samples):
 
     method: str
     start: Pose
+    closing: Closing
     work: Work
     notes: tuple[str, ...]
     unit: float
