@@ -7,9 +7,14 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
+# A search for examples catches what a test raises and tries it again.
 HANGING = """
-def test_that_hangs() -> None:
-    while True:
+from hypothesis import given, strategies
+
+
+@given(x=strategies.integers())
+def test_that_hangs(x: int) -> None:
+    while x > 3:
         pass
 
 
@@ -18,23 +23,39 @@ def test_that_passes() -> None:
 """
 
 
-@pytest.mark.parametrize("workers", ["0", "2"])
-def test_a_hanging_test_fails_by_name_and_the_others_are_run(tmp_path: Path, workers: str) -> None:
-    path = tmp_path / "test_hanging.py"
+def run(folder: Path, workers: str) -> tuple[int, str]:
+    """Exit status and output of a run with the project's settings and a limit of 1 s."""
+    path = folder / "test_hanging.py"
     path.write_text(HANGING)
     command = [sys.executable, "-m", "pytest", "-c", str(ROOT / "pyproject.toml"), "-n", workers]
     done = subprocess.run(
-        [*command, "-o", "timeout=1", str(path)],
-        capture_output=True,
+        [*command, "-o", "timeout=1", "-o", f"pythonpath={ROOT / 'tests'}", str(path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        cwd=tmp_path,
+        cwd=folder,
         timeout=120,
     )
-    assert done.returncode == 1
-    assert "test_that_hangs - Failed: Timeout" in done.stdout
-    assert "1 failed, 1 passed" in done.stdout
+    return done.returncode, done.stdout
+
+
+def test_a_hanging_test_fails_by_name_and_the_others_are_run(tmp_path: Path) -> None:
+    status, told = run(tmp_path, "2")
+    assert status == 1
+    assert "crashed while running" in told
+    assert "::test_that_hangs" in told
+    assert "1 failed, 1 passed" in told
+
+
+def test_without_workers_a_hanging_test_ends_the_run_with_its_place(tmp_path: Path) -> None:
+    status, told = run(tmp_path, "0")
+    assert status == 1
+    assert "Timeout" in told
+    assert "in test_that_hangs" in told
+    assert "while x > 3:" in told
 
 
 def test_every_test_has_a_time_limit(pytestconfig: pytest.Config) -> None:
     assert float(pytestconfig.getini("timeout")) > 0.0
+    assert pytestconfig.getini("timeout_method") == "thread"
