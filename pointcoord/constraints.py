@@ -189,8 +189,8 @@ class OnLine(Constraint):
         return MechanismError(
             f"{self.start} and {self.end} are {apart:.3g} mm apart, and {self.point} is "
             f"{apart * times:.3g} mm along the line through them, {times:.3g} times as far, so that they do "
-            f"not tell its direction well enough; allowed: at most {FARTHEST:g} times; draw {self.end} at least "
-            f"{apart * times / FARTHEST:.2g} mm from {self.start}",
+            f"not tell its direction well enough; allowed: at most {FARTHEST:g} times; draw {self.end} at "
+            f"least {apart * times / FARTHEST:.2g} mm from {self.start}",
             [self.start, self.end, self.point],
         )
 
