@@ -73,7 +73,9 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share)
     trial = try_on_side(share, paper_car(angle, rack), SOLVERS, followed)
-    listed = count_assemblies(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=STARTS)
+    listed = count_assemblies(
+        PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, closure="collinear", starts=STARTS
+    )
     facts: dict[str, float | str] = {
         "assemblies found, proven": float(len(listed.found)),
         "assemblies possible": float(listed.possible),

@@ -107,7 +107,7 @@ def examine(drive: Drive, overshoot: float) -> Trial:
         else:
             answers.append(_answered(name, scene))
     facts["asked for [mm or rad]"] = _asked(scene, drive)
-    facts["in line"] = "ball joint, arm axis, up" if drive.end.closure == "arm" else "tie rod, steering arm"
+    facts["in line"] = "ball joint, arm axis, up" if drive.end.lock == "arm" else "tie rod, steering arm"
     return Trial(overshoot, tuple(answers), facts)
 
 
@@ -175,7 +175,7 @@ def _faults_of_words(reason: Exception, scene: Scene, drive: Drive) -> list[str]
             faults.append(f"the message does not hold {drive.driven} = {reached[drive.driven]:.10g}")
         if reason.reduce != drive.driven:
             faults.append(f"{reason.reduce!r} is to be reduced, and {drive.driven!r} was driven")
-        if not _in_line(reason.limits[:3], drive.end.closure):
+        if not _in_line(reason.limits[:3], drive.end.lock):
             faults.append(f"what limits it is not what lies in line: {', '.join(reason.limits[:3])}")
     return faults
 
