@@ -12,28 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.doubled import exact_product, exact_square
+from pointcoord.drawing import Drawing
 from pointcoord.errors import InputOutOfRange
 from pointcoord.inputs import cosine
 from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3)."""
-
-    vectors: dict[str, Array]
-    unit: Array
-
-    def distance(self, start: str, end: str) -> Array:
-        """Drawn distance between two points, shape (...,)."""
-        return np.asarray(np.linalg.norm(self.vectors[start] - self.vectors[end], axis=-1))
-
-    def along(self, start: str, end: str, direction: str) -> Array:
-        """Component of the drawn vector from start to end along a direction, shape (...,)."""
-        difference = self.vectors[end] - self.vectors[start]
-        return np.asarray(np.sum(difference * self.vectors[direction], axis=-1))
 
 
 class Drive(Protocol):

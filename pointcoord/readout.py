@@ -78,10 +78,12 @@ class Readout:
         return origin + shift[0]
 
     def _wheel_angles(self, position: Mapping[str, Array]) -> dict[str, Array]:
-        up, lower = self.mechanism.drawing.vectors["up"], position["strut_lower"]
+        topology, up = self.mechanism.topology, self.mechanism.drawing.vectors["up"]
+        inner, centre = (position[name] for name in topology.wheel_axis)
+        lower, upper = (position[name] for name in topology.steering_axis)
         return {
-            "camber": wheel.camber_angle(lower, position["wheel_centre"], up, self.outboard),
-            "kingpin": wheel.kingpin_angle(position["lower_ball_joint"], lower, up, self.outboard),
+            "camber": wheel.camber_angle(inner, centre, up, self.outboard),
+            "kingpin": wheel.kingpin_angle(lower, upper, up, self.outboard),
         }
 
 

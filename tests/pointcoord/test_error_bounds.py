@@ -152,7 +152,8 @@ def test_every_point_of_a_pose_lies_within_its_proven_bound(
     about = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
     points = {name: tuple((about @ np.array(p) + shift).tolist()) for name, p in table.items()}
     points["tie_rod_inner"] = points["rack_centre"]
-    scene = make_scene([angle], [rack], start=0.0, stop=0.0, samples=1, points=points)
+    side = "left" if points["wheel_centre"][1] < points["strut_top"][1] else "right"
+    scene = make_scene([angle], [rack], start=0.0, stop=0.0, samples=1, points=points, side=side)
     try:
         motion = simulate(scene)
     except AssemblyError:
