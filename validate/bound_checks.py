@@ -26,6 +26,7 @@ from pointcoord import Motion, PointcoordError, Scene, simulate
 from validate.closed_form import Closure
 from validate.inputs import rates
 from validate.singular import NearPose, near_pose
+from validate.tolerance import CARRIED
 from validate.truth import InfeasibleError, Instant, TruthError, solve_truth
 from validate.truth.exact import as_fraction
 
@@ -33,7 +34,6 @@ Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
 EPS = float(np.finfo(float).eps)
-CARRIED = "wheel_centre"
 DIGITS = 40  # of the truth: its error is 1e-20 of any error in double precision
 INSTANTS = 4  # per motion
 
@@ -49,7 +49,7 @@ class Check:
         condition: of the Jacobian.
         size: of the mechanism, a power of two.
         far: largest coordinate of a point in the frame of the scene.
-        error, bound: of the solved points. carried_error, carried_bound: of the wheel centre.
+        error, bound: of the solved points. carried_error, carried_bound: of those carried.
     """
 
     number: int
@@ -166,10 +166,11 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, pose.car.closure, distance, "pointcoord: no finite bound")
-    errors = {CARRIED: math.inf, "solved points": math.inf}  # where the truth has no such assembly
+    error = carried_error = math.inf  # where the truth has no such assembly
     if isinstance(truth, Instant):
         each = {name: _error(truth, name, place[0]) for name, place in samples.position.items()}
-        errors = {CARRIED: each.pop(CARRIED), "solved points": max(each.values())}
+        carried_error = max(each.pop(name) for name in CARRIED if name in each)
+        error = max(each.values())
     return Check(
         number=pose.number,
         strut=pose.car.closure,
@@ -180,9 +181,9 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
         condition=float(proof.condition[0]),
         size=motion.unit,
         far=max(float(np.abs(place).max()) for place in samples.position.values()),
-        error=errors["solved points"],
+        error=error,
         bound=bound,
-        carried_error=errors[CARRIED],
+        carried_error=carried_error,
         carried_bound=carried,
     )
 

@@ -63,7 +63,7 @@ def looseness(checks: Sequence[Check]) -> dict[str, Array]:
     with np.errstate(divide="ignore"):
         return {
             "solved points": np.array([c.bound for c in checks]) / [c.error for c in checks],
-            "wheel centre": np.array([c.carried_bound for c in checks]) / [c.carried_error for c in checks],
+            "carried points": np.array([c.carried_bound for c in checks]) / [c.carried_error for c in checks],
         }
 
 
@@ -151,7 +151,7 @@ def _case(check: Check) -> str:
         f"number {check.number}, {check.strut}, "
         f"{check.driven} {check.distance:.2e} from the end ({check.lock}), "
         f"t = {check.instant!r} s: error / bound {check.share:.3g}, error {check.error:.2e} mm, "
-        f"wheel centre {check.carried_error:.2e} mm, condition {check.condition:.2e}, loss {check.loss:.2g}"
+        f"carried points {check.carried_error:.2e} mm, condition {check.condition:.2e}, loss {check.loss:.2g}"
     )
 
 

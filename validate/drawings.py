@@ -34,8 +34,15 @@ FINE = 8.0  # steps of a millimetre: few enough bits that a share of them is exa
 FREE = ("lower_arm_front", "lower_arm_rear", "rack_centre", "strut_top", "lower_ball_joint", "tie_rod_outer")
 
 
-def random_drawing(uniform: Uniform, closure: Closure, reach: float = REACH) -> Drawing:
-    """A left-hand strut in the paper's axes, mm."""
+def random_drawing(
+    uniform: Uniform, closure: Closure, reach: float = REACH, left_over: float = LEFT_OVER
+) -> Drawing:
+    """A left-hand strut in the paper's axes, mm.
+
+    Args:
+        reach: how far free points lie from the paper's.
+        left_over: by how much points of a drawn strut may miss the lines that they belong on.
+    """
     points = {name: np.array(PAPER[name]) + _vector(uniform, reach) for name in (*FREE, "wheel_centre")}
     top, ball = points["strut_top"], points["lower_ball_joint"]
     points["wheel_centre"][1] = min(points["wheel_centre"][1], top[1] - OUTBOARD)
@@ -54,9 +61,9 @@ def random_drawing(uniform: Uniform, closure: Closure, reach: float = REACH) -> 
     if uniform(0.0, 1.0) < 0.2:
         del points["rack_centre"]
     elif uniform(0.0, 1.0) < 0.3:
-        points["tie_rod_inner"] += _vector(uniform, LEFT_OVER)
+        points["tie_rod_inner"] += _vector(uniform, left_over)
     if uniform(0.0, 1.0) < 0.3:
-        points["strut_rod_end"] += _vector(uniform, LEFT_OVER)
+        points["strut_rod_end"] += _vector(uniform, left_over)
     if uniform(0.0, 1.0) < 0.4:
         inwards = np.array([uniform(-20.0, 20.0), uniform(50.0, 150.0), uniform(-20.0, 20.0)])
         points["wheel_axis_inner"] = points["wheel_centre"] + inwards

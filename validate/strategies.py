@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pointcoord import Scene
 from validate.closed_form import Closure
-from validate.drawings import REACH, as_tuples, random_drawing
+from validate.drawings import LEFT_OVER, REACH, as_tuples, random_drawing
 from validate.input_ends import Car, Linkage
 from validate.paper_car import EFFECTS, mirrored
 from validate.random_cars import CLOSURES
@@ -26,10 +26,15 @@ def _floats(reach: float) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def cars(draw: st.DrawFn, closures: Sequence[Closure] = CLOSURES, reach: float = REACH) -> Car:
+def cars(
+    draw: st.DrawFn,
+    closures: Sequence[Closure] = CLOSURES,
+    reach: float = REACH,
+    left_over: float = LEFT_OVER,
+) -> Car:
     """A random strut on either side, of one of these kinds; see `drawings`."""
     kind = draw(st.sampled_from(closures))
-    points = as_tuples(random_drawing(lambda low, high: draw(_between(low, high)), kind, reach))
+    points = as_tuples(random_drawing(lambda low, high: draw(_between(low, high)), kind, reach, left_over))
     side = draw(st.sampled_from(["left", "right"]))
     return Car(mirrored(points) if side == "right" else points, side, UP, RIGHT, kind)
 

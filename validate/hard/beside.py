@@ -104,6 +104,12 @@ def kingpin_near_tie_rod_end(value: float) -> Points:
     return {**p, "tie_rod_outer": foot + value * (p["tie_rod_outer"] - foot)}
 
 
+def axis_near_ball_joint(value: float) -> Points:
+    """The axis drawn by a point near the ball joint."""
+    p = drawn()
+    return with_axis(p, p["lower_ball_joint"] + value * (p["strut_lower"] - p["lower_ball_joint"]))
+
+
 def moved_to(moved: str, onto: str, share: Callable[[float], float]) -> Callable[[float], Points]:
     """A point on its line through another one, at a share of its drawn distance from it."""
 
@@ -285,7 +291,7 @@ CASES: tuple[Case, ...] = (
         "strut-lower-near-the-ball-joint",
         "The axis passes near the ball joint, and is drawn by a point there: the knuckle has no long side.",
         f"distance of strut_lower from the ball joint, {PARTS}",
-        moved_to("strut_lower", "lower_ball_joint", lambda value: value),
+        axis_near_ball_joint,
         SOLVED,
         decades(),
     ),
