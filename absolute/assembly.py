@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.lib.stride_tricks import as_strided
 
+from absolute.backend import pin
 from absolute.description import Model
 from absolute.drawing import Drawing
 from absolute.features import Features

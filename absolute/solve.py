@@ -8,7 +8,8 @@ from absolute.assemble import branch_error
 from absolute.assembly import Mechanism
 from absolute.description import Model
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.finish import BATCH, finish
+from absolute.finish import BATCH, Finished, finish
+from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.march import March
 from absolute.motion import Record
 from absolute.series import chassis_series, input_series
@@ -86,13 +87,7 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
             if count < len(found):
                 bad = record.written
                 if not finished.closed[count]:
-                    raise _stalled(
-                        journey.mechanism,
-                        bad,
-                        values[bad - begin],
-                        finished.residual[count],
-                        finished.step[count],
-                    )
+                    raise _stalled(journey.mechanism, bad, values[bad - begin], finished, count)
                 if finished.kept[count]:
                     raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
                 if again == bad:
@@ -105,17 +100,27 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
 
 
 def _stalled(
-    mechanism: Mechanism, instant: int, values: list[float], residual: float, step: float
+    mechanism: Mechanism, instant: int, values: list[float], finished: Finished, place: int
 ) -> SingularError:
-    size = mechanism.drawing.size
+    stack, size = mechanism.stack, mechanism.drawing.size
+    residual, step = float(finished.residual[place]), float(finished.step[place])
+    limits = limits_at(mechanism, finished.world[place])
+    zeros = [0.0] * len(values)
+    goal, drawn = (
+        mechanism.targets(each, zeros, zeros)[0, mechanism.joint_rows :]
+        for each in (values, mechanism.drawn_inputs.tolist())
+    )
+    jacobian = stack.jacobian(stack.place(finished.rotation[place], finished.origin[place]))
     return SingularError(
         f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
         f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "
-        "singular one, or just beyond it; stay away from the limit of the motion",
+        f"singular one, or just beyond it; {limited_by(limits)}stay away from the limit of the motion",
         instant,
         mechanism.named(values),
         {},
         residual * size,
+        limits=limits,
+        limit=limiting_input(mechanism, jacobian, goal - drawn),
     )
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.mechanism import Mechanism
-from pointcoord.rigid import carried_series
 
 Array = NDArray[np.float64]
 
@@ -72,13 +71,12 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
     Args:
         closed: coordinates of the closed drawing, shape (size,).
     """
-    layout, topology, drawn = mechanism.layout, mechanism.topology, mechanism.drawing.vectors
-    unit = float(mechanism.unit)
-    places = {name: closed[list(layout.vector(name))] for name in topology.moving}
-    for name, carriers in topology.carried.items():
-        series = (places[carrier][None] for carrier in carriers)
-        places[name] = carried_series(mechanism.carrier_weights[name], *series)[0]
-    movements = {name: unit * float(np.linalg.norm(at - drawn[name])) for name, at in places.items()}
+    topology, drawn, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
+    places = mechanism.places(closed)
+    movements = {
+        name: unit * float(np.linalg.norm(places[name] - drawn[name]))
+        for name in (*topology.moving, *topology.carried)
+    }
     stack = np.array([drawn[name] for name in topology.points])
     residual = np.abs(mechanism.map.residual(mechanism.drawn))
     misses, first = {}, 0

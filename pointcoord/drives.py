@@ -20,6 +20,9 @@ from pointcoord.quadratic import UNIT_ROUNDOFF
 Array = NDArray[np.float64]
 
 
+EXTREME = 8.0  # sizes of the mechanism
+
+
 class Drive(Protocol):
     """One driven coordinate and the input that drives it."""
 
@@ -51,6 +54,10 @@ class Drive(Protocol):
 
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The input that gives a coordinate."""
+        ...
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
         ...
 
 
@@ -102,6 +109,11 @@ class ArmAngle:
         ratio = coordinate / drawing.distance(self.pivot, self.point)
         return np.asarray(np.arccos(np.clip(ratio, -1.0, 1.0)))
 
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The arm straight up and straight down."""
+        length = drawing.distance(self.pivot, self.point)
+        return length, -length
+
 
 @dataclass(frozen=True)
 class Travel:
@@ -128,3 +140,7 @@ class Travel:
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The displacement in mm."""
         return np.asarray(coordinate * drawing.unit)
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Eight sizes to either side: no rod that is drawn within one size reaches as far."""
+        return -EXTREME * np.ones_like(drawing.unit), EXTREME * np.ones_like(drawing.unit)

@@ -17,6 +17,7 @@ from pointcoord.drawing import Drawing
 from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.layout import Layout
 from pointcoord.quadratic import QuadraticMap
+from pointcoord.rigid import carried_series
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]
@@ -54,6 +55,17 @@ class Mechanism:
     def map(self) -> QuadraticMap:
         """The constraints."""
         return self.topology.map
+
+    def places(self, y: Array) -> dict[str, Array]:
+        """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
+        topology = self.topology
+        found = {
+            name: y[..., list(self.layout.vector(name))] for name in (*topology.chassis, *topology.moving)
+        }
+        for name, carriers in topology.carried.items():
+            series = (found[carrier][..., None, :] for carrier in carriers)
+            found[name] = carried_series(self.carrier_weights[name], *series)[..., 0, :]
+        return found
 
     def known_series(self, inputs: Mapping[str, Array]) -> Array:
         """Series of all known coordinates from the series of the inputs.

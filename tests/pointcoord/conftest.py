@@ -48,6 +48,7 @@ def make_scene(table: Points) -> Callable[..., Scene]:
         up: Any = (0.0, 0.0, 1.0),
         right: Any = (0.0, 1.0, 0.0),
         side: str = "left",
+        closure: str = "collinear",
     ) -> Scene:
         inputs = {"arm_angle": as_input(arm_angle), "rack": as_input(rack)}
         if heave is not None:
@@ -59,7 +60,7 @@ def make_scene(table: Points) -> Callable[..., Scene]:
                 "tolerance": tolerance,
                 "mechanism": {
                     "type": "macpherson",
-                    "closure": "collinear",
+                    "closure": closure,
                     "side": side,
                     "points": located,
                     "up": tuple(np.asarray(up, float).tolist()),
