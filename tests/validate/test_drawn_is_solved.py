@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import assume, given, note
+from hypothesis import assume, given, note, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -32,6 +32,9 @@ EPS = float(np.finfo(float).eps)
 MODELS = ("pointcoord", "pointcoord-newton", "absolute")
 SHARES = st.floats(-1.0, 1.0)
 CLOSING = cars(["drawn"], left_over=0.0)
+# A car is solved by three models at one or two places, so the short profile searches briefly.
+EXAMPLES = settings.default.max_examples if settings.default else 100
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
 
 
 @pytest.fixture(autouse=True)
@@ -93,9 +96,9 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
     linkage = Linkage.of(car)
     scene = scene_at(car, linkage.drawn_angle, linkage.drawn_rack)
     first = solved("pointcoord", scene)
-    # The arm angle is rounded, by half a unit of its cosine and of itself, which raises the ball joint by up to
-    # 2 pi u of the arm; each coordinate is rounded by half a unit where it is put on a line or circle. The
-    # condition number says what comes of both.
+    # The arm angle is rounded, by half a unit of its cosine and of itself, which raises the ball joint by up
+    # to 2 pi u of the arm; each coordinate is rounded by half a unit where it is put on a line or circle.
+    # The condition number says what comes of both.
     far = max(float(np.abs(place).max()) for place in car.points.values())
     gain = float(first.accuracy.condition.max()) * float(np.maximum(first.accuracy.carried_gain, 1.0).max())
     rounding = gain * EPS * (math.pi * linkage.size + far)
@@ -126,6 +129,7 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
         assert distance <= last, ("truth", point)
 
 
+@searched
 @given(cars(["collinear"]), SHARES, SHARES)
 def test_a_collinear_strut_once_closed_and_drawn_so_moves_as_before(
     car: Car, arm: float, rack: float
@@ -154,13 +158,8 @@ def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
     if law == "mirrored":
         other = "left" if car.side == "right" else "right"
         points = mirrored(dict(car.points))
-        return (
-            Car(points, other, car.up, car.right, car.closure),
-            -1.0,
-            1.0,
-            np.diag([1.0, -1.0, 1.0]),
-            np.zeros(3),
-        )
+        across = Car(points, other, car.up, car.right, car.closure)
+        return across, -1.0, 1.0, np.diag([1.0, -1.0, 1.0]), np.zeros(3)
     if law == "turned":
         turn = any_rotation(5)
         return turned(car, turn), 1.0, 1.0, turn, np.zeros(3)
@@ -170,6 +169,7 @@ def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
     return Car(points, car.side, car.up, car.right, car.closure), 1.0, scale, scale * np.eye(3), shift
 
 
+@searched
 @pytest.mark.parametrize("law", LAWS)
 @given(cars(["drawn"]), SHARES, SHARES)
 def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: float, rack: float) -> None:
