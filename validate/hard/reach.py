@@ -17,6 +17,7 @@ from pointcoord import AssemblyError, Scene
 from validate.formulation import FormulationError
 from validate.formulations import formulation
 from validate.hard.blocked_ways import blocked_way
+from validate.hard.cars import car_content
 from validate.hard.case import RIGHT, Answer, Case, Trial
 from validate.hard.content import Law, decades, paper_car
 from validate.hard.kept import fault_of_kept
@@ -74,13 +75,10 @@ class Drive:
         laws[self.driven] = (start, goal - start) if self.moving else goal
         car = car_called(self.car)
         return Scene.from_mapping(
-            paper_car(
-                arm_angle=laws["arm_angle"],
-                rack=laws["rack"],
-                points=car.points,
-                side=car.side,
-                up=car.up,
-                right=car.right,
+            car_content(
+                car,
+                laws["arm_angle"],
+                laws["rack"],
                 stop=1.0 if self.moving else 0.0,
                 samples=SAMPLES if self.moving else 1,
             )
