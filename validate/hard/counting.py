@@ -27,12 +27,12 @@ DEGREE = 64  # of the polynomial in the literature
 
 
 @cache
-def meeting() -> tuple[float, float]:
+def meeting(car: str = "paper") -> tuple[float, float]:
     """Arm angle and rack travel, rad and mm, at which the two sides of the tie rod just meet, near 35 deg.
 
     At less rack travel the arm cannot pass this angle, at more it can; there `spare` has a minimum of 0.
     """
-    linkage = Linkage.of(car_called("paper"))
+    linkage = Linkage.of(car_called(car))
 
     def least(rack: float) -> tuple[float, float]:
         found = minimize_scalar(
