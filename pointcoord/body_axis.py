@@ -172,6 +172,11 @@ class OnAxis(Constraint):
         """The place."""
         return (self.place,)
 
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """From the origin of the axis to the point."""
+        return ((self.origin, self.point),)
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the place and the direction."""
         p, o, d = (layout.vector(name) for name in (self.point, self.origin, self.axis))
@@ -216,6 +221,11 @@ class HeldOnAxis(Constraint):
     def is_length(self) -> bool:
         """The point's distance from its place on the axis."""
         return True
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """From the other point to this one."""
+        return ((self.origin, self.point),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Linear in the direction, which is unknown; the place is known."""

@@ -18,6 +18,7 @@ from pointcoord.mechanism import Mechanism
 Array = NDArray[np.float64]
 
 NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so more than that is no rounding
+ROUNDING = 1e-11  # of the size: a hundred roundings, 500 times as far where the pose is badly conditioned
 ALLOWED = 0.01  # of the car's size: more than that is another car
 
 
@@ -58,8 +59,8 @@ class Closing:
     @property
     def words(self) -> str:
         """Largest movement and point, and what the drawing misses, in a line."""
-        if self.largest == 0.0:
-            return "closing the drawing moves no point"
+        if self.largest <= ROUNDING * self.size:
+            return f"the drawing closes: no point moves by more than {self.largest:.1g} mm"
         why = ", ".join(f"{name} by {miss:.3g} mm" for name, miss in self.misses.items())
         missed = f"; the drawing misses {why}" if why else ""
         return f"closing the drawing moves {self.point} by {self.largest:.3g} mm{missed}"

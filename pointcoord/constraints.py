@@ -52,6 +52,11 @@ class Constraint(ABC):
         return ()
 
     @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of points that a picture of the linkage joins."""
+        return ()
+
+    @property
     def is_length(self) -> bool:
         """Whether its rows at the drawing are the components of a distance that the drawing misses."""
         return False
@@ -81,6 +86,11 @@ class Link(Constraint):
     def labels(self) -> tuple[str, ...]:
         """One row."""
         return (f"link {self.start} - {self.end}",)
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """The link."""
+        return ((self.start, self.end),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Quadratic in the difference of the ends."""
@@ -124,6 +134,11 @@ class OnLine(Constraint):
     def labels(self) -> tuple[str, ...]:
         """A row per axis."""
         return tuple(f"{self.point} on the line {self.start} - {self.end} ({axis})" for axis in "xyz")
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """The piece of the line up to the point."""
+        return ((self.start, self.point),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the ratio and the line's direction."""
