@@ -25,7 +25,7 @@ from validate import cli, compare
 from validate.deep_store import Store
 from validate.formulations import formulation
 from validate.hard.catalogue import chosen
-from validate.output import write_motion
+from validate.motion_tables import write_motion
 from validate.truth import solve_truth
 from validate.truth.branches import candidate, choices_of_table
 from validate.truth.certificate import certify, refine
@@ -224,8 +224,9 @@ RECIPES: dict[str, Recipe] = {
         ("singular", "condition number", "can be solved", "Look for points on one line"),
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
     ),
-    "validate.cli.UsageError": Recipe(
-        lambda *_: cli._parser().parse_args(["simulat", "bounce"]),
+    "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
+    "validate.commands.usage.UsageError": Recipe(
+        lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
     "validate.deep_store.StoreError": Recipe(
@@ -239,16 +240,21 @@ RECIPES: dict[str, Recipe] = {
     "validate.formulations.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
     ),
-    "validate.formulations.MissingPackage": Recipe(
+    "validate.extras.MissingPackage": Recipe(
         lambda _, pretend: (
             pretend.delitem(sys.modules, "validate.absolute_coordinates", raising=False),
             pretend.setitem(sys.modules, "absolute", None),
             formulation("absolute"),
         ),
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
-        {"formulation": "absolute", "package": "absolute"},
+        {"part": "absolute", "package": "absolute"},
     ),
-    "validate.output.OutputError": Recipe(
+    "validate.files.OutputError": Recipe(
+        lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
+        ("x.csv: cannot be written", "there is no folder"),
+        {"target": lambda name: name.endswith("x.csv"), "problem": bool},
+    ),
+    "validate.motion_tables.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},
