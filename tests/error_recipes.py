@@ -1,8 +1,10 @@
 """How each error class can be met: what raises it, parts of its message, and the data it carries."""
 
+import importlib
 import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import comb
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,6 +13,7 @@ import pytest
 from flint import arb, ctx
 
 import absolute
+import absolute.backend
 import pointcoord
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
@@ -62,13 +65,26 @@ def jumping() -> pointcoord.Scene:
     return changed(inputs={"arm_angle": arm}, time={"start": 0.5 - 2e-8, "stop": 0.5 + 2e-9})
 
 
+def cancelling(power_of_two: int) -> pointcoord.Scene:
+    """The rack goes 16 (t - start)^6 mm, multiplied out: terms of up to 20 start^6 each cancel to that."""
+    start = 2.0**power_of_two
+    terms = [16.0 * comb(6, k) * (-start) ** (6 - k) for k in range(7)]
+    laws = {"rack": {"polynomial": terms}, "arm_angle": {"constant": 1.6}}
+    return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
+
+
 def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
-    return absolute.solve(absolute.macpherson({**TABLE, **points}), inputs)
+    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+
+
+def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
+    patch.setitem(sys.modules, "pinocchio", None)
+    return importlib.reload(absolute.backend)
 
 
 def blocked() -> object:
     """A path along which the rack goes half a metre."""
-    mechanism = Mechanism(absolute.macpherson(TABLE))
+    mechanism = Mechanism(absolute.macpherson(TABLE, closure="collinear"))
     begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
 
     def path(share: float) -> Any:
@@ -114,6 +130,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: pointcoord.simulate(changed(inputs={"arm_angle": {"constant": 3.5}})),
         ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
         {"name": "arm_angle", "value": 3.5, "instant": 0.0, "allowed": bool},
+    ),
+    "pointcoord.errors.InputNotKnown": Recipe(
+        lambda *_: pointcoord.simulate(cancelling(15)),
+        ("input 'rack' is not known at t = 32768 s", "its polynomial cancel to 0", "off by 3.1", "a table"),
+        {"name": "rack", "law": "polynomial", "value": 0.0, "doubt": lambda doubt: 3.0 < doubt < 3.2},
     ),
     "pointcoord.errors.AssemblyError": Recipe(
         lambda *_: pointcoord.simulate(
@@ -174,6 +195,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: solved({"rack_centre": (570, 60, 2000)}),
         ("the drawing cannot be assembled", "mm", "draw the points closer"),
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
+    ),
+    "absolute.errors.MissingPinocchioError": Recipe(
+        lambda _, patch: without_pinocchio(patch),
+        ("Pinocchio", "pip install 'pointcoord[validate]'"),
+        {},
     ),
     "absolute.errors.BranchError": Recipe(
         lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
