@@ -277,3 +277,15 @@ def test_a_dash_is_standard_output_for_a_motion_too(tmp_path: Path) -> None:
     done = run("simulate", short_scene(tmp_path), "-o", "-")
     assert done.returncode == 0
     assert len(done.stdout.splitlines()) == 6
+
+
+@pytest.mark.parametrize("kind", ["/dev/zero", "pipe", "folder", "- of /dev/zero"])
+def test_what_has_no_end_or_is_no_file_is_no_scene(kind: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    if kind.startswith("-"):
+        done = in_shell('"$@" < /dev/zero', "validate", "-")
+    else:
+        done = run("validate", str(tmp_path / kind))
+    assert done.returncode == 2
+    assert "; allowed: " in only_line(done.stderr)
