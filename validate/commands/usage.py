@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from pathlib import Path
 
 from pointcoord import Scene, SceneError
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
-LARGEST = 64 * 2**20  # bytes of a scene
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 
 
@@ -47,15 +45,7 @@ def load_scene(name: str) -> Scene:
     try:
         if sys.stdin is None:
             raise OSError("it is closed")
-        # One byte more than a scene may have: the rules of reading are the scene's own.
-        content = sys.stdin.buffer.read(LARGEST + 1)
+        return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
     except (OSError, ValueError) as error:
         problem = getattr(error, "strerror", None) or str(error)
         raise SceneError(STANDARD_INPUT_NAME, "", f"cannot be read ({problem})", SCENE_HELP) from None
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "scene.toml"
-        path.write_bytes(content)
-        try:
-            return Scene.load(path)
-        except SceneError as error:
-            raise SceneError(STANDARD_INPUT_NAME, error.key, error.problem, error.allowed) from None
