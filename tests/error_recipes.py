@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from importlib import import_module
 from math import comb
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -71,8 +72,8 @@ def cancelling(power_of_two: int) -> pointcoord.Scene:
     return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
 
 
-def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
-    return absolute.solve(absolute.macpherson({**TABLE, **points}), inputs)
+def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD, closure: str = "drawn") -> object:
+    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure=closure), inputs)
 
 
 def blocked() -> object:
@@ -165,6 +166,14 @@ RECIPES: dict[str, Recipe] = {
         ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
         {"instant": 2.7, "start": 0.0, "stop": 2.6},
     ),
+    "absolute.backend.MissingPinocchioError": Recipe(
+        lambda _, pretend: (
+            pretend.delitem(sys.modules, "absolute.backend"),
+            pretend.setitem(sys.modules, "pinocchio", None),
+            import_module("absolute.backend"),
+        ),
+        ("needs Pinocchio", "pip install 'pointcoord[validate]'"),
+    ),
     "absolute.continuation.BlockedError": Recipe(
         lambda *_: blocked(),
         ("blocked at 0.", "of the way"),
@@ -190,7 +199,7 @@ RECIPES: dict[str, Recipe] = {
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
     ),
     "absolute.errors.BranchError": Recipe(
-        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
+        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}, closure="collinear"),
         ("no branch", "tie rod beside the kingpin"),
         {"side": bool, "drawn": np.isfinite},
     ),
