@@ -33,7 +33,6 @@ from pointcoord.printed import printed_body_rates, printed_square_velocity_term
 from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
 from pointcoord.scene import Scene
-from pointcoord.slides import check_slides
 from pointcoord.states import Sampler, solved_states
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
 from pointcoord.work import Work
@@ -116,7 +115,6 @@ def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
         )
     topology = closures[part.closure]
     try:
-        check_slides(topology, part.points)
         return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
     except MechanismError as error:
         raise SceneError(source, "mechanism.points", error.problem) from error

@@ -1,9 +1,9 @@
 """How each error class can be met: what raises it, parts of its message, and the data it carries."""
 
+import importlib
 import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from importlib import import_module
 from math import comb
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ import pytest
 from flint import arb, ctx
 
 import absolute
+import absolute.backend
 import pointcoord
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
@@ -24,7 +25,7 @@ from validate import cli, compare
 from validate.deep_store import Store
 from validate.formulations import formulation
 from validate.hard.catalogue import chosen
-from validate.output import write_motion
+from validate.motion_tables import write_motion
 from validate.truth import solve_truth
 from validate.truth.branches import candidate, choices_of_table
 from validate.truth.certificate import certify, refine
@@ -72,13 +73,18 @@ def cancelling(power_of_two: int) -> pointcoord.Scene:
     return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
 
 
-def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD, closure: str = "drawn") -> object:
-    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure=closure), inputs)
+def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
+    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+
+
+def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
+    patch.setitem(sys.modules, "pinocchio", None)
+    return importlib.reload(absolute.backend)
 
 
 def blocked() -> object:
     """A path along which the rack goes half a metre."""
-    mechanism = Mechanism(absolute.macpherson(TABLE))
+    mechanism = Mechanism(absolute.macpherson(TABLE, closure="collinear"))
     begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
 
     def path(share: float) -> Any:
@@ -166,14 +172,6 @@ RECIPES: dict[str, Recipe] = {
         ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
         {"instant": 2.7, "start": 0.0, "stop": 2.6},
     ),
-    "absolute.backend.MissingPinocchioError": Recipe(
-        lambda _, pretend: (
-            pretend.delitem(sys.modules, "absolute.backend"),
-            pretend.setitem(sys.modules, "pinocchio", None),
-            import_module("absolute.backend"),
-        ),
-        ("needs Pinocchio", "pip install 'pointcoord[validate]'"),
-    ),
     "absolute.continuation.BlockedError": Recipe(
         lambda *_: blocked(),
         ("blocked at 0.", "of the way"),
@@ -198,8 +196,13 @@ RECIPES: dict[str, Recipe] = {
         ("the drawing cannot be assembled", "mm", "draw the points closer"),
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
     ),
+    "absolute.errors.MissingPinocchioError": Recipe(
+        lambda _, patch: without_pinocchio(patch),
+        ("Pinocchio", "pip install 'pointcoord[validate]'"),
+        {},
+    ),
     "absolute.errors.BranchError": Recipe(
-        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}, closure="collinear"),
+        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
         ("no branch", "tie rod beside the kingpin"),
         {"side": bool, "drawn": np.isfinite},
     ),
@@ -221,8 +224,9 @@ RECIPES: dict[str, Recipe] = {
         ("singular", "condition number", "can be solved", "Look for points on one line"),
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
     ),
-    "validate.cli.UsageError": Recipe(
-        lambda *_: cli._parser().parse_args(["simulat", "bounce"]),
+    "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
+    "validate.commands.usage.UsageError": Recipe(
+        lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
     "validate.deep_store.StoreError": Recipe(
@@ -236,16 +240,21 @@ RECIPES: dict[str, Recipe] = {
     "validate.formulations.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
     ),
-    "validate.formulations.MissingPackage": Recipe(
+    "validate.extras.MissingPackage": Recipe(
         lambda _, pretend: (
             pretend.delitem(sys.modules, "validate.absolute_coordinates", raising=False),
             pretend.setitem(sys.modules, "absolute", None),
             formulation("absolute"),
         ),
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
-        {"formulation": "absolute", "package": "absolute"},
+        {"part": "absolute", "package": "absolute"},
     ),
-    "validate.output.OutputError": Recipe(
+    "validate.files.OutputError": Recipe(
+        lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
+        ("x.csv: cannot be written", "there is no folder"),
+        {"target": lambda name: name.endswith("x.csv"), "problem": bool},
+    ),
+    "validate.motion_tables.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},

@@ -19,7 +19,7 @@ from pointcoord import (
     UnknownName,
     simulate,
 )
-from pointcoord.slides import FARTHEST
+from pointcoord.constraints import FARTHEST
 
 Points = dict[str, tuple[float, float, float]]
 Make = Callable[..., Scene]
