@@ -7,6 +7,7 @@ motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
 
 from pointcoord.errors import (
     AssemblyError,
+    InputNotKnown,
     InputOutOfRange,
     MechanismError,
     MotionTooLong,
@@ -21,9 +22,11 @@ from pointcoord.errors import (
 from pointcoord.motion import Motion, Samples
 from pointcoord.scene import Scene, built_in_scenes
 from pointcoord.simulate import simulate
+from pointcoord.standing import Standing, standing
 
 __all__ = [
     "AssemblyError",
+    "InputNotKnown",
     "InputOutOfRange",
     "MechanismError",
     "Motion",
@@ -36,7 +39,9 @@ __all__ = [
     "Scene",
     "SceneError",
     "SingularConfiguration",
+    "Standing",
     "UnknownName",
     "built_in_scenes",
     "simulate",
+    "standing",
 ]

@@ -46,7 +46,7 @@ EPS = float(np.finfo(float).eps)
 ROUNDINGS = 8.0
 
 KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
-CARRIED = ("wheel_centre",)
+CARRIED = ("wheel_centre", "wheel_axis_inner")
 ANGLE_LINES = {
     "camber": ("strut_lower", "wheel_centre"),
     "kingpin": ("lower_ball_joint", "strut_lower"),

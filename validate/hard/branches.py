@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from validate.hard.cars import car_content
 from validate.hard.case import REFUSED, RIGHT, Case, Expected
 from validate.hard.content import SQUARE, Law, decades, paper_car
 from validate.hard.counting import counting_cases, meeting
@@ -28,9 +29,11 @@ from validate.paper_car import PAPER
 
 GROUP = "8. Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
-WIDE = 0.05  # rad: half the motion through the place where the branches nearly meet
+# rad: half the motion through the place where the branches nearly meet; a dead point is 0.05 rad below it.
+WIDE = {"paper": 0.05, "beside": 0.04}
 # A motion through such a place takes half a second, so few values must do.
 EVEN, ODD, FEW = decades()[::2], (*decades(-11, -1)[::2], 1e-12), decades()[::4]
+EIGHT = (*EVEN, 1e-11)
 CLEAR = Expected(("right", "refused"), right_from=1e-6)
 # The paper's tie rod stands at 0.56 of what its side can be (see `oriented`). Assembling moves no point by
 # more than 200 mm times the parameter, which changes each vector of that product by twice as much at most:
@@ -38,19 +41,19 @@ CLEAR = Expected(("right", "refused"), right_from=1e-6)
 STRAIGHTENED = Expected(("right", "refused"), right_from=0.1)
 
 
-def through_the_meeting(share: float, side: float) -> Mapping[str, Any]:
+def through_the_meeting(share: float, side: float, car: str = "paper") -> Mapping[str, Any]:
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
-    angle, rack = meeting()
-    law = (angle + WIDE, -2.0 * WIDE)
-    return paper_car(law, rack + side * 10.0 * share, stop=1.0, samples=5)
+    angle, rack = meeting(car)
+    law = (angle + WIDE[car], -2.0 * WIDE[car])
+    return car_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
 
 
-def near_meeting(tried: Tried) -> Facts:
+def near_meeting(tried: Tried, car: str = "paper") -> Facts:
     """The sides, and how far apart the two assemblies are in the middle of the motion."""
     facts = dict(followed(tried))
     spare = float(
-        Linkage.of(car_called("paper")).spare(
-            np.array(meeting()[0]), np.array(tried.scene.functions["rack"].series(0.5, 0)[0])
+        Linkage.of(car_called(car)).spare(
+            np.array(meeting(car)[0]), np.array(tried.scene.functions["rack"].series(0.5, 0)[0])
         )
     )
     arm = float(np.linalg.norm(np.subtract(PAPER["tie_rod_outer"], PAPER["lower_ball_joint"])))
@@ -147,6 +150,24 @@ CASES: tuple[Case, ...] = (
         ODD,
         measure=near_meeting,
     ),
+    _case(
+        "branches-nearly-meet-beside",
+        f"{NEAR_MEETING} in the car whose strut passes beside the ball joint as well.",
+        "rack travel beyond the meeting, in parts of 10 mm",
+        partial(through_the_meeting, side=1.0, car="beside"),
+        CLEAR,
+        EVEN,
+        measure=partial(near_meeting, car="beside"),
+    ),
+    _case(
+        "branches-met-beside",
+        f"{NEAR_MEETING} and meet, in the car whose strut passes beside the ball joint.",
+        "rack travel short of the meeting, in parts of 10 mm",
+        partial(through_the_meeting, side=-1.0, car="beside"),
+        REFUSED,
+        ODD,
+        measure=partial(near_meeting, car="beside"),
+    ),
     *(
         _case(
             f"flat-drawing{'-mirrored' if mirrored else ''}",
@@ -154,7 +175,7 @@ CASES: tuple[Case, ...] = (
             "height of the tie rod's outer end over that plane, in parts of the paper's",
             partial(from_a_flat_drawing, mirrored=mirrored),
             CLEAR,
-            decades() if not mirrored else EVEN,
+            decades(),
         )
         for mirrored in (False, True)
     ),
@@ -172,7 +193,7 @@ CASES: tuple[Case, ...] = (
             "distance of the first instant from the end, in parts of half the range",
             partial(far_start, driven=driven, ahead=ahead),
             CLEAR,
-            FEW,
+            EIGHT,
         )
         for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
     ),

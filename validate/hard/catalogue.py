@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 
 from validate.hard import (
+    beside,
     body_rates,
     branches,
     cancelling,
@@ -40,7 +41,32 @@ CASES: tuple[Case, ...] = (
     *numbers.CASES,
     *heaves.CASES,
     *found.CASES,
+    *beside.CASES,
 )
+
+# Cases with fewer than eight values of their parameter, and why they have no more.
+_WAY = "each value is a whole way up to where it locks, or through a near miss: half a second to three"
+_REFUSAL = "each refusal takes half a second or more"
+_LINKS = "there are no more links"
+FEW_VALUES: Mapping[str, str] = {
+    "strut-passes-flat": _WAY,
+    "strut-points-near": _REFUSAL,
+    "knuckle-foot-short": _REFUSAL,
+    "long-sine": "each refusal takes two thousand segments",
+    **dict.fromkeys(("branches-nearly-meet", "branches-nearly-meet-beside"), _WAY),
+    **dict.fromkeys(("branches-met", "branches-met-beside"), _WAY),
+    **dict.fromkeys(("whole-range-arm", "whole-range-rack"), _WAY),
+    **{
+        f"reach-{end}{car}": _WAY
+        for end in ("arm-highest", "arm-lowest", "rack-least", "rack-greatest")
+        for car in ("", "-turned")
+    },
+    "reach-slide-runs-out": _WAY,
+    **dict.fromkeys(("link-missing", "link-twice", "link-twice-for-another"), _LINKS),
+    **dict.fromkeys(("link-twice-beside", "link-twice-for-another-beside"), _LINKS),
+    "strut-drawn-folded": _REFUSAL,
+    **dict.fromkeys(("strut-lower-far-below", "strut-lower-far-above"), _REFUSAL),
+}
 
 
 class UnknownCase(Exception):
