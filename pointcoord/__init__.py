@@ -7,6 +7,7 @@ motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
 
 from pointcoord.errors import (
     AssemblyError,
+    InputNotKnown,
     InputOutOfRange,
     MechanismError,
     MotionTooLong,
@@ -25,6 +26,7 @@ from pointcoord.standing import Standing, standing
 
 __all__ = [
     "AssemblyError",
+    "InputNotKnown",
     "InputOutOfRange",
     "MechanismError",
     "Motion",

@@ -8,10 +8,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-import absolute
 from pointcoord.scene import MechanismPart, Scene
+from validate.extras import MissingPackage
 from validate.formulation import Accuracy, FormulationError, Solution
 from validate.inputs import rates
+
+try:
+    import absolute
+except ModuleNotFoundError as error:
+    raise MissingPackage("absolute", error) from None
 
 Array = NDArray[np.float64]
 

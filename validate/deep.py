@@ -24,6 +24,7 @@ from pointcoord import SceneError
 from validate.compare import Outcome, compare_solutions
 from validate.deep_store import CHUNK, Chunk, Store, StoreError
 from validate.deep_table import table_text
+from validate.exit_status import ExitStatus
 from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
 from validate.random_cars import CLOSURES, KINDS, SEED, RandomCar, random_car
@@ -203,7 +204,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         print(f"validate.deep: stopped; start again with --store {options.store} to go on", file=sys.stderr)
-        return 2
+        return ExitStatus.INTERRUPTED
 
 
 if __name__ == "__main__":

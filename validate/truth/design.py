@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import arb
 
-from validate.truth.closures import equations_for
+from validate.truth.closures import DEFAULT, equations_for
 from validate.truth.equations import CHASSIS, NUMBER_OF, Known
 from validate.truth.errors import BadInputError
 from validate.truth.exact import as_ball, as_fraction
@@ -85,7 +85,7 @@ class Design:
         up: Sequence[object],
         right: Sequence[object],
         side: str,
-        closure: str = "collinear",
+        closure: str = DEFAULT,
     ) -> Design:
         """Take over the named points, mm. Without a rack centre the rack's line passes through point 9.
 

@@ -10,10 +10,10 @@ from flint import arb
 from mpmath import mpf
 
 from validate.truth.branches import Choices, choices_of
-from validate.truth.certificate import Certificate, certify, refine
+from validate.truth.certificate import certify, refine
 from validate.truth.closures import equations_for
 from validate.truth.design import Design, ball_vector, values_only
-from validate.truth.equations import MOVING, Known
+from validate.truth.equations import Known
 from validate.truth.errors import NotDecidedError, TruthError
 from validate.truth.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
 from validate.truth.kinematics import body_rates, unknown_jets, wheel_angles
@@ -148,7 +148,7 @@ def prove_instant(
     # box about the answer lies inside the whole box about the centre, so the proof holds there too;
     # a shift of at most a quarter leaves room for the rounding of the radius itself.
     radius = box * design.unit / 2
-    shift = _farthest(certificate, still) * unit + bounds["position"]
+    shift = certificate.shift * unit + bounds["position"]
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
@@ -181,13 +181,6 @@ def _greatest(vectors: Iterable[Vector]) -> arb:
 def _greatest_radius(vectors: Iterable[Vector]) -> arb:
     greatest: arb = max(x.rad() for vector in vectors for x in vector)
     return greatest
-
-
-def _farthest(certificate: Certificate, known: Known) -> arb:
-    """Greatest distance of points 5 to 9 from the centre's, from above."""
-    points_of = equations_for(known.closure).points_of
-    there, here = (points_of(y, known) for y in (certificate.enclosure, certificate.centre))
-    return _greatest(minus(there[n], here[n]) for n in MOVING)
 
 
 def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:
