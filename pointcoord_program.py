@@ -32,6 +32,8 @@ def main() -> int:
     except ImportError as error:
         if (error.name or "").partition(".")[0] == "validate":
             return _said(_not_ours(), WRONG_INPUT)
+        if "failed to map segment" in str(error):  # what the loader of libraries says without memory
+            return _said("cannot start: out of memory", NOT_FINISHED)
         return _said(f"cannot start: {error}; try: pip install --force-reinstall {NAME}", NOT_FINISHED)
     except MemoryError:
         return _said("cannot start: out of memory", NOT_FINISHED)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pointcoord
 
 ROOT = Path(pointcoord.__file__).parent.parent
-PROGRAM = [sys.executable, "-m", "pointcoord"]
+PROGRAM = [sys.executable, "-m", "pointcoord_program"]  # what the script of the name does
 BOUNCE = (ROOT / "pointcoord" / "scenes" / "bounce.toml").read_text(encoding="utf-8")
 ENVIRONMENT = {
     **os.environ,

@@ -10,6 +10,7 @@ import math
 import os
 import platform
 import shlex
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -26,6 +27,7 @@ SCHEMA_VERSION = 1
 PACKAGES = ("numpy", "scipy", "pydantic", "pin", "mpmath", "python-flint")
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+PAUSE = 9.0  # between two writings of a journal, in times that the first took
 
 
 def program_version() -> str:
@@ -139,7 +141,7 @@ def write_json(target: str, data: Any, console: Console) -> None:
 
 
 class Journal:
-    """The JSON of a run, written again after each part that is finished, so that a kill loses none.
+    """The JSON of a run, written again as its parts are finished, so that a kill loses next to nothing.
 
     Standard output takes one document only: it is written at the end.
     """
@@ -153,6 +155,7 @@ class Journal:
         self.target = target
         self._head = head
         self._console = console
+        self._next = 0.0
         if target is not None and target != "-":
             require_writable(target)
 
@@ -162,8 +165,11 @@ class Journal:
         Raises:
             OutputError: it cannot be written.
         """
-        if self.target is not None and self.target != "-":
+        if self.target is not None and self.target != "-" and time.monotonic() >= self._next:
+            began = time.monotonic()
             self._write(self.target, results(), None, False, what)
+            # Writing costs more the more there is: with such pauses it takes at most a tenth of the time.
+            self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
     def close(
         self, results: Callable[[], Mapping[str, Any]], status: ExitStatus, complete: bool, what: str

@@ -18,6 +18,7 @@ from validate.output import shown
 from validate.refusals import Refusal, refusal_of
 
 NEWTON = " (--first pointcoord-newton)"
+PRINTED = "printed"
 
 
 @dataclass(frozen=True)
@@ -69,13 +70,14 @@ class Examined:
     @property
     def status(self) -> ExitStatus:
         """What the scene alone would end the run with."""
-        found = [_status_of(outcome) for outcome in self.outcomes]
+        found = [_status_of(outcome) for outcome in self.outcomes] or [ExitStatus.NO_VERDICT]
         found += [ExitStatus.NOT_FINISHED for _ in self.failures]
         if self.problem is not None:
             found.append(ExitStatus.WRONG_INPUT)
         if self.refusals:
-            # Hardpoints that make no mechanism, or another car than is drawn, are the file's fault.
-            wrong = any(refusal.error == SceneError.__name__ for refusal in self.refusals)
+            # Hardpoints that make no mechanism, or another car than is drawn, are the file's fault; but the
+            # formulas as printed find fault with sound ones too.
+            wrong = any(r.error == SceneError.__name__ and r.formulation != PRINTED for r in self.refusals)
             found.append(ExitStatus.WRONG_INPUT if wrong else ExitStatus.NO_VERDICT)
         return combined(found)
 
@@ -144,7 +146,7 @@ class Once:
             return self._inner.solve(scene)
         except MemoryError as error:
             # Its traceback holds on to what filled the memory.
-            return MemoryError(*error.args)
+            return MemoryError(str(error))
         # A defect of one formulation must not end the run: it is recorded, and the status says so.
         except Exception as error:
             return error
@@ -161,33 +163,44 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
     names = list(dict.fromkeys(name for pair in pairs for name in pair))
     once = {name: Once(formulation(name)) for name in names}
     outcomes: list[Outcome] = []
+    refusals: dict[str, Refusal] = {}
     failures: list[Failure] = []
-    for pair in pairs:
-        found = _compared(scene, name, once[pair[0]], once[pair[1]])
+    for first, second in pairs:
+        found = _compared(scene, name, once[first], once[second])
         if isinstance(found, Outcome):
             outcomes.append(found)
-        elif found is not None:
-            failures.append(found)
-        if any(_failure(one) is not None for one in once.values()):
+        elif isinstance(found, FormulationError):
+            refusals[found.formulation] = refusal_of(found.formulation, found.reason, scene)
+        elif not any(found is one.answer for one in once.values()):
+            failures.append(failure_of(f"the comparison of {first} with {second}", found))
+        if any(_failed(one) for one in once.values()):
             break  # a scene that fills the memory once would do so again, after a long time
+    refusals |= {one.name: r for one in once.values() if (r := _refusal(one, name, scene)) is not None}
     against, unprinted = None, None
     if printed and isinstance(once[names[0]].answer, Solution):
-        formulas = Once(formulation("printed"))
+        formulas = Once(formulation(PRINTED))
         found = _compared(scene, name, once[names[0]], formulas)
-        if isinstance(found, Outcome):
-            against = found
-        else:
-            unprinted = _refusal(formulas, name, scene)
+        against = found if isinstance(found, Outcome) else None
+        unprinted = _refusal(formulas, name, scene)
     moved = closing_of(scene)
     return Examined(
         name=shown(name),
         title=shown(scene.title),
         outcomes=tuple(outcomes),
         printed=against,
-        refusals=tuple(r for one in once.values() if (r := _refusal(one, name, scene)) is not None),
-        failures=tuple(failures) + tuple(f for one in once.values() if (f := _failure(one)) is not None),
+        refusals=tuple(refusals[one] for one in names if one in refusals),
+        failures=(
+            *failures,
+            *(
+                failure_of(one.name, one.answer)
+                for one in once.values()
+                if isinstance(one.answer, Exception) and one.name not in refusals
+            ),
+        ),
         unprinted=unprinted,
-        solved=tuple(one.name for one in once.values() if isinstance(one.answer, Solution)),
+        solved=tuple(
+            one.name for one in once.values() if isinstance(one.answer, Solution) and one.name not in refusals
+        ),
         advice=_advice(once.values()),
         warnings=warnings_of(moved),
         closing=closing_data(moved),
@@ -195,16 +208,14 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
     )
 
 
-def _compared(scene: Scene, name: str, first: Once, second: Once) -> Outcome | Failure | None:
-    """The comparison of a pair; None where one of them has no answer: where it refuses, both were asked."""
+def _compared(scene: Scene, name: str, first: Once, second: Once) -> Outcome | Exception:
+    """The comparison of a pair, or why there is none; where one of them refuses, both were asked."""
     try:
         return compare(scene, first, second, shown(name))
     except Exception as error:
-        if first.asked is not None and _failure(first) is None:
+        if first.asked is not None and not _failed(first):
             second.ask(first.asked)
-        if isinstance(first.answer, Solution) and isinstance(second.answer, Solution):
-            return failure_of(f"the comparison of {first.name} with {second.name}", error)
-        return None
+        return error
 
 
 def _refusal(one: Once, name: str, scene: Scene) -> Refusal | None:
@@ -217,11 +228,8 @@ def _refusal(one: Once, name: str, scene: Scene) -> Refusal | None:
     return None
 
 
-def _failure(one: Once) -> Failure | None:
-    error = one.answer
-    if isinstance(error, Exception) and not isinstance(error, SceneError | FormulationError):
-        return failure_of(one.name, error)
-    return None
+def _failed(one: Once) -> bool:
+    return isinstance(one.answer, Exception) and not isinstance(one.answer, SceneError | FormulationError)
 
 
 def failure_of(what: str, error: Exception) -> Failure:

@@ -77,7 +77,7 @@ def outcome_text(outcome: Outcome) -> str:
 def agreement_line(outcome: Outcome) -> str:
     """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
     first, second = (s.formulation for s in outcome.solutions)
-    worst = max(outcome.rows, key=lambda row: row.share)
+    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
     where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
     return (
         f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} quantities; the largest "

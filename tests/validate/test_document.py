@@ -15,8 +15,9 @@ from program import PAST_ITS_END, ROOT, short_scene
 
 from validate import bounds
 from validate.cli import main
-from validate.document import SCHEMA_VERSION, json_text, schema_text
+from validate.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.output import Console
 from validate.paper_scenes import DEFAULT_SCENES
 
 SCHEMA = json.loads(schema_text())
@@ -129,3 +130,29 @@ def test_every_status_is_explained_where_a_user_looks(capsys: pytest.CaptureFixt
     for status in ExitStatus:
         assert re.search(rf"^ +{status.value}  {re.escape(MEANINGS[status])}$", said, flags=re.M)
     assert {*ORDER, ExitStatus.INTERRUPTED} == set(ExitStatus)
+
+
+def test_writing_on_the_way_takes_a_small_part_of_the_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A clock that each writing moves by 1 s and each part by 0.5 s: of 100 parts some 8 are written."""
+    clock = [0.0]
+    monkeypatch.setattr("validate.document.time.monotonic", lambda: clock[0])
+    target = tmp_path / "x.json"
+    journal = Journal(str(target), Head.of("hard-list", ["pointcoord"]), Console())
+    written = []
+
+    def results(number: int) -> dict[str, Any]:
+        written.append(number)
+        clock[0] += 1.0
+        return {"cases": []}
+
+    for number in range(100):
+        clock[0] += 0.5
+        journal.keep(lambda number=number: results(number), "some")
+    assert written[0] == 0
+    assert len(written) <= 0.1 * clock[0] + 1
+    assert max(np.diff(written)) * 0.5 <= 10.0
+    assert document(target.read_text())["complete"] is False
+    journal.close(lambda: results(100), ExitStatus.AGREE, True, "all")
+    assert document(target.read_text())["complete"] is True

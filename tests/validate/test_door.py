@@ -106,7 +106,7 @@ def test_a_terminal_of_ascii_shows_other_characters_as_escapes(tmp_path: Path) -
 
 def test_memory_that_runs_out_is_one_line_and_status_4(tmp_path: Path) -> None:
     scene = short_scene(tmp_path, samples="10000000")
-    done = in_shell('ulimit -v 1500000; exec "$@"', "validate", scene)
+    done = in_shell('ulimit -v 700000; exec "$@"', "validate", scene)
     assert done.returncode == 4
     assert "out of memory" in only_line(done.stderr)
     assert "try fewer samples" in done.stderr
@@ -207,7 +207,7 @@ def test_a_refused_motion_on_standard_output_says_how_far_it_goes(tmp_path: Path
     assert said.endswith(f", {len(times)} instants up to t = {times[-1]:.10g} s, is on standard output")
 
 
-@pytest.mark.parametrize("module", ["validate", "validate.cli"])
+@pytest.mark.parametrize("module", ["pointcoord", "validate", "validate.cli"])
 def test_the_package_itself_is_the_program(module: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", module, "scenes"],
@@ -263,3 +263,29 @@ def test_without_the_extra_one_line_names_it(program: str, words: list[str], tmp
     line = only_line(done.stderr)
     assert "'flint'" in line
     assert "pip install 'pointcoord[validate]'" in line
+
+
+def test_standard_output_by_another_name_is_not_written_twice(tmp_path: Path) -> None:
+    scene, target = short_scene(tmp_path), tmp_path / "out.txt"
+    for name in ("/dev/stdout", str(target)):
+        done = in_shell(f'"$@" > {target}', "validate", scene, "--json", name)
+        assert done.returncode == 2
+        assert f"--json {name} is standard output; use --json - for that" in only_line(done.stderr)
+
+
+def test_a_dash_is_standard_output_for_a_motion_too(tmp_path: Path) -> None:
+    done = run("simulate", short_scene(tmp_path), "-o", "-")
+    assert done.returncode == 0
+    assert len(done.stdout.splitlines()) == 6
+
+
+@pytest.mark.parametrize("kind", ["/dev/zero", "pipe", "folder", "- of /dev/zero"])
+def test_what_has_no_end_or_is_no_file_is_no_scene(kind: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    if kind.startswith("-"):
+        done = in_shell('"$@" < /dev/zero', "validate", "-")
+    else:
+        done = run("validate", str(tmp_path / kind))
+    assert done.returncode == 2
+    assert "; allowed: " in only_line(done.stderr)

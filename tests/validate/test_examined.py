@@ -13,7 +13,7 @@ from program import PAST_ITS_END, complaints, short_scene
 from pointcoord import Scene
 from validate.absolute_coordinates import AbsoluteCoordinates
 from validate.cli import main
-from validate.examined import Once, examine
+from validate.examined import Examined, Once, examine
 from validate.exit_status import ExitStatus, combined
 from validate.point_coordinates import PointCoordinates
 from validate.running import ROOT, asked_for, check_what_is_run, has_job, modules_with_a_job
@@ -106,6 +106,21 @@ def test_hardpoints_that_make_no_mechanism_are_a_wrong_input_whoever_solves_them
     found = examine("bent", bent, PAIRS[:1], False)
     assert found.status is ExitStatus.WRONG_INPUT
     assert found.complaint.endswith("; refused by pointcoord (SceneError); solved by absolute")
+
+
+def test_a_scene_without_any_verdict_never_ends_with_0(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A formulation that gives no solution at all, and a comparison that fails: each is told."""
+    scene = Scene.load("bounce")
+    assert Examined("empty").status is ExitStatus.NO_VERDICT
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda self, scene: "nonsense")
+    found = examine("bounce", scene, PAIRS[:1], False)
+    assert found.status in (ExitStatus.NO_VERDICT, ExitStatus.NOT_FINISHED)
+    assert "absolute" in found.complaint
+    monkeypatch.undo()
+    monkeypatch.setattr("validate.examined.compare", lambda *_: 1 / 0)
+    found = examine("bounce", scene, PAIRS[:1], False)
+    assert found.status is ExitStatus.NOT_FINISHED
+    assert "the comparison of pointcoord with absolute fails: ZeroDivisionError" in found.complaint
 
 
 def drawn(folder: Path, moved: str) -> str:

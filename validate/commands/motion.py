@@ -33,7 +33,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = commands.add_parser("simulate", help="solve a scene by point coordinates only")
     parser.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help=f"{' or '.join(ENDINGS)}; none: CSV on standard output"
+        "-o", "--output", metavar="FILE", help=f"{' or '.join(ENDINGS)}; none, or -: CSV on standard output"
     )
     parser.add_argument(
         "--method",
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         SceneError: the scene is wrong.
         OutputError: the motion cannot be written.
     """
-    target: str | None = options.output
+    target: str | None = None if options.output == "-" else options.output
     console.quiet = options.quiet
     require_target(target, "-o", (options.scene,))
     if target is None:

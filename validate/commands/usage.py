@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 from pathlib import Path
 
@@ -18,7 +19,7 @@ class UsageError(Exception):
 
 
 def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()) -> None:
-    """Find a target that is no name, or that is one of the scenes.
+    """Find a target that is no name, or that is one of the scenes, or where the text goes already.
 
     Raises:
         UsageError: it is.
@@ -26,10 +27,23 @@ def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()
     if target is None:
         return
     if not target.strip():
-        raise UsageError(f"{option} {target!r} names no file; allowed: the path of a file")
+        raise UsageError(
+            f"{option} {target!r} names no file; allowed: the path of a file, or - for standard output"
+        )
+    if _is_standard_output(target):
+        raise UsageError(f"{option} {target} is standard output; use {option} - for that")
     for scene in scenes:
         if Path(target).is_file() and Path(scene).is_file() and os.path.samefile(target, scene):
             raise UsageError(f"{option} {target} would overwrite the scene; give another file")
+
+
+def _is_standard_output(target: str) -> bool:
+    """Whether a file or pipe is standard output by another name; a terminal or /dev/null may be both."""
+    try:
+        out, place = os.fstat(1), os.stat(target)
+    except (OSError, ValueError):
+        return False
+    return os.path.samestat(out, place) and not stat.S_ISCHR(out.st_mode)
 
 
 def load_scene(name: str) -> Scene:
@@ -42,10 +56,6 @@ def load_scene(name: str) -> Scene:
         raise SceneError("''", "", "names no scene", SCENE_HELP)
     if name != STANDARD_INPUT:
         return Scene.load(name)
-    try:
-        if sys.stdin is None:
-            raise OSError("it is closed")
-        return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
-    except (OSError, ValueError) as error:
-        problem = getattr(error, "strerror", None) or str(error)
-        raise SceneError(STANDARD_INPUT_NAME, "", f"cannot be read ({problem})", SCENE_HELP) from None
+    if sys.stdin is None:
+        raise SceneError(STANDARD_INPUT_NAME, "", "cannot be read (it is closed)", SCENE_HELP)
+    return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
