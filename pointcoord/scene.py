@@ -95,6 +95,13 @@ class MechanismPart(Part):
         return TOPOLOGIES[self.type][self.closure].given(self.points)
 
     @property
+    def defaults_taken(self) -> tuple[str, ...]:
+        """What the scene leaves to us and what is seen in the results, in words."""
+        if "wheel_axis_inner" in self.points:
+            return ()
+        return ("wheel_axis_inner is not given: the wheel's spin axis starts at strut_lower",)
+
+    @property
     def outboard(self) -> NDArray[np.float64]:
         """Unit vector away from the car's middle."""
         return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)

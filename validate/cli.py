@@ -7,14 +7,14 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-from validate.commands import comparison, hard, motion, scenes
+from validate.commands import comparison, draw, hard, motion, scenes
 from validate.commands.usage import UsageError
 from validate.document import program_version, schema_text
 from validate.door import guarded
 from validate.exit_status import HELP, ExitStatus
 from validate.output import Console
 
-COMMANDS = (comparison, motion, scenes, hard)
+COMMANDS = (comparison, motion, scenes, draw, hard)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

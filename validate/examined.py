@@ -50,6 +50,7 @@ class Examined:
         advice: how to follow a hint of a refusal on the command line.
         warnings: what the user should know of the scene, though it is solved.
         closing: how far the points of the drawing move until it closes, as plain data.
+        defaults: what the scene leaves to the program, in words.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Examined:
     advice: str = ""
     warnings: tuple[str, ...] = ()
     closing: Mapping[str, Any] | None = None
+    defaults: tuple[str, ...] = ()
 
     @property
     def status(self) -> ExitStatus:
@@ -202,6 +204,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
         advice=_advice(once.values()),
         warnings=warnings_of(moved),
         closing=closing_data(moved),
+        defaults=scene.mechanism.defaults_taken,
     )
 
 

@@ -111,6 +111,11 @@ class Console:
             with suppress(OSError, ValueError):
                 print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
 
+    def note(self, message: str) -> None:
+        """One line on standard error of what was taken for granted; nothing if the run is quiet."""
+        if not self.quiet:
+            self.complain(f"note: {message}")
+
     def warn(self, message: str) -> None:
         """One line on standard error that does not change the status; nothing if the run is quiet."""
         if not self.quiet:

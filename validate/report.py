@@ -146,6 +146,7 @@ def examined_data(examined: Examined) -> dict[str, Any]:
         "problem": examined.problem,
         "warnings": list(examined.warnings),
         "closing": examined.closing,
+        "defaults": list(examined.defaults),
         "solved_by": list(examined.solved),
         "comparisons": [outcome_data(outcome) for outcome in examined.outcomes],
         "refusals": [asdict(refusal) for refusal in examined.refusals],

@@ -9,7 +9,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, Motion, Samples, Scene, simulate
+from pointcoord import AssemblyError, Motion, Samples, Scene, built_in_scenes, simulate
 from pointcoord.motion import Channel
 
 HEAVE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0}}
@@ -48,6 +48,18 @@ def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for(
     if method == "series":
         assert_same(motion.at([0.3, 1.7]), again.at([0.3, 1.7]))
         assert_same(motion.at(0.3), pickle.loads(pickle.dumps(motion.at(0.3))))
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_motions_of_the_built_in_scenes_are_pickled_with_their_closing(name: str, method: str) -> None:
+    motion = simulate(Scene.load(name), method)
+    again = pickle.loads(pickle.dumps(motion))
+    assert_same(motion, again)
+    assert_same_proof(motion, again)
+    assert again.closing == motion.closing
+    with pytest.raises(TypeError):
+        again.closing.movements["strut_top"] = 1.0
 
 
 def test_arrays_of_a_pickled_motion_cannot_be_written(make_scene: Callable[..., Scene]) -> None:

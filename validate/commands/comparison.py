@@ -157,8 +157,8 @@ def _say(examined: Examined, console: Console) -> None:
         for warning in examined.warnings:
             console.warn(f"{examined.name}: {warning}")
     for outcome in examined.outcomes[:1]:
-        closing = "".join(f"\n  note: {warning}" for warning in examined.warnings)
-        console.say(report.outcome_text(outcome) + closing + "\n")
+        notes = "".join(f"\n  note: {note}" for note in (*examined.warnings, *examined.defaults))
+        console.say(report.outcome_text(outcome) + notes + "\n")
     for outcome in examined.outcomes[1:]:
         # The tables of a further pair would say nearly the same.
         text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)

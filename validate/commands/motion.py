@@ -68,6 +68,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         motion = simulate(scene, options.method)
         for warning in warnings_of(motion.closing):
             console.warn(f"{name}: {warning}")
+        if "wheel_angles" in scene.effects:
+            for taken in scene.mechanism.defaults_taken:
+                console.note(f"{name}: {taken}")
         _write(target, motion, console)
     except SceneError as error:
         raise SceneError(name, error.key, error.problem, error.allowed) from error

@@ -19,6 +19,8 @@ try:
     from validate.truth.errors import SingularPoseError as SingularPoseError
     from validate.truth.errors import TruthError as TruthError
     from validate.truth.instant import Instant as Instant
+    from validate.truth.sensitivity import Sensitivity as Sensitivity
+    from validate.truth.sensitivity import sensitivities as sensitivities
     from validate.truth.solve import solve_truth as solve_truth
     from validate.truth.time_functions import time_function_value as time_function_value
 except ModuleNotFoundError as error:
