@@ -254,7 +254,7 @@ RECIPES: dict[str, Recipe] = {
         ("x.csv: cannot be written", "there is no folder"),
         {"target": lambda name: name.endswith("x.csv"), "problem": bool},
     ),
-    "validate.motion_tables.UnknownEnding": Recipe(
+    "validate.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},

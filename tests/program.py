@@ -34,8 +34,12 @@ PAST_ITS_END = {"arm_angle": "{ polynomial = [0.8, 0.8] }"}
 
 
 def complaints(err: str) -> list[str]:
-    """The lines on standard error that are no warnings: the paper's car warns of its drawing."""
-    return [line for line in err.splitlines() if not line.startswith("pointcoord: warning: ")]
+    """The lines on standard error that are errors: the paper's car is warned of, and has notes."""
+    return [
+        line
+        for line in err.splitlines()
+        if not line.startswith(("pointcoord: warning: ", "pointcoord: note: "))
+    ]
 
 
 def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:

@@ -10,10 +10,9 @@ from validate.commands.usage import UsageError
 from validate.examined import told_failure
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
-from validate.files import OutputError
+from validate.files import OutputError, UnknownEnding
 from validate.formulation import FormulationError
 from validate.formulations import UnknownFormulation
-from validate.motion_tables import UnknownEnding
 from validate.output import Console
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.

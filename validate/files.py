@@ -9,7 +9,7 @@ import errno
 import os
 import secrets
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -27,6 +27,20 @@ class OutputError(Exception):
         self.target = target
         self.problem = problem
         super().__init__(f"{target}: {problem}")
+
+
+class UnknownEnding(OutputError):
+    """The name of a file does not say how to write it."""
+
+
+def require_known_ending(target: str, endings: Iterable[str]) -> None:
+    """Find an ending that says nothing.
+
+    Raises:
+        UnknownEnding: it is none of these.
+    """
+    if Path(target).suffix not in endings:
+        raise UnknownEnding(target, f"has no known ending; allowed: {', '.join(endings)}")
 
 
 def unwritable(target: str, error: OSError) -> OutputError:

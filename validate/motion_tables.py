@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion
-from validate.files import OutputError, write_whole
+from validate.files import require_known_ending, write_whole
 
 Array = NDArray[np.float64]
 
@@ -66,20 +66,6 @@ def _npz_file(stream: BinaryIO, motion: Motion) -> None:
 ENDINGS: dict[str, Callable[[BinaryIO, Motion], None]] = {".csv": _csv_file, ".npz": _npz_file}
 
 
-def require_known_ending(target: str) -> None:
-    """Find an ending that no table has.
-
-    Raises:
-        OutputError: it is none of `ENDINGS`.
-    """
-    if Path(target).suffix not in ENDINGS:
-        raise UnknownEnding(target, f"has no known ending; allowed: {', '.join(ENDINGS)}")
-
-
-class UnknownEnding(OutputError):
-    """The name of a file does not say how to write it."""
-
-
 def write_motion(target: str, motion: Motion) -> None:
     """Write a motion by the ending of the target.
 
@@ -87,5 +73,5 @@ def write_motion(target: str, motion: Motion) -> None:
         UnknownEnding: the ending is another one than .csv or .npz.
         OutputError: the file cannot be written; what was there is whole.
     """
-    require_known_ending(target)
+    require_known_ending(target, ENDINGS)
     write_whole(target, lambda stream: ENDINGS[Path(target).suffix](stream, motion))

@@ -27,6 +27,7 @@ def only_line(err: str) -> str:
         (["validate", "SHORT", "--second", "printed", "--json", "-"], 1),
         (["simulate", "bounce"], 0),
         (["plan", "SHORT"], 0),
+        (["draw", "SHORT"], 0),
         (["scenes"], 0),
         (["hard", "--list"], 0),
         (["--help"], 0),

@@ -14,7 +14,7 @@ from validate.commands.usage import (
     require_target,
 )
 from validate.exit_status import ExitStatus
-from validate.files import require_writable, write_whole
+from validate.files import require_known_ending, require_writable, write_whole
 from validate.output import Console, shown
 from validate.picture import svg
 
@@ -23,7 +23,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser("draw", help="draw a scene's hardpoints, as drawn and as closed (SVG)")
     parser.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
-    parser.add_argument("-o", "--output", metavar="FILE.svg", help="none: standard output")
+    parser.add_argument("-o", "--output", metavar="FILE.svg", help="none, or -: standard output")
     parser.set_defaults(run=run)
 
 
@@ -31,15 +31,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints.
 
     Raises:
-        UsageError: the file has no name.
+        UsageError, UnknownEnding: the file has no name, or another ending than .svg.
         SceneError: the scene is wrong.
         OutputError: the picture cannot be written.
     """
-    target: str | None = options.output
+    target: str | None = None if options.output == "-" else options.output
     require_target(target, "-o", (options.scene,))
     if target is None:
         console.require("use -o FILE")
     else:
+        require_known_ending(target, (".svg",))
         require_writable(target)
     scene = load_scene(options.scene)
     try:

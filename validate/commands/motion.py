@@ -23,8 +23,8 @@ from validate.commands.usage import (
     require_target,
 )
 from validate.exit_status import ExitStatus
-from validate.files import require_writable
-from validate.motion_tables import ENDINGS, require_known_ending, write_csv, write_motion
+from validate.files import require_known_ending, require_writable
+from validate.motion_tables import ENDINGS, write_csv, write_motion
 from validate.output import STANDARD_OUTPUT, Console, shown
 
 
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if target is None:
         console.require("use -o FILE")
     else:
-        require_known_ending(target)
+        require_known_ending(target, ENDINGS)
         require_writable(target)
     scene = load_scene(options.scene)
     name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
