@@ -57,6 +57,18 @@ def test_modules_of_a_package_form_layers(package: str) -> None:
             del below[name]
 
 
+def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
+    for name in ("pointcoord_program.py", "pointcoord/__main__.py", "validate/exit_status.py"):
+        for node in ast.walk(ast.parse((ROOT / name).read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                roots = {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                roots = {(node.module or "").split(".")[0]}
+            else:
+                continue
+            assert roots <= set(sys.stdlib_module_names), name
+
+
 def test_pointcoord_works_without_pinocchio() -> None:
     program = (
         "import sys; sys.modules['pinocchio'] = None; sys.modules['absolute'] = None\n"

@@ -79,6 +79,9 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add(commands)
+    for one in commands.choices.values():
+        one.epilog = HELP
+        one.formatter_class = argparse.RawDescriptionHelpFormatter
     return top
 
 

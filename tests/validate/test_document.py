@@ -122,8 +122,11 @@ def test_the_study_of_bounds_keeps_to_the_schema(tmp_path: Path, capsys: pytest.
     assert document(capsys.readouterr().out)["kind"] == "bounds"
 
 
-def test_every_status_is_explained_where_a_user_looks(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["--help"]) == 0
+@pytest.mark.parametrize("words", [["--help"], ["validate", "--help"], ["simulate", "-h"]])
+def test_every_status_is_explained_where_a_user_looks(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 0
     said = capsys.readouterr().out
     assert HELP in said
     assert set(MEANINGS) == set(ExitStatus)

@@ -315,6 +315,31 @@ def test_results_do_not_go_over_the_scene_that_they_come_from(
     assert Path(scene).read_text() == before
 
 
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        (["simulate", "-o", "no/x.csv"], 4),
+        (["simulate", "-o", "x.xlsx"], 2),
+        (["validate", "--json", "no/x.json"], 4),
+        (["validate", "--json", "/"], 4),
+    ],
+)
+def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
+    words: list[str], status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("solved")
+
+    monkeypatch.setattr("validate.commands.motion.simulate", never)
+    monkeypatch.setattr("validate.commands.comparison.examine", never)
+    command, option, target = words
+    assert main([command, "bounce", option, target]) == status
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith(f"pointcoord: {target}: ")
+
+
 MODULES = sorted(
     ".".join(path.relative_to(ROOT.parent).with_suffix("").parts).removesuffix(".__init__")
     for path in ROOT.rglob("*.py")

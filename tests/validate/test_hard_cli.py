@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -153,6 +154,27 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
         target.write_text(before)
     assert main(["hard", "--json", str(target)]) == 130
     assert (target.read_text() if target.exists() else None) == before
+
+
+def test_an_interrupted_run_leaves_the_cases_that_are_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(value: float) -> Trial:
+        raise KeyboardInterrupt
+
+    def case(name: str, examine: Callable[[float], Trial]) -> Case:
+        return Case(name, "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", examine)
+
+    right = Trial(1.0, (Answer("absolute", "right"),))
+    cases = (*(case(f"done-{i}", lambda value: right) for i in range(3)), case("stop", interrupted))
+    monkeypatch.setattr(catalogue, "CASES", cases)
+    target = tmp_path / "hard.json"
+    assert main(["hard", "--json", str(target)]) == 130
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"pointcoord: interrupted; {target} holds 3 of 4 cases"
+    data = json.loads(target.read_text())
+    assert (data["complete"], data["exit_status"]) == (False, 130)
+    assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
 
 
 def test_without_the_packages_of_the_truth_one_line_says_what_to_install() -> None:
