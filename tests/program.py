@@ -34,8 +34,9 @@ PAST_ITS_END = {"arm_angle": "{ polynomial = [0.8, 0.8] }"}
 
 
 def complaints(err: str) -> list[str]:
-    """The lines on standard error that are no warnings: the paper's car warns of its drawing."""
-    return [line for line in err.splitlines() if not line.startswith("pointcoord: warning: ")]
+    """The lines on standard error that are no warnings or notes: the paper's car warns of its drawing."""
+    said = ("pointcoord: warning: ", "pointcoord: note: ")
+    return [line for line in err.splitlines() if not line.startswith(said)]
 
 
 def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
