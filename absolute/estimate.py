@@ -158,17 +158,23 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
     speed = -inverse @ rate_by_pose(stack, moving) @ inverse
     second = -inverse @ (by_pose @ inverse + by_velocity @ speed)
     bent = -inverse @ by_velocity @ inverse
+    rate = rate_doubt(moving, jacobian, speeds, targets[1])
+    grown = fold(mechanism, placed, inverse, everything)
+    # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
+    off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
+    fastest = np.abs(speeds).max(axis=1)
+    share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
     return Answers(
         _by_row(inverse),
         _by_row(speed),
         _by_row(second),
         _by_row(bent),
         pose,
-        rate_doubt(moving, jacobian, speeds, targets[1]),
+        rate,
         second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
         slopes,
         doubts,
-        fold(mechanism, placed, inverse, everything),
+        (grown[0], grown[1], grown[2] * (1.0 + share)),
     )
 
 

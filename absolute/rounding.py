@@ -1,9 +1,10 @@
 """What the rows of a solved pose are rounded from, and how far their equations may be off for it.
 
-Independent roundings of eps / 2, n of them, have a standard deviation of sqrt(n / 3) eps / 2. Taken three
-times, n roundings of terms whose magnitudes add up to M leave `spread(n)` M: more than they do, as most
-of them round one term and not all. From row to row they are independent again and add up in squares.
-What is left of an equation as computed is known, and adds up as it is.
+A rounding is even between -eps / 2 and eps / 2 of the power of two below a number x, so its mean square is
+eps^2 / 12 times the mean of (2^k / x)^2, which is 1 / 2 for even x: a standard deviation of eps / 2 / sqrt(6)
+of x. It is made in one component of a vector, with a mean square of a third. Of n independent ones made
+in vectors whose lengths add up to M, four standard deviations are  spread(n) M,  and from row to row they
+add up in squares again. What is left of an equation as computed is known, and adds up as it is.
 """
 
 import math
@@ -19,8 +20,8 @@ from absolute.stack import Placed
 
 
 def spread(roundings: int) -> float:
-    """Three standard deviations of so many independent roundings."""
-    return 3.0 * math.sqrt(roundings / 3.0) * EPS / 2.0
+    """Four standard deviations of so many independent roundings in vectors."""
+    return 4.0 * math.sqrt(roundings / 18.0) * EPS / 2.0
 
 
 # A length from the drawing: a difference and a quotient. A rotation from a quaternion: four from the
@@ -37,15 +38,15 @@ PLACE = EPS / 2.0
 RATE = spread(22 + 13 + 3 + 12)
 # Two products with an angular velocity more, and the sum of three kinds of terms.
 DRIFT = spread(22 + 13 + 2 * 3 + 12 + 3)
-# An input's law, its factor, the size, their products.
-TARGET = spread(6)
+# An input's law, its factor (three), the size, their product: at worst.
+TARGET = 6 * EPS / 2.0
 
 
 class Doubt(NamedTuple):
     """How far each row of an equation may be off, (N, rows) each, in units of size and s.
 
     Attributes:
-        known: what is left of it as computed. rounded: three standard deviations of its rounding.
+        known: what is left of it as computed. rounded: four standard deviations of its rounding.
     """
 
     known: Array

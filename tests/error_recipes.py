@@ -97,9 +97,9 @@ def blocked() -> object:
 def uncertified() -> object:
     """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
     with ctx.workprec(bits(60)):
-        design = Design.from_points(TABLE, *UPRIGHT.values(), "left")
+        design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
         known = values_only(design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)})))
-        drawn = candidate(known, choices_of_table(design.table, design.up))
+        drawn = candidate(known, choices_of_table(design.table, design.up, "collinear"))
         assembled = refine(unknown_of(drawn.points, known), known)
         assembled[0] = (assembled[0] + arb("1e-59")).mid()
         return certify(assembled, known, Fraction(1, 10**60))

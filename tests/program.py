@@ -8,7 +8,7 @@ from pathlib import Path
 import pointcoord
 
 ROOT = Path(pointcoord.__file__).parent.parent
-PROGRAM = [sys.executable, "-m", "pointcoord_program"]  # what the script of the name does
+PROGRAM = [sys.executable, "-m", "pointcoord"]
 BOUNCE = (ROOT / "pointcoord" / "scenes" / "bounce.toml").read_text(encoding="utf-8")
 ENVIRONMENT = {
     **os.environ,
@@ -34,12 +34,9 @@ PAST_ITS_END = {"arm_angle": "{ polynomial = [0.8, 0.8] }"}
 
 
 def complaints(err: str) -> list[str]:
-    """The lines on standard error that are errors: the paper's car is warned of, and has notes."""
-    return [
-        line
-        for line in err.splitlines()
-        if not line.startswith(("pointcoord: warning: ", "pointcoord: note: "))
-    ]
+    """The lines on standard error that are no warnings or notes: the paper's car warns of its drawing."""
+    said = ("pointcoord: warning: ", "pointcoord: note: ")
+    return [line for line in err.splitlines() if not line.startswith(said)]
 
 
 def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:

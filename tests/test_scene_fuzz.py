@@ -84,8 +84,8 @@ def _wrong_words(seen: Run) -> str:
     if len(complaints(seen.err)) != (1 if seen.status else 0):
         return f"status {seen.status} with {seen.err!r}"
     # Whatever a file calls things, its names do not steer the terminal.
-    printable = all(line.isprintable() for line in seen.err.split("\n"))
-    return "" if printable else f"steers a terminal: {seen.err!r}"
+    lines = seen.err.removesuffix("\n").split("\n")
+    return "" if all(map(str.isprintable, lines)) else f"steers a terminal: {seen.err!r}"
 
 
 def _wrong_motion(seen: Run, target: Path) -> str:

@@ -12,6 +12,9 @@ import pytest
 from numpy.typing import NDArray
 
 import absolute
+from absolute.assemble import assemble
+from absolute.assembly import Mechanism
+from absolute.rounding import pose_doubt
 
 Array = NDArray[np.float64]
 Held = Callable[[float, float], dict[str, Array]]
@@ -105,6 +108,66 @@ def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: flo
             assert (error <= estimate).all(), (quantity, name)
             # Only within some hundred roundings of the end may rates be anything.
             assert np.isfinite(estimate).all() or (quantity != "position" and before <= 1e-13)
+
+
+@pytest.mark.parametrize("turns", [1.0, 1e3])
+def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> None:
+    # A slider crank: x = 50 cos a + sqrt(l^2 - y^2), y the pin's height, the crank turning evenly.
+    z, x, y = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    pin, piston = (50.0 * np.cos(1.1), 50.0 * np.sin(1.1), 0.0), (147.0, 0.0, 0.0)
+    axis, ends_of = absolute.Axis, absolute.Joint
+    model = absolute.Model(
+        {"pivot": (0.0, 0.0, 0.0), "pin": pin, "piston": piston},
+        "ground",
+        {"ground": ("pivot",), "crank": ("pivot", "pin"), "rod": ("pin", "piston"), "slider": ("piston",)},
+        {
+            "crank_pivot": ends_of("revolute", "ground", "crank", axis("pivot", z), axis("pivot", z)),
+            "crank_pin": ends_of("spherical", "crank", "rod", axis("pin"), axis("pin")),
+            "piston_pin": ends_of("universal", "slider", "rod", axis("piston", z), axis("piston", y)),
+            "bore": ends_of("prismatic", "ground", "slider", axis("pivot", x), axis("piston", x)),
+        },
+        {"angle": absolute.Input("ground", axis("pivot", x), "crank", "pin", "cosine", 50.0)},
+    )
+    angles = np.linspace(0.3, 2.8, 60)
+    series = np.stack([angles, np.full(60, turns), np.zeros(60)], -1)
+    motion = absolute.solve(model, {"angle": series}, errors=True)
+    share = dict.fromkeys(PARTS, 0.0)
+    with form.mp.workdps(form.DIGITS):
+        crank, rod = (form.fixed(line) for line in (pin, np.subtract(piston, pin)))
+        for k, row in enumerate(series):
+            along = form.number(50.0) * form.Jet(*map(form.mpf, row)).cosine()
+            height = form.dot(crank, crank) - along * along
+            place = along + (form.dot(rod, rod) - height).root()
+            for quantity, part in PARTS.items():
+                found, told = (getattr(motion, quantity + e)["piston"][k] for e in ("", "_error"))
+                error = form.errors_of([getattr(place, part)], found[:1])[0]
+                assert error <= told[0], (quantity, k)
+                share[quantity] = max(share[quantity], error / told[0])
+    assert min(share.values()) > 0.02, share
+
+
+def test_rows_close_to_what_they_are_rounded_from() -> None:
+    # At a pose that corrections have settled, what is left of a row is rounding, and not much less.
+    largest: dict[str, float] = {}
+    for seed in range(40):
+        car, closure = car_of(seed)
+        mechanism = Mechanism(absolute.macpherson(car, closure=closure))
+        try:
+            pose, _ = assemble(mechanism)
+        except absolute.PoseError:
+            continue
+        poses = mechanism.stack.place(pose.poses.rotation[None], pose.poses.origin[None])
+        inputs = mechanism.drawn_inputs.tolist()
+        target = mechanism.targets(inputs, [0.0, 0.0], [0.0, 0.0])[:1]
+        doubt = pose_doubt(mechanism, poses, target)
+        assert (doubt.known == np.abs(target - poses.values)).all()
+        for owner, left, rounded in zip(
+            mechanism.stack.owners, doubt.known[0], doubt.rounded[0], strict=True
+        ):
+            largest[owner] = max(largest.get(owner, 0.0), left / rounded)
+    assert max(largest.values()) < 1.0, largest
+    # The rack slides along an axis of coordinates, and nothing is rounded there.
+    assert np.median(list(largest.values())) > 0.02, largest
 
 
 def test_a_point_does_not_take_the_sensitivity_of_another() -> None:

@@ -53,7 +53,7 @@ class Equations(Protocol):
 
 
 CLOSURES: dict[str, Equations] = {"drawn": drawn, "collinear": straight}
-DEFAULT = "collinear"
+DEFAULT = "drawn"
 
 
 def equations_for(closure: str) -> Equations:
