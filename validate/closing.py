@@ -10,7 +10,7 @@ from typing import Any
 from pointcoord import PointcoordError, Scene
 from pointcoord.assembly import close_drawing
 from pointcoord.closing import Closing, closing
-from pointcoord.simulate import scene_mechanism
+from pointcoord.simulation import scene_mechanism
 
 
 def closing_of(scene: Scene) -> Closing | None:

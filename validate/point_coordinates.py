@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, SceneError, SingularConfiguration, simulate
 from pointcoord.chain import COARSEST, FINEST
-from pointcoord.simulate import TRUNCATION_SHARE, Method
+from pointcoord.simulation import TRUNCATION_SHARE, Method
 from validate.formulation import Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]

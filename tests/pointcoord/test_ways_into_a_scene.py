@@ -20,7 +20,7 @@ from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
 from pointcoord.chain import COARSEST, FINEST
 from pointcoord.even_instants import even_instants
 from pointcoord.scene_text import LARGEST, read_stream
-from pointcoord.simulate import TRUNCATION_SHARE, scene_mechanism
+from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
 from pointcoord.visible import visible
 
 BOUNCE = Scene.load("bounce")

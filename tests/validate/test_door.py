@@ -184,13 +184,13 @@ def test_ctrl_c_before_anything_is_finished_leaves_the_old_file_whole(tmp_path: 
 def test_ctrl_c_while_the_program_starts_is_one_line() -> None:
     program = (
         "import os, signal, sys, threading, time\n"
-        "import pointcoord_program\n"
+        "from pointcoord.__main__ import main\n"
         "def press():\n"
         "    while 'numpy' not in sys.modules: time.sleep(0.001)\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"
         "threading.Thread(target=press, daemon=True).start()\n"
         "sys.argv[1:] = ['validate']\n"
-        "sys.exit(pointcoord_program.main())"
+        "sys.exit(main())"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, env=ENVIRONMENT, check=False

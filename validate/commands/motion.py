@@ -13,7 +13,7 @@ from pointcoord import (
     SceneError,
     simulate,
 )
-from pointcoord.simulate import Method
+from pointcoord.simulation import Method
 from validate.closing import warnings_of
 from validate.commands.usage import (
     SCENE_HELP,

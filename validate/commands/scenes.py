@@ -7,8 +7,8 @@ import argparse
 import numpy as np
 
 from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
+from pointcoord.drawing_stands import End
 from pointcoord.effects import EFFECTS, plan_effects
-from pointcoord.standing import End
 from validate.closing import warnings_of
 from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
 from validate.exit_status import ExitStatus
