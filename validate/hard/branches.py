@@ -33,7 +33,6 @@ SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 WIDE = {"paper": 0.05, "beside": 0.04}
 # A motion through such a place takes half a second, so few values must do.
 EVEN, ODD, FEW = decades()[::2], (*decades(-11, -1)[::2], 1e-12), decades()[::4]
-EIGHT = (*EVEN, 1e-11)
 CLEAR = Expected(("right", "refused"), right_from=1e-6)
 # The paper's tie rod stands at 0.56 of what its side can be (see `oriented`). Assembling moves no point by
 # more than 200 mm times the parameter, which changes each vector of that product by twice as much at most:
@@ -156,7 +155,7 @@ CASES: tuple[Case, ...] = (
         "rack travel beyond the meeting, in parts of 10 mm",
         partial(through_the_meeting, side=1.0, car="beside"),
         CLEAR,
-        EVEN,
+        FEW,
         measure=partial(near_meeting, car="beside"),
     ),
     _case(
@@ -165,7 +164,7 @@ CASES: tuple[Case, ...] = (
         "rack travel short of the meeting, in parts of 10 mm",
         partial(through_the_meeting, side=-1.0, car="beside"),
         REFUSED,
-        ODD,
+        ODD[::2],
         measure=partial(near_meeting, car="beside"),
     ),
     *(
@@ -193,7 +192,7 @@ CASES: tuple[Case, ...] = (
             "distance of the first instant from the end, in parts of half the range",
             partial(far_start, driven=driven, ahead=ahead),
             CLEAR,
-            EIGHT,
+            FEW,
         )
         for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
     ),

@@ -65,7 +65,11 @@ FEW_VALUES: Mapping[str, str] = {
     **dict.fromkeys(("link-missing", "link-twice", "link-twice-for-another"), _LINKS),
     **dict.fromkeys(("link-twice-beside", "link-twice-for-another-beside"), _LINKS),
     "strut-drawn-folded": _REFUSAL,
-    **dict.fromkeys(("strut-lower-far-below", "strut-lower-far-above"), _REFUSAL),
+    **dict.fromkeys(("far-start-high", "far-start-rack"), _WAY),
+    **{
+        f"assemblies-counted-{where}": "each value is a search from a thousand starts"
+        for where in ("drawing", "rack", "arm", "meeting")
+    },
 }
 
 
