@@ -71,7 +71,7 @@ class Samples:
     wheel: Channel
 
 
-Prover = Callable[[Samples], Proof]
+Prover = Callable[[Samples, bool], Proof]
 
 
 @dataclass(frozen=True)
@@ -98,9 +98,14 @@ class Motion(Samples):
     prover: Prover
     sizer: Callable[[], tuple[float, ...]]
 
-    def proof(self) -> Proof:
-        """Proven error bound, condition number and sensitivity of the pose at each of the times."""
-        return self.prover(self)
+    def proof(self, rates: bool = False) -> Proof:
+        """Proven error bound, condition number and sensitivity of the pose at each of the times.
+
+        Args:
+            rates: prove every reported number by itself, rates and angles too (`Proof.proven`), and say what
+                the method loses at most where nothing is wrong (`Proof.expected`); takes some times as long.
+        """
+        return self.prover(self, rates)
 
     def term_sizes(self) -> tuple[float, ...]:
         """Of each derivative solved for the largest sum of magnitudes of the terms that give it, mm/s**d.

@@ -77,6 +77,17 @@ class Readout:
             return origin if origin.any() else None
         return origin + shift[0]
 
+    @property
+    def angle_lines(self) -> dict[str, tuple[str, str]]:
+        """The line that each wheel angle is of, from point to point."""
+        return {"camber": ("strut_lower", "wheel_centre"), "kingpin": ("lower_ball_joint", "strut_lower")}
+
+    @property
+    def angle_axes(self) -> dict[str, tuple[Array, Array]]:
+        """Directions whose components along the lines give minus the sine and the cosine of the angles."""
+        up = self.mechanism.drawing.vectors["up"]
+        return {"camber": (up, self.outboard), "kingpin": (self.outboard, up)}
+
     def _wheel_angles(self, position: Mapping[str, Array]) -> dict[str, Array]:
         up, lower = self.mechanism.drawing.vectors["up"], position["strut_lower"]
         return {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from pointcoord.assembly import Pose, assemble
 from pointcoord.chain import Chain, Settings, build_chain
 from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import plan_effects
+from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import (
     AssemblyError,
     InputOutOfRange,
@@ -29,6 +31,7 @@ from pointcoord.motion import Motion, Prover, Samples
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
 from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
+from pointcoord.reported_bounds import Bounds, Reported
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
@@ -108,7 +111,7 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        prover = _prover(readout, functions, sampler.coordinates)
+        prover = _prover(readout, functions, sampler.coordinates, sampler.summed)
         return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism, sampler.term_sizes)
 
     try:
@@ -136,7 +139,7 @@ def _by_newton(
             places = np.searchsorted(solved.times, instants)
             return [state[places] for state in solved.states]
 
-        prover = _prover(readout, functions, coordinates)
+        prover = _prover(readout, functions, coordinates, lambda instants: ())
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, cost, None, prover, readout.mechanism, tuple)
 
@@ -152,19 +155,34 @@ def _by_newton(
 
 
 def _prover(
-    readout: Readout, functions: Mapping[str, TimeFunction], coordinates: Callable[[Array], list[Array]]
+    readout: Readout,
+    functions: Mapping[str, TimeFunction],
+    coordinates: Callable[[Array], list[Array]],
+    summed: Callable[[Array], Sequence[Summed]],
 ) -> Prover:
     mechanism = readout.mechanism
 
-    def prover(samples: Samples) -> Proof:
+    def prover(samples: Samples, everything: bool) -> Proof:
         times = samples.times
         added = readout.offset(times)
         offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
         rounding = readout.chassis.rounding(times, mechanism.origin)
         laws = {name: function.rounding(times) for name, function in functions.items()}
-        return prove(mechanism, times, coordinates, samples.position, offset, rounding, laws)
+        asked = _reported(readout, functions, samples, summed) if everything else None
+        return prove(mechanism, times, coordinates, samples.position, offset, rounding, laws, asked)
 
     return prover
+
+
+def _reported(
+    readout: Readout,
+    functions: Mapping[str, TimeFunction],
+    samples: Samples,
+    summed: Callable[[Array], Sequence[Summed]],
+) -> Reported:
+    """All numbers of samples, and what went into them beside the coordinates."""
+    numbers = Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)})
+    return Reported(numbers, readout.chassis, functions, readout.angle_lines, readout.angle_axes, summed)
 
 
 def _motion(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord.chain import Chain
 from pointcoord.effects import Plan
+from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved
@@ -93,6 +94,14 @@ class Sampler:
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
         y[..., mechanism.map.unknowns :] = known[..., 0, :]
         return [y, *rates]
+
+    def summed(self, instants: Array) -> list[Summed]:
+        """How `coordinates` sums each derivative at instants."""
+        terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
+        last = [np.where(np.arange(len(t))[:, None] < len(t) - 2, 0.0, t) for t in terms]
+        derivative = self.readout.plan.derivative
+        both = (evaluate(self.chain, columns, instants, derivative) for columns in (last, terms))
+        return [Summed(*part) for part in zip(*both, strict=True)]
 
     @property
     def work(self) -> Work:

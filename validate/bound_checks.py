@@ -156,7 +156,7 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
             f"truth: {truth if isinstance(truth, str) else 'answers'}",
         )
     samples = motion.at(np.array([instant]))
-    proof = motion.prover(samples)
+    proof = motion.prover(samples, False)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, distance, "pointcoord: no finite bound")
