@@ -1,6 +1,8 @@
 """Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
-from absolute.description import Axis, Input, Joint, Model, Side
+from absolute.backend import MissingPinocchioError
+from absolute.closing import ClosedDrawing, close_drawing
+from absolute.description import Axis, Carried, Input, Joint, Model, Side
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
@@ -20,16 +22,20 @@ __all__ = [
     "AssemblyError",
     "Axis",
     "BranchError",
+    "Carried",
+    "ClosedDrawing",
     "DescriptionError",
     "Input",
     "InputError",
     "Joint",
+    "MissingPinocchioError",
     "Model",
     "PoseError",
     "Side",
     "SingularError",
     "Solution",
     "UnreachableError",
+    "close_drawing",
     "macpherson",
     "solve",
 ]

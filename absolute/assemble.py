@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 
-import eigenpy
 import numpy as np
 
 from absolute.assembly import Mechanism
+from absolute.backend import eigenpy
 from absolute.continuation import BlockedError, follow
 from absolute.errors import AssemblyError, BranchError, SingularError
+from absolute.limits import limited_by, limits_at
 from absolute.newton import SMALLEST_RCOND, Pose, inverse, pose_at, seek
 from absolute.solution import Array
 
@@ -66,15 +67,18 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     reached = blocked or BlockedError(1.0, drawn, 0)
     left = largest * (1 - reached.share) * size
     owner = mechanism.stack.owners[int(np.abs(gap).argmax())]
+    limits = limits_at(mechanism, reached.pose.placed.world)
     raise AssemblyError(
         f"the drawing cannot be assembled: rows are violated by up to {largest * size:.3g} mm "
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
+        f"{limited_by(limits)}"
         "draw the points closer to an assembled pose",
         None,
         mechanism.named(inputs),
         {},
         left,
         inverse(reached.pose.rcond),
+        limits,
     ) from blocked
 
 
@@ -91,12 +95,14 @@ def branch_error(mechanism: Mechanism, instant: int | None, inputs: list[float],
         cure = "lead up to these inputs by closer instants, or stay away from the limit of the motion"
     return BranchError(
         f"{where}: side {sides.names[side]!r} is {drawn:.3g} in the drawing and {found:.3g} there (its "
-        f"product divided by the lengths of its vectors, from -1 to 1); the sign must stay: {cure}",
+        f"product divided by the lengths of its vectors, from -1 to 1); the sign must stay: "
+        f"{limited_by(sides.limits[side])}{cure}",
         instant,
         mechanism.named(inputs),
         sides.names[side],
         drawn,
         found,
+        sides.limits[side],
     )
 
 
@@ -106,16 +112,19 @@ def _drawn_pose(mechanism: Mechanism) -> Pose:
     factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
     drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, factors)
     if not drawn.rcond >= SMALLEST_RCOND:
+        limits = limits_at(mechanism, placed.world)
         raise SingularError(
             f"the drawing is singular: condition number about {inverse(drawn.rcond):.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
             "Look for points on one line that should not be (a steering arm on the strut axis, "
-            "an arm along its own axis) or an input at its dead point",
+            "an arm along its own axis) or an input at its dead point; "
+            f"{limited_by(limits)}move a point off it",
             None,
             mechanism.named(mechanism.drawn_inputs.tolist()),
             {},
             float("nan"),
             inverse(drawn.rcond),
+            limits,
         )
     return drawn
 
@@ -123,16 +132,17 @@ def _drawn_pose(mechanism: Mechanism) -> Pose:
 def _check_sides(mechanism: Mechanism) -> None:
     """Refuse a drawing that stands where its branches meet."""
     sides = mechanism.sides
-    for name, wanted, drawn in zip(sides.names, sides.wanted, sides.drawn, strict=True):
+    for name, wanted, drawn, limits in zip(sides.names, sides.wanted, sides.drawn, sides.limits, strict=True):
         if wanted == 0:
             raise BranchError(
                 f"the drawing has no branch: side {name!r} is {drawn:.3g} there, zero within rounding (its "
                 "product divided by the lengths of its vectors, from -1 to 1): two assemblies are equally "
-                "near; move a point off that limit, to the side that is meant",
+                f"near; {limited_by(limits)}move a point off that limit, to the side that is meant",
                 None,
                 mechanism.named(mechanism.drawn_inputs.tolist()),
                 name,
                 float(drawn),
+                limits=limits,
             )
 
 

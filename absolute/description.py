@@ -24,8 +24,8 @@ class Axis:
 
     Attributes:
         through: a point of the body.
-        toward: a second point of the body, or a direction in the frame of the points, or None
-            where only the point matters (spherical joint).
+        toward: a second point, of any body: the line leads to where it is drawn; or a direction in
+            the frame of the points; or None where only the point matters (spherical joint).
     """
 
     through: str
@@ -66,15 +66,29 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Carried:
+    """The vector between two points as drawn, carried by a body that need not hold them."""
+
+    body: str
+    start: str
+    end: str
+
+
+@dataclass(frozen=True)
 class Side:
     """A product of vectors whose sign tells the assemblies of a linkage apart.
 
     Two vectors give a . b, three give (a x b) . c. Choose it so that it is zero where two assemblies
     meet and nowhere else: then no regular motion changes its sign, and the drawing's sign is the
-    branch. Each vector leads from one point to another, or is a direction of the chassis.
+    branch. Each vector leads from one point to another, or is carried, or is a direction of the chassis.
+
+    Attributes:
+        vectors: two or three.
+        limits: the links that are at their dead point where the product is zero, for messages.
     """
 
-    vectors: tuple[tuple[str, str] | Vector, ...]
+    vectors: tuple[tuple[str, str] | Vector | Carried, ...]
+    limits: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -201,15 +215,15 @@ def _check_pair(model: Model, what: str, name: str, first: str, second: str) -> 
 
 
 def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs_line: bool) -> None:
-    ends = [axis.through] + ([axis.toward] if isinstance(axis.toward, str) else [])
-    for end in ends:
-        if end not in model.bodies[body]:
-            raise DescriptionError(
-                f"{what} uses point {end!r}, which body {body!r} does not hold; "
-                f"its points are {list(model.bodies[body])}",
-                name,
-                end,
-            )
+    if axis.through not in model.bodies[body]:
+        raise DescriptionError(
+            f"{what} uses point {axis.through!r}, which body {body!r} does not hold; "
+            f"its points are {list(model.bodies[body])}",
+            name,
+            axis.through,
+        )
+    if isinstance(axis.toward, str):
+        _check_choice(f"a point of {what}", name, axis.toward, model.points)
     if needs_line and axis.toward is None:
         raise DescriptionError(f"{what} needs a direction at {axis.through!r}: give `toward`", name)
     if axis.toward is not None and not isinstance(axis.toward, str):
@@ -221,13 +235,17 @@ def _check_side(model: Model, name: str, side: Side) -> None:
         raise DescriptionError(
             f"side {name!r} has {len(side.vectors)} vectors; a product of two or three is needed", name, side
         )
-    held = {point for points in model.bodies.values() for point in points}
     for vector in side.vectors:
-        if len(vector) == 2 and all(isinstance(end, str) for end in vector):
-            for end in vector:
-                _check_choice(f"a point of side {name!r}", name, str(end), dict.fromkeys(held))
+        if isinstance(vector, Carried):
+            _check_choice(f"a body of side {name!r}", name, vector.body, model.bodies)
+            ends: tuple[object, ...] = (vector.start, vector.end)
+        elif len(vector) == 2 and all(isinstance(end, str) for end in vector):
+            ends = vector
+        else:
+            _check_direction(f"side {name!r}", name, vector)
             continue
-        _check_direction(f"side {name!r}", name, vector)
+        for end in ends:
+            _check_choice(f"a point of side {name!r}", name, str(end), model.points)
 
 
 def _check_direction(what: str, name: str, value: object) -> None:

@@ -58,6 +58,9 @@ class PoseError(AbsoluteError):
         reached: the inputs of the last pose that could be solved on the way there.
         residual: largest violation of any row at that last pose, mm.
         condition: estimate of the condition number (1-norm) at that last pose.
+        limits: the links at their dead point there, such as "link tie_rod_inner - tie_rod_outer" or
+            "strut axis"; empty where the model does not tell them or none is.
+        limit: the input that meets the end of its range there, or "" where it was not one of them.
     """
 
     def __init__(
@@ -68,6 +71,8 @@ class PoseError(AbsoluteError):
         reached: Mapping[str, float] | None = None,
         residual: float = float("nan"),
         condition: float = float("nan"),
+        limits: tuple[str, ...] = (),
+        limit: str = "",
     ) -> None:
         super().__init__(message)
         self.instant = instant
@@ -75,6 +80,8 @@ class PoseError(AbsoluteError):
         self.reached = dict(reached or {})
         self.residual = residual
         self.condition = condition
+        self.limits = limits
+        self.limit = limit
 
 
 class AssemblyError(PoseError):
@@ -85,7 +92,7 @@ class BranchError(PoseError):
     """The branch of the drawing is not found, or the drawing has none.
 
     Attributes:
-        side: the product whose sign is not that of the drawing.
+        side: the product whose sign is not that of the drawing; `limits` are its links.
         drawn, found: its value in the drawing and where it was found otherwise, divided by the
             lengths of its factors: between -1 and 1.
     """
@@ -98,8 +105,9 @@ class BranchError(PoseError):
         side: str = "",
         drawn: float = float("nan"),
         found: float = float("nan"),
+        limits: tuple[str, ...] = (),
     ) -> None:
-        super().__init__(message, instant, inputs)
+        super().__init__(message, instant, inputs, limits=limits)
         self.side = side
         self.drawn = drawn
         self.found = found

@@ -2,11 +2,11 @@
 
 from typing import NamedTuple
 
-import eigenpy
 import numpy as np
 from numpy.typing import NDArray
 
 from absolute.assembly import Mechanism
+from absolute.backend import eigenpy
 from absolute.march import Found
 from absolute.newton import EPS, MOST_CORRECTIONS, rounding_of
 from absolute.solution import Array, Counts

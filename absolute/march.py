@@ -7,10 +7,9 @@ instants to rounding together. Where a single step does not do, the careful cont
 import math
 from typing import NamedTuple
 
-import eigenpy
-
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
+from absolute.backend import eigenpy
 from absolute.continuation import LONGEST_STEP
 from absolute.newton import Pose, correct
 from absolute.solution import Array

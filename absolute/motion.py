@@ -1,25 +1,44 @@
 """The record of a motion while it is solved, and the points and bodies read from it."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from absolute.assembly import Mechanism
+from absolute.estimate import BodyMotion, Errors, estimate
 from absolute.finish import Finished
 from absolute.mapping import ReadOnly
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
-# Jacobians at once when condition numbers are asked for: a few megabytes.
+# Jacobians at once when condition numbers or errors are asked for: a few megabytes.
 BATCH = 256
+ERROR_BATCH = 32
+
+
+class Asked(NamedTuple):
+    """What shall be told of each instant beside the poses.
+
+    Attributes:
+        rates: velocities and accelerations. conditions: condition numbers.
+        doubts: (N, 3, inputs) how far the inputs may be off, or None: no errors.
+    """
+
+    rates: bool
+    conditions: bool
+    doubts: Array | None
 
 
 class Record:
     """Body poses and rates of the instants solved so far, in units of size."""
 
-    def __init__(self, mechanism: Mechanism, count: int, rates: bool, conditions: bool) -> None:
+    def __init__(self, mechanism: Mechanism, series: Array, chassis: Array, asked: Asked) -> None:
+        count, rates = len(series), asked.rates
         bodies = len(mechanism.drawing.bodies)
         self._mechanism = mechanism
+        self._series, self._chassis = series, chassis
+        self._asked = asked
         self._rates = rates
-        self._conditions = conditions
         self._rotation = np.zeros((count, bodies, 3, 3))
         self._origin = np.zeros((count, bodies, 3))
         # [origin, angular] of each body; the chassis stays at zero.
@@ -43,8 +62,9 @@ class Record:
         self._residual[part] = finished.residual[:count]
         self.written += count
 
-    def solution(self, count: int, chassis: Array) -> Solution:
-        """The first `count` instants in mm, carried by the chassis motion (N, 3, 3)."""
+    def solution(self) -> Solution:
+        """The instants solved so far in mm, carried by the chassis motion."""
+        count, chassis = self.written, self._chassis
         drawing, model = self._mechanism.drawing, self._mechanism.model
         position: dict[str, Array] = {}
         velocity: dict[str, Array] = {}
@@ -77,6 +97,7 @@ class Record:
         spins1 = {body: self._acceleration[:count, i, 1].copy() for body, i in turns.items() if i}
         iterations = self._iterations[:count].copy()
         iterations.setflags(write=False)
+        errors = self._errors(count)
         in_order = {name: position[name] for name in model.points}
         return Solution(
             position=_fixed(in_order),
@@ -86,8 +107,37 @@ class Record:
             angular_acceleration=_fixed(spins1),
             iterations=iterations,
             residual=_locked(self._residual[:count] * drawing.size),
-            condition=_locked(self._condition_numbers(count)) if self._conditions else None,
+            condition=_locked(self._condition_numbers(count)) if self._asked.conditions else None,
+            position_error=_fixed(
+                {name: errors.position[name] for name in (model.points if errors.position else ())}
+            ),
+            velocity_error=_fixed(
+                {name: errors.velocity[name] for name in (model.points if errors.velocity else ())}
+            ),
+            acceleration_error=_fixed(errors.acceleration),
+            rotation_error=_fixed(errors.rotation),
+            angular_velocity_error=_fixed(errors.angular_velocity),
+            angular_acceleration_error=_fixed(errors.angular_acceleration),
         )
+
+    def _errors(self, count: int) -> Errors:
+        """Errors of the first `count` instants; nothing where none were asked for."""
+        doubts, whole = self._asked.doubts, Errors({}, {}, {}, {}, {}, {})
+        if doubts is None:
+            return whole
+        for start in range(0, max(count, 1), ERROR_BATCH):
+            part = slice(start, min(start + ERROR_BATCH, count))
+            origin = self._origin[part]
+            still = np.zeros((*origin.shape[:2], 2, 3))
+            rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)
+            motion = BodyMotion(self._rotation[part], origin, *rates)
+            found = estimate(self._mechanism, motion, self._series[part], doubts[part], self._chassis[part])
+            for kept, added in zip(whole, found, strict=True):
+                for name, values in added.items():
+                    kept[name] = np.concatenate((kept[name], values)) if name in kept else values
+        if not self._rates:
+            return Errors(whole.position, {}, {}, whole.rotation, {}, {})
+        return whole
 
     def _condition_numbers(self, count: int) -> Array:
         stack = self._mechanism.stack

@@ -3,10 +3,10 @@
 import math
 from typing import NamedTuple
 
-import eigenpy
 import numpy as np
 
 from absolute.assembly import Mechanism, Poses
+from absolute.backend import eigenpy
 from absolute.solution import Array
 from absolute.stack import Placed
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.description import Model, Vector
+from absolute.description import Carried, Model, Vector
 from absolute.drawing import Drawing
 from absolute.features import Features, Pick
 from absolute.rows import Angle
@@ -44,7 +44,9 @@ def side_vectors(
     def fixed(body: int, line: Array) -> SideVector:
         return SideVector(nothing, features.add(body, line, False), line)
 
-    def vector_of(vector: tuple[str, str] | Vector) -> SideVector:
+    def vector_of(vector: tuple[str, str] | Vector | Carried) -> SideVector:
+        if isinstance(vector, Carried):
+            return fixed(drawing.bodies[vector.body], drawing.line(vector.start, vector.end))
         if len(vector) == 3:
             line = np.array(vector) / np.abs(vector).max()
             return fixed(0, line / np.linalg.norm(line))
@@ -72,6 +74,7 @@ class Sides:
 
     Attributes:
         names: of the sides of the model, then of the joints.
+        limits: of each side, the links that are at their dead point where it is zero.
         told: whether the model has sides; without any, nothing here tells assemblies apart.
         wanted: (sides,) signs in the drawing; 0 where the drawing stands at zero within rounding.
         drawn: (sides,) products in the drawing as shares, see `shares`.
@@ -82,6 +85,7 @@ class Sides:
         # Products of three first, so that one vector product serves them all.
         ordered = sorted(sides.items(), key=lambda side: -len(side[1]))
         self.names = tuple(name for name, _ in ordered)
+        self.limits = tuple(model.sides[name].limits if name in model.sides else () for name in self.names)
         self._count = len(ordered)
         self._triples = sum(len(vectors) == 3 for _, vectors in ordered)
         every = [

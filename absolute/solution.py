@@ -24,6 +24,12 @@ class Solution:
         residual: (N,) largest violation of any row, mm (rows of directions times the size of the
             mechanism).
         condition: (N,) 2-norm condition number of the scaled Jacobian, or None if not asked for.
+        position_error, velocity_error, acceleration_error: point name -> (N, 3): how far each component
+            may be from the motion of the drawing given, for rounding and for what `input_errors` say;
+            infinite where rounding alone reaches a dead point. Empty if not asked for; those of rates
+            empty without rates.
+        angular_velocity_error, angular_acceleration_error: moving body name -> (N, 3), likewise.
+        rotation_error: moving body name -> (N, 3), rad: how far each body may be turned about each axis.
     """
 
     position: Mapping[str, Array]
@@ -34,3 +40,9 @@ class Solution:
     iterations: Counts
     residual: Array
     condition: Array | None
+    position_error: Mapping[str, Array]
+    velocity_error: Mapping[str, Array]
+    acceleration_error: Mapping[str, Array]
+    rotation_error: Mapping[str, Array]
+    angular_velocity_error: Mapping[str, Array]
+    angular_acceleration_error: Mapping[str, Array]

@@ -8,10 +8,11 @@ from absolute.assemble import branch_error
 from absolute.assembly import Mechanism
 from absolute.description import Model
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.finish import BATCH, finish
+from absolute.finish import BATCH, Finished, finish
+from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.march import March
-from absolute.motion import Record
-from absolute.series import chassis_series, input_series
+from absolute.motion import Asked, Record
+from absolute.series import chassis_series, doubt_series, input_series
 from absolute.solution import Array, Solution
 
 
@@ -21,6 +22,8 @@ def solve(
     chassis: Array | None = None,
     rates: bool = True,
     conditions: bool = False,
+    errors: bool = False,
+    input_errors: Mapping[str, Array] | None = None,
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
 
@@ -31,6 +34,10 @@ def solve(
             points, mm, mm/s, mm/s^2; None for a chassis at rest as drawn.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
+        errors: also an estimate of the error of each quantity at each instant (see `estimate`); it
+            costs about three times the solution itself.
+        input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
+            where it is not given. What the chassis motion is off comes on top of every point alike.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -46,7 +53,8 @@ def solve(
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
-    record = Record(mechanism, count, rates, conditions)
+    doubts = doubt_series(tuple(model.inputs), input_errors or {}, count) if errors else None
+    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts))
     try:
         # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         with np.errstate(over="ignore", invalid="ignore"):
@@ -54,10 +62,9 @@ def solve(
             for start in range(0, count, BATCH):
                 _solve_batch(journey, series[start : start + BATCH], rates, record)
     except AbsoluteError as error:
-        done = record.written
-        error.partial = record.solution(done, carried) if done else None
+        error.partial = record.solution() if record.written else None
         raise
-    return record.solution(count, carried)
+    return record.solution()
 
 
 def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> None:
@@ -86,13 +93,7 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
             if count < len(found):
                 bad = record.written
                 if not finished.closed[count]:
-                    raise _stalled(
-                        journey.mechanism,
-                        bad,
-                        values[bad - begin],
-                        finished.residual[count],
-                        finished.step[count],
-                    )
+                    raise _stalled(journey.mechanism, bad, values[bad - begin], finished, count)
                 if finished.kept[count]:
                     raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
                 if again == bad:
@@ -105,17 +106,27 @@ def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> 
 
 
 def _stalled(
-    mechanism: Mechanism, instant: int, values: list[float], residual: float, step: float
+    mechanism: Mechanism, instant: int, values: list[float], finished: Finished, place: int
 ) -> SingularError:
-    size = mechanism.drawing.size
+    stack, size = mechanism.stack, mechanism.drawing.size
+    residual, step = float(finished.residual[place]), float(finished.step[place])
+    limits = limits_at(mechanism, finished.world[place])
+    zeros = [0.0] * len(values)
+    goal, drawn = (
+        mechanism.targets(each, zeros, zeros)[0, mechanism.joint_rows :]
+        for each in (values, mechanism.drawn_inputs.tolist())
+    )
+    jacobian = stack.jacobian(stack.place(finished.rotation[place], finished.origin[place]))
     return SingularError(
         f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
         f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "
-        "singular one, or just beyond it; stay away from the limit of the motion",
+        f"singular one, or just beyond it; {limited_by(limits)}stay away from the limit of the motion",
         instant,
         mechanism.named(values),
         {},
         residual * size,
+        limits=limits,
+        limit=limiting_input(mechanism, jacobian, goal - drawn),
     )
 
 

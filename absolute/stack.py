@@ -84,7 +84,8 @@ class RowStack:
         self._picks = np.array(features.flat(picks)).T.copy()
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
         angles = len(rows.angles)
-        self._offset_rows = slice(angles, count)
+        self.offset_rows = slice(angles, count)
+        self.first, self.second = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
         source = np.zeros((count, bodies, 2, 3), dtype=int)
         axis = np.arange(3)
         pushes = 3 * (count - angles)
@@ -118,8 +119,18 @@ class RowStack:
         numbers = placed.parts.reshape(*lead, -1)
         products = numbers.take(self._turn_a, -1) * numbers.take(self._turn_r, -1)
         turning = (products[..., 0, :, :] - products[..., 1, :, :]).reshape(*lead, -1)
-        along = placed.parts[..., 0, self._offset_rows, :].reshape(*lead, -1)
-        entries = np.concatenate((np.zeros((*lead, 1)), along, -along, turning), -1)
+        return self.matrix(placed.parts[..., 0, self.offset_rows, :].reshape(*lead, -1), turning)
+
+    def matrix(self, along: Array, turning: Array) -> Array:
+        """Rows that are linear in [o', w] of their two bodies, all others left out.
+
+        Args:
+            along: (..., 3 * offset rows) what the second origin is multiplied by, the first by its
+                negative. turning: (..., 6 * rows) the same for the first bodies' w, then the second's.
+        Returns:
+            (..., rows, 6 * moving bodies).
+        """
+        entries = np.concatenate((np.zeros((*along.shape[:-1], 1)), along, -along, turning), -1)
         matrix: Array = entries.take(self._source, -1)
         return matrix.swapaxes(-1, -2)
 

@@ -7,6 +7,7 @@ import numpy as np
 from absolute.assembly import Mechanism
 from absolute.continuation import BlockedError, Path, follow
 from absolute.errors import AbsoluteError, SingularError, UnreachableError
+from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.newton import SMALLEST_RCOND, Pose, inverse
 from absolute.solution import Array
 
@@ -72,9 +73,14 @@ def _refusal(
     condition = inverse(blocked.pose.rcond)
     asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
+    limits = limits_at(mechanism, blocked.pose.placed.world)
+    # What the targets change along the straight way, at its end.
+    change = _straight(mechanism, start, goal)(blocked.share)[1][mechanism.joint_rows :]
+    limit = limiting_input(mechanism, mechanism.stack.jacobian(blocked.pose.placed), change)
     if blocked.share == 1.0 or np.allclose(list(reached.values()), goal, rtol=SMALLEST_RCOND, atol=0):
         return SingularError(
-            f"instant {instant}: {asked} is a singular pose (condition number about {condition:.3g}, "
+            f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
+            f"{condition:.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
             "stay away from the limit of the motion",
             instant,
@@ -82,14 +88,19 @@ def _refusal(
             reached,
             residual,
             condition,
+            limits,
+            limit,
         )
     return UnreachableError(
         f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
-        f"(condition number about {condition:.3g}, rows still closed to {residual:.3g} mm). "
-        "Keep the inputs inside that limit, or reach them by another sequence of instants",
+        f"({limited_by(limits)}condition number about {condition:.3g}, rows still closed to "
+        f"{residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach them by "
+        "another sequence of instants",
         instant,
         wanted,
         reached,
         residual,
         condition,
+        limits,
+        limit,
     )

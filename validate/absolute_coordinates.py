@@ -42,7 +42,7 @@ class AbsoluteCoordinates:
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(near, up=part.up, right=part.right)
+            model = absolute.macpherson(near, up=part.up, right=part.right, closure=closure_of(part))
             solved = absolute.solve(model, inputs, chassis=chassis, rates=needs_rates, conditions=True)
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
@@ -106,12 +106,22 @@ def near_origin(part: MechanismPart) -> Array:
 def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, Array]:
     """Camber (17) and kingpin (16) as arguments of complex numbers in the car's transverse plane.
 
+    The kingpin leads from the lower ball joint to the strut top, or to strut_lower (the paper's) where the
+    strut is collinear; the wheel's axis from wheel_axis_inner, or from strut_lower where it is not given.
+
     A right wheel is first mirrored to the left, where the paper's formulas hold. The argument tells an
     inboard wheel or a strut that hangs upside down apart, which the printed quotients cannot.
     """
     right, up = np.array(part.right), np.array(part.up)
     side = 1.0 if part.side == "left" else -1.0
-    names = ("lower_ball_joint", "strut_lower", "wheel_centre")
-    p5, p7, p10 = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
+    upper = "strut_top" if closure_of(part) == "drawn" else "strut_lower"
+    hub = "wheel_axis_inner" if "wheel_axis_inner" in position else "strut_lower"
+    names = ("lower_ball_joint", upper, hub, "wheel_centre")
+    low, high, inner, outer = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
     # pi/2 - arg z, between -pi and pi.
-    return {"kingpin": np.angle(1j * np.conj(p7 - p5)), "camber": np.angle(p7 - p10)}
+    return {"kingpin": np.angle(1j * np.conj(high - low)), "camber": np.angle(inner - outer)}
+
+
+def closure_of(part: MechanismPart) -> str:
+    """What the scene says of the strut; "collinear" where scenes cannot say it."""
+    return str(getattr(part, "closure", "collinear"))

@@ -30,7 +30,7 @@ def table() -> dict[str, tuple[float, float, float]]:
 
 @pytest.fixture(scope="session")
 def strut(table: dict[str, tuple[float, float, float]]) -> absolute.Model:
-    return absolute.macpherson(table)
+    return absolute.macpherson(table, closure="collinear")
 
 
 @pytest.fixture(scope="session")

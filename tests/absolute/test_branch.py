@@ -43,7 +43,7 @@ closed = load("closed_form")
 @pytest.mark.parametrize("case", json.loads((HERE / "branch_cases.json").read_text()))
 def test_certified_poses_of_badly_drawn_cars_are_found(case: dict[str, Any]) -> None:
     inputs = {name: np.array([value]) for name, value in case["inputs"].items()}
-    motion = absolute.solve(absolute.macpherson(case["points"]), inputs, conditions=True)
+    motion = absolute.solve(absolute.macpherson(case["points"], closure="collinear"), inputs, conditions=True)
     assert motion.condition is not None
     for name, expected in case["expected_position_without_heave"].items():
         # Rounding of a car of 500 mm, magnified by the condition number, on both sides.
@@ -62,7 +62,9 @@ def test_random_cars_stand_where_circles_and_spheres_meet_or_are_refused(
     goal = angle + random.uniform(-0.15, 0.15), rack + random.uniform(-20.0, 20.0)
     expected = closed.closed_form(car, *goal)
     try:
-        motion = absolute.solve(absolute.macpherson(car), held(*goal), rates=False, conditions=True)
+        motion = absolute.solve(
+            absolute.macpherson(car, closure="collinear"), held(*goal), rates=False, conditions=True
+        )
     except absolute.PoseError:
         # Refused only where the drawing or the goal is beyond a limit, or so near that the
         # condition number, about 1 / sqrt(margin), hides it.
@@ -83,7 +85,9 @@ def test_drawing_an_assembled_pose_instead_gives_the_same_motion(
     table: Table, strut: absolute.Model, held: Held, angle: float, rack: float
 ) -> None:
     pose = absolute.solve(strut, held(np.radians(angle), rack), conditions=True)
-    redrawn = absolute.macpherson({name: point[0] for name, point in pose.position.items()})
+    redrawn = absolute.macpherson(
+        {name: point[0] for name, point in pose.position.items()}, closure="collinear"
+    )
     goal = held(1.4, 10.0)
     again = absolute.solve(redrawn, goal, conditions=True)
     direct = absolute.solve(strut, goal)
@@ -99,7 +103,7 @@ def test_a_drawing_at_the_dead_point_of_its_tie_rod_has_no_branch(table: Table, 
     ball, low, inner = (np.array(table[n]) for n in ("lower_ball_joint", "strut_lower", "tie_rod_inner"))
     flat = {**table, "tie_rod_outer": tuple((ball + 0.8 * (low - ball) + 0.3 * (inner - ball)).tolist())}
     with pytest.raises(absolute.BranchError, match=r"no branch.*tie rod beside the kingpin") as caught:
-        absolute.solve(absolute.macpherson(flat), held(1.6, 0.0))
+        absolute.solve(absolute.macpherson(flat, closure="collinear"), held(1.6, 0.0))
     assert caught.value.instant is None
     assert abs(caught.value.drawn) < 16 * EPS
 
@@ -110,7 +114,8 @@ def test_a_drawing_with_its_ball_joint_above_the_arm_axis_has_no_branch(table: T
     low = 0.9 * ball + 0.1 * np.array(table["strut_top"])
     with pytest.raises((absolute.BranchError, absolute.SingularError)):
         absolute.solve(
-            absolute.macpherson({**table, "lower_ball_joint": ball, "strut_lower": low}), held(1.6, 0.0)
+            absolute.macpherson({**table, "lower_ball_joint": ball, "strut_lower": low}, closure="collinear"),
+            held(1.6, 0.0),
         )
 
 
@@ -186,10 +191,13 @@ def test_sides_are_checked(strut: absolute.Model, vectors: Any, say: str) -> Non
 
 def test_sides_do_not_depend_on_units_of_their_directions(table: Table) -> None:
     for scale in (1e-200, 1.0, 1e200):
-        model = absolute.macpherson(table, up=(0.0, 0.0, scale))
+        model = absolute.macpherson(table, up=(0.0, 0.0, scale), closure="collinear")
         mechanism = Mechanism(model)
         assert (np.abs(mechanism.sides.drawn) <= 1.0).all()
-        assert (mechanism.sides.wanted == np.sign(Mechanism(absolute.macpherson(table)).sides.drawn)).all()
+        assert (
+            mechanism.sides.wanted
+            == np.sign(Mechanism(absolute.macpherson(table, closure="collinear")).sides.drawn)
+        ).all()
 
 
 @pytest.mark.parametrize("sides", [True, False])

@@ -79,7 +79,7 @@ def test_axes_are_drawn_with_the_digits_of_the_coordinates_given(
 ) -> None:
     for seed in range(5):
         car = drawn_close(table, fixed, moved, share, seed)
-        drawing = Drawing(absolute.macpherson(car))
+        drawing = Drawing(absolute.macpherson(car, closure="collinear"))
         found = drawing.direction("axis", Axis(fixed, moved))
         # A subtraction, a division, a norm and a division: five roundings of eps / 2 at most.
         assert error_of(found, exact_unit(car[fixed], car[moved])) <= 2.5 * EPS
@@ -92,7 +92,7 @@ def test_points_near_each_other_keep_their_vector_in_the_body_that_holds_them(
 ) -> None:
     for seed in range(5):
         car = drawn_close(table, fixed, moved, share, seed)
-        model = absolute.macpherson(car)
+        model = absolute.macpherson(car, closure="collinear")
         drawing = Drawing(model)
         for body in model.moving:
             if {fixed, moved} <= set(model.bodies[body]):
@@ -121,7 +121,7 @@ def test_sides_of_short_lines_are_those_of_the_coordinates_given(
 ) -> None:
     for share in SHARES:
         car = drawn_close(table, fixed, moved, share, 1)
-        model = absolute.macpherson(car)
+        model = absolute.macpherson(car, closure="collinear")
         mechanism = Mechanism(model)
         sides = mechanism.sides
         placed = mechanism.stack.place(*mechanism.poses(mechanism.drawn)).world
@@ -138,7 +138,7 @@ def test_sides_of_short_lines_are_those_of_the_coordinates_given(
 @pytest.mark.parametrize("share", SHARES)
 def test_the_drawn_angle_of_a_short_arm_is_that_of_the_coordinates_given(table: Table, share: float) -> None:
     car = drawn_close(table, "lower_ball_joint", "lower_arm_front", share, 3)
-    angle = Mechanism(absolute.macpherson(car)).drawn_inputs[0]
+    angle = Mechanism(absolute.macpherson(car, closure="collinear")).drawn_inputs[0]
     # The arc cosine of a ratio with three roundings, at an angle whose sine is above a half.
     assert np.sin(angle) > 0.5
     assert abs(angle - exact.drawn_angle(car)) <= 4 * EPS
@@ -155,7 +155,9 @@ def test_cars_with_points_near_each_other_stand_where_exact_circles_and_spheres_
         goal = exact.drawn_angle(car) + 0.05, rack
         expected = exact.exact_form(car, *goal)
         assert expected is not None
-        motion = absolute.solve(absolute.macpherson(car), held(*goal), rates=False, conditions=True)
+        motion = absolute.solve(
+            absolute.macpherson(car, closure="collinear"), held(*goal), rates=False, conditions=True
+        )
         assert motion.condition is not None
         # Size below 500 mm; rounding of the rows, magnified by the condition number.
         tolerance = 2 * EPS * 500 * motion.condition[0]

@@ -36,10 +36,10 @@ def test_a_huge_coordinate_is_refused_with_its_point_and_the_limit(table: Table,
     for name in table:
         for place in range(3):
             with pytest.raises(DescriptionError, match=r"products .* overflow.*1e\+100 mm") as caught:
-                absolute.macpherson(with_coordinate(table, name, place, value))
+                absolute.macpherson(with_coordinate(table, name, place, value), closure="collinear")
             assert caught.value.name == name
     with pytest.raises(DescriptionError, match=r"1e\+100"):
-        absolute.macpherson(dict.fromkeys(table, (value, value, value)))
+        absolute.macpherson(dict.fromkeys(table, (value, value, value)), closure="collinear")
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warni
 ) -> None:
     for name in table:
         for place in range(3):
-            model = absolute.macpherson(with_coordinate(table, name, place, value))
+            model = absolute.macpherson(with_coordinate(table, name, place, value), closure="collinear")
             try:
                 motion = absolute.solve(model, held(1.6, 0.0))
             except (DescriptionError, absolute.PoseError):
@@ -65,9 +65,9 @@ def test_a_car_drawn_in_another_unit_moves_the_same_up_to_the_ends_of_the_range(
     scaled = {name: tuple(factor * x for x in point) for name, point in table.items()}
     # A negative factor turns every vector round: the car's own axes as well.
     sense = float(np.sign(factor))
-    model = absolute.macpherson(scaled, up=(0, 0, sense), right=(0, sense, 0))
+    model = absolute.macpherson(scaled, up=(0, 0, sense), right=(0, sense, 0), closure="collinear")
     goal = {"arm_angle": np.array([[1.5, 0.3, 0.2]]), "rack": np.array([[10.0, 4.0, 3.0]])}
-    plain = absolute.solve(absolute.macpherson(table), goal)
+    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), goal)
     motion = absolute.solve(model, {**goal, "rack": goal["rack"] * abs(factor)})
     for name in table:
         for a, b in (
@@ -85,7 +85,7 @@ def test_a_car_too_small_for_products_of_its_lengths_is_refused(
 ) -> None:
     small = {name: tuple(factor * x for x in point) for name, point in table.items()}
     with pytest.raises(DescriptionError, match="at least 1e-100 mm"):
-        absolute.solve(absolute.macpherson(small), held(1.6, 0.0))
+        absolute.solve(absolute.macpherson(small, closure="collinear"), held(1.6, 0.0))
 
 
 @pytest.mark.parametrize("value", [-0.0, 5e-324, -1e-110])
@@ -94,7 +94,7 @@ def test_a_coordinate_that_is_almost_zero_is_as_good_as_zero(table: Table, held:
         for place in range(3):
             outcomes = []
             for number in (0.0, value):
-                model = absolute.macpherson(with_coordinate(table, name, place, number))
+                model = absolute.macpherson(with_coordinate(table, name, place, number), closure="collinear")
                 try:
                     outcomes.append(absolute.solve(model, held(1.6, 0.0)).position["wheel_centre"].tolist())
                 except (DescriptionError, absolute.PoseError) as error:
@@ -106,7 +106,7 @@ def test_a_coordinate_that_is_almost_zero_is_as_good_as_zero(table: Table, held:
 def test_a_drawing_without_size_is_refused(table: Table, strut: absolute.Model, value: float) -> None:
     point = dict.fromkeys(table, (value, value, value))
     with pytest.raises(DescriptionError, match="coincide"):
-        absolute.macpherson(point)
+        absolute.macpherson(point, closure="collinear")
     with pytest.raises(DescriptionError, match="at least 1e-100 mm"):
         absolute.solve(
             dataclasses.replace(strut, points=point),

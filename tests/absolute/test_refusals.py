@@ -18,9 +18,11 @@ Table = dict[str, tuple[float, float, float]]
 
 def test_missing_and_unknown_points_are_named(table: Table) -> None:
     with pytest.raises(DescriptionError, match="missing: \\['strut_top'\\]"):
-        absolute.macpherson({name: p for name, p in table.items() if name != "strut_top"})
+        absolute.macpherson(
+            {name: p for name, p in table.items() if name != "strut_top"}, closure="collinear"
+        )
     with pytest.raises(DescriptionError, match="unknown: \\['spring'\\]"):
-        absolute.macpherson({**table, "spring": (0, 0, 0)})
+        absolute.macpherson({**table, "spring": (0, 0, 0)}, closure="collinear")
 
 
 @pytest.mark.parametrize(
@@ -28,7 +30,7 @@ def test_missing_and_unknown_points_are_named(table: Table) -> None:
 )
 def test_a_point_needs_three_finite_numbers(table: Table, bad: Any) -> None:
     with pytest.raises(DescriptionError, match="wheel_centre") as caught:
-        absolute.macpherson({**table, "wheel_centre": bad})
+        absolute.macpherson({**table, "wheel_centre": bad}, closure="collinear")
     assert caught.value.name == "wheel_centre"
 
 
@@ -46,7 +48,9 @@ def test_coincident_points_of_an_axis_are_refused(
     table: Table, held: Callable[[float, float], dict[str, Array]], moved: str, onto: str
 ) -> None:
     with pytest.raises(DescriptionError, match=f"{moved}|{onto}"):
-        absolute.solve(absolute.macpherson({**table, moved: table[onto]}), held(1.6, 0.0))
+        absolute.solve(
+            absolute.macpherson({**table, moved: table[onto]}, closure="collinear"), held(1.6, 0.0)
+        )
 
 
 def test_nearly_coincident_points_of_an_axis_are_refused(
@@ -54,22 +58,25 @@ def test_nearly_coincident_points_of_an_axis_are_refused(
 ) -> None:
     x, y, z = table["lower_ball_joint"]
     with pytest.raises(DescriptionError, match="apart"):
-        absolute.solve(absolute.macpherson({**table, "strut_lower": (x, y, z + 1e-7)}), held(1.6, 0.0))
+        absolute.solve(
+            absolute.macpherson({**table, "strut_lower": (x, y, z + 1e-7)}, closure="collinear"),
+            held(1.6, 0.0),
+        )
 
 
 def test_directions_are_checked(table: Table) -> None:
     with pytest.raises(DescriptionError, match="right angle"):
-        absolute.macpherson(table, up=(0, 0, 1), right=(0, 1, 0.1))
+        absolute.macpherson(table, up=(0, 0, 1), right=(0, 1, 0.1), closure="collinear")
     with pytest.raises(DescriptionError, match="up is"):
-        absolute.macpherson(table, up=(0, 0, 0))
+        absolute.macpherson(table, up=(0, 0, 0), closure="collinear")
     with pytest.raises(DescriptionError, match="right is"):
-        absolute.macpherson(table, right=(0, np.nan, 0))
+        absolute.macpherson(table, right=(0, np.nan, 0), closure="collinear")
 
 
 def test_reversed_strut_is_refused(table: Table, held: Callable[[float, float], dict[str, Array]]) -> None:
     swapped = {**table, "strut_lower": table["lower_ball_joint"], "lower_ball_joint": table["strut_lower"]}
     with pytest.raises(DescriptionError, match=r"strut.*less than 90"):
-        absolute.solve(absolute.macpherson(swapped), held(1.6, 0.0))
+        absolute.solve(absolute.macpherson(swapped, closure="collinear"), held(1.6, 0.0))
 
 
 def test_ball_joint_on_its_own_pivot_axis_is_singular(
@@ -84,7 +91,7 @@ def test_ball_joint_on_its_own_pivot_axis_is_singular(
         "strut_rod_end": 0.5 * (ball + top),
     }
     with pytest.raises(absolute.SingularError, match="condition number") as caught:
-        absolute.solve(absolute.macpherson({**table, **drawn}), held(1.6, 0.0))
+        absolute.solve(absolute.macpherson({**table, **drawn}, closure="collinear"), held(1.6, 0.0))
     assert caught.value.instant is None
 
 
@@ -94,7 +101,7 @@ def test_steering_arm_on_the_strut_axis_is_refused(
     low, high = np.array(table["lower_ball_joint"]), np.array(table["strut_lower"])
     straight = {**table, "tie_rod_outer": tuple((0.5 * low + 0.5 * high).tolist())}
     with pytest.raises(absolute.BranchError, match=r"no branch.*tie rod beside the kingpin") as caught:
-        absolute.solve(absolute.macpherson(straight), held(1.6, 0.0))
+        absolute.solve(absolute.macpherson(straight, closure="collinear"), held(1.6, 0.0))
     assert abs(caught.value.drawn) < 64 * np.finfo(float).eps
 
 
@@ -106,7 +113,7 @@ def test_exact_limit_of_the_motion_is_refused(
     d = np.subtract(level["lower_ball_joint"], level["lower_arm_front"])
     angle = float(np.arccos(np.hypot(d[1], d[2]) / np.linalg.norm(d)))
     with pytest.raises(absolute.PoseError):
-        absolute.solve(absolute.macpherson(level), held(angle, 0.0))
+        absolute.solve(absolute.macpherson(level, closure="collinear"), held(angle, 0.0))
 
 
 @pytest.mark.parametrize("name", ["nowhere", "", "Lower_Ball_Joint", "universe", "root_joint"])

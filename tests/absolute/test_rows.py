@@ -12,6 +12,7 @@ from absolute.assembly import Mechanism
 from absolute.drawing import Drawing
 from absolute.newton import accelerations
 from absolute.rows import joint_frames
+from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.travel import travel
 
 EPS = np.finfo(float).eps
@@ -169,3 +170,33 @@ def test_point_rates_are_those_of_pinocchio(strut: absolute.Model) -> None:
         # differ by the rounding of the solver, condition number below 60.
         assert np.allclose(moved, motion.velocity[point][0], rtol=0, atol=60 * EPS * 500)
         assert np.allclose(bent, motion.acceleration[point][0], rtol=0, atol=60 * EPS * 500)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_sensitivities_are_the_derivatives_of_rates_and_drift(strut: absolute.Model, seed: int) -> None:
+    mechanism = Mechanism(strut)
+    stack, q = mechanism.stack, configuration(mechanism, seed, 0.5)
+    rotation = mechanism.poses(q).rotation
+    rng = np.random.default_rng(seed + 1)
+    way, push = rng.normal(size=(2, stack.count)) / 3
+    rates = np.zeros((len(rotation), 2, 3))
+    rates[1:] = rng.normal(size=(len(rotation) - 1, 2, 3)) / 3
+    placed = stack.place(*mechanism.poses(q))
+    motion = row_motion(stack, placed, rates)
+    h = 1e-5
+
+    def at(step: float, faster: float) -> tuple[np.ndarray, np.ndarray]:
+        there = stack.place(*mechanism.poses(mechanism.moved(q, rotation, step * way)))
+        moving = rates.copy()
+        moving[1:] += faster * push.reshape(-1, 2, 3)
+        rate = stack.jacobian(there) @ moving[1:].ravel()
+        return rate, stack.drift(there, moving[:, 0], moving[:, 1])
+
+    # Truncation h^2 / 6 times a third derivative below 1000, and rounding of two values over 2 h.
+    tolerance = 1000 * h**2 / 6 + 8 * EPS / h
+    (rate, drift), (rate_back, drift_back) = at(h, 0.0), at(-h, 0.0)
+    assert np.abs((rate - rate_back) / (2 * h) - rate_by_pose(stack, motion) @ way).max() < tolerance
+    assert np.abs((drift - drift_back) / (2 * h) - drift_by_pose(stack, motion) @ way).max() < tolerance
+    faster = (at(0.0, h)[1] - at(0.0, -h)[1]) / (2 * h)
+    assert np.abs(faster - drift_by_velocity(stack, motion) @ push).max() < tolerance

@@ -30,8 +30,10 @@ def compare(
     tolerance: float,
 ) -> None:
     """Solve the car changed by p -> matrix p + shift and hold it against the plain car."""
-    turned = absolute.macpherson(changed(table, matrix, shift), up=matrix[:, 2], right=matrix[:, 1])
-    plain = absolute.solve(absolute.macpherson(table), inputs)
+    turned = absolute.macpherson(
+        changed(table, matrix, shift), up=matrix[:, 2], right=matrix[:, 1], closure="collinear"
+    )
+    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), inputs)
     other = absolute.solve(turned, inputs)
     sense = np.sign(np.linalg.det(matrix))
     for name in table:
@@ -89,8 +91,10 @@ def test_distance_from_the_origin_costs_only_its_own_rounding(
 def test_rates_far_from_the_origin_are_as_accurate_as_near_it(
     table: dict[str, tuple[float, float, float]], both: Callable[[Array], dict[str, Array]], distance: float
 ) -> None:
-    near = absolute.solve(absolute.macpherson(table), both(TIMES))
-    far = absolute.solve(absolute.macpherson(changed(table, np.eye(3), np.full(3, distance))), both(TIMES))
+    near = absolute.solve(absolute.macpherson(table, closure="collinear"), both(TIMES))
+    far = absolute.solve(
+        absolute.macpherson(changed(table, np.eye(3), np.full(3, distance)), closure="collinear"), both(TIMES)
+    )
     for name in table:
         # Differences to the middle keep the rounding of the middle, eps * distance, in the worst
         # case; here body shapes are differences of it and so exact to a few parts of eps * size.
@@ -102,11 +106,13 @@ def test_rates_far_from_the_origin_are_as_accurate_as_near_it(
 def test_scaled_mechanism_moves_scaled(
     table: dict[str, tuple[float, float, float]], both: Callable[[Array], dict[str, Array]], factor: float
 ) -> None:
-    plain = absolute.solve(absolute.macpherson(table), both(TIMES), conditions=True)
+    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), both(TIMES), conditions=True)
     inputs = both(TIMES)
     scaled_inputs = {"arm_angle": inputs["arm_angle"], "rack": inputs["rack"] * factor}
     scaled = absolute.solve(
-        absolute.macpherson(changed(table, np.eye(3) * factor, np.zeros(3))), scaled_inputs, conditions=True
+        absolute.macpherson(changed(table, np.eye(3) * factor, np.zeros(3)), closure="collinear"),
+        scaled_inputs,
+        conditions=True,
     )
     for name in table:
         for a, b in (

@@ -1,0 +1,230 @@
+r"""How far each returned quantity may be from the exact one, point by point and component by component.
+
+With K = J^-1, the doubts p, t, s of the three equations (see `rounding`) and changes of first order,
+    dq = K p,    dv = K (t - H dq),    da = K (s - D dq - G dv),
+H = d(J v)/dq, D = d(J a + drift)/dq, G = d(drift)/dv. Every error of a point or a body is a linear function
+of p, t and s; its estimate is the sum of the magnitudes of its coefficients times the doubts, so that
+no component answers for the sensitivity of another. Near a dead point more than the first order counts:
+see `fold`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from absolute.assembly import Mechanism
+from absolute.newton import EPS
+from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
+from absolute.solution import Array
+from absolute.stack import Placed
+from absolute.vectors import cross
+
+# A turned arm has 13 roundings; each product with an angular velocity adds three.
+TURNED = spread(13 + 3)
+TURNED_TWICE = spread(13 + 6)
+# A sum of three terms and its product with the size: four roundings of eps / 2 at worst.
+SUMMED = 4 * EPS / 2
+
+
+class BodyMotion(NamedTuple):
+    """Poses and rates of all bodies, the chassis first, in units of size.
+
+    Attributes:
+        rotation: (N, bodies, 3, 3). origin: (N, bodies, 3).
+        velocity, acceleration: [o', w], [o'', w'], (N, bodies, 2, 3).
+    """
+
+    rotation: Array
+    origin: Array
+    velocity: Array
+    acceleration: Array
+
+
+class Errors(NamedTuple):
+    """Estimates for N instants, mm, rad and s.
+
+    Attributes:
+        position, velocity, acceleration: point name -> (N, 3).
+        rotation, angular_velocity, angular_acceleration: moving body name -> (N, 3).
+    """
+
+    position: dict[str, Array]
+    velocity: dict[str, Array]
+    acceleration: dict[str, Array]
+    rotation: dict[str, Array]
+    angular_velocity: dict[str, Array]
+    angular_acceleration: dict[str, Array]
+
+
+class Answers(NamedTuple):
+    """What the doubts of each row do to the moving bodies, [o, turn] and its rates.
+
+    Attributes:
+        direct: K, (N, rows, bodies, 2, 3): pose to p, velocity to t, acceleration to s.
+        speed, second: -K H K: velocity to p; acceleration to p. bent: acceleration to t.
+        pose, rate, rest: the doubts p, t, s themselves, (N, rows).
+        grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
+    """
+
+    direct: Array
+    speed: Array
+    second: Array
+    bent: Array
+    pose: Array
+    rate: Array
+    rest: Array
+    grown: tuple[Array, Array, Array]
+
+
+def estimate(
+    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, chassis: Array
+) -> Errors:
+    """Errors of points and bodies at N solved instants.
+
+    Args:
+        motion: poses and rates of the bodies.
+        series: inputs (N, 3, inputs). doubts: how far each number of them may be off.
+        chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
+    """
+    answers = _answers(mechanism, motion, series, doubts)
+    model = mechanism.model
+    errors = Errors({}, {}, {}, {}, {}, {})
+    for body, index in mechanism.drawing.bodies.items():
+        for point in model.bodies[body]:
+            if point in errors.position:
+                continue
+            if index:
+                found = _point(mechanism, motion, answers, chassis, index, mechanism.drawing.arm(body, point))
+            else:
+                # The drawn place and the motion of the chassis: one sum.
+                place = np.abs(np.array(model.points[point]) + chassis[:, 0])
+                found = 0.5 * EPS * place, np.zeros_like(place), np.zeros_like(place)
+            errors.position[point], errors.velocity[point], errors.acceleration[point] = found
+        if index:
+            part = (slice(None), slice(None), index - 1, 1)
+            direct, speed, second, bent = (answer[part] for answer in answers[:4])
+            turn, spin, spin1 = _totals(answers, direct, speed, second, bent)
+            errors.rotation[body] = turn
+            errors.angular_velocity[body], errors.angular_acceleration[body] = spin, spin1
+    return errors
+
+
+def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> tuple[Array, Array, Array]:
+    """How much larger than to first order errors of pose, velocity and acceleration are, each (N,).
+
+    Along the largest displacement x that the doubts allow, the equation left is c x + h x^2 = d with the
+    first-order answer d / c, and m = h d / c^2 measures how near its fold is: the exact answer is
+    larger by 2 / (1 + r), r = sqrt(1 - 4 m); the slope there is c r, and with it velocity changes as 1 / r,
+    acceleration as 1 / r^3. Beyond, 4 m >= 1, the doubts reach the fold: a pose on this side of it still
+    lies within twice the first order, its rates may be anything, and their estimate is infinite.
+    """
+    stack = mechanism.stack
+    count = range(len(doubt))
+    worst = np.argmax(np.einsum("nij,nj->ni", np.abs(inverse), doubt), axis=1)
+    displaced = np.einsum("nij,nj->ni", inverse, np.sign(inverse[count, worst]) * doubt)
+    twist = np.zeros((len(doubt), len(mechanism.drawing.bodies), 2, 3))
+    twist[:, 1:] = displaced.reshape(len(doubt), -1, 2, 3)
+    bend = np.einsum("nij,nj->ni", inverse, stack.drift(placed, twist[:, :, 0], twist[:, :, 1]))
+    near = 0.5 * np.abs(bend).max(axis=1) / np.abs(displaced).max(axis=1)
+    root = np.sqrt(np.maximum(1.0 - 4.0 * near, 0.0))
+    with np.errstate(divide="ignore"):
+        # (1 / r - 1) / (2 m) and (1 / r^3 - 1) / (6 m), written without the difference.
+        speed = 2.0 / (root * (1.0 + root))
+        second = 2.0 * (1.0 + root + root * root) / (3.0 * root**3 * (1.0 + root))
+    return 2.0 / (1.0 + root), speed, second
+
+
+def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array) -> Answers:
+    stack = mechanism.stack
+    placed = stack.place(motion.rotation, motion.origin)
+    targets, off = mechanism.target_series(series), mechanism.target_doubt(series, doubts)
+    jacobian = stack.jacobian(placed)
+    inverse = np.asarray(np.linalg.inv(jacobian), dtype=float)
+    moving, bending = (row_motion(stack, placed, rates) for rates in (motion.velocity, motion.acceleration))
+    speeds, seconds = (
+        rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
+    )
+    drift = stack.drift(placed, motion.velocity[:, :, 0], motion.velocity[:, :, 1])
+    pose = pose_doubt(mechanism, placed, targets[0]) + off[0]
+    rate = rate_doubt(moving, jacobian, speeds, targets[1]) + off[1]
+    rest = second_doubt(moving, bending, jacobian, seconds, drift, targets[2]) + off[2]
+    by_velocity = drift_by_velocity(stack, moving)
+    by_pose = rate_by_pose(stack, bending) + drift_by_pose(stack, moving)
+    speed = -inverse @ rate_by_pose(stack, moving) @ inverse
+    second = -inverse @ (by_pose @ inverse + by_velocity @ speed)
+    bent = -inverse @ by_velocity @ inverse
+    return Answers(
+        _by_row(inverse),
+        _by_row(speed),
+        _by_row(second),
+        _by_row(bent),
+        pose,
+        rate,
+        rest,
+        fold(mechanism, placed, inverse, pose),
+    )
+
+
+def _by_row(matrix: Array) -> Array:
+    return matrix.swapaxes(-1, -2).reshape(len(matrix), matrix.shape[-1], -1, 2, 3)
+
+
+def _point(
+    mechanism: Mechanism, motion: BodyMotion, answers: Answers, chassis: Array, index: int, local: Array
+) -> tuple[Array, Array, Array]:
+    # p = o + r,  p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r), where r turns by turn x r.
+    arm = motion.rotation[:, index] @ local
+    rates = motion.velocity[:, index], motion.acceleration[:, index]
+    r, w, w1 = arm[:, None], rates[0][:, None, 1], rates[1][:, None, 1]
+    direct, speed, second, bent = (answer[:, :, index - 1] for answer in answers[:4])
+    turned, sped, turning = cross(direct[:, :, 1], r), cross(speed[:, :, 1], r), cross(w, r)
+    moved = cross(w, turned)
+    found = _totals(
+        answers,
+        direct[:, :, 0] + turned,
+        speed[:, :, 0] + sped + moved,
+        second[:, :, 0]
+        + cross(second[:, :, 1], r)
+        + cross(w1, turned)
+        + cross(w, moved)
+        + cross(speed[:, :, 1], turning)
+        + cross(w, sped),
+        bent[:, :, 0] + cross(bent[:, :, 1], r) + cross(direct[:, :, 1], turning) + moved,
+    )
+    # What the sums themselves are rounded from.
+    size = mechanism.drawing.size
+    reach, fast, faster = (length(vector)[:, None] for vector in (arm, rates[0][:, 1], rates[1][:, 1]))
+    place = motion.origin[:, index] + arm
+    given = place * size + mechanism.drawing.middle
+    position = (found[0] + ARM * reach + SUMMED * np.abs(place)) * size
+    position += 0.5 * EPS * (np.abs(given) + np.abs(given + chassis[:, 0]))
+    velocity = (found[1] + TURNED * fast * reach + SUMMED * np.abs(rates[0][:, 0])) * size
+    turning_twice = (fast * fast + faster) * reach
+    acceleration = (found[2] + TURNED_TWICE * turning_twice + SUMMED * np.abs(rates[1][:, 0])) * size
+    velocity += 0.5 * EPS * np.abs(chassis[:, 1])
+    acceleration += 0.5 * EPS * np.abs(chassis[:, 2])
+    return position, velocity, acceleration
+
+
+def _totals(
+    answers: Answers, direct: Array, speed: Array, second: Array, bent: Array
+) -> tuple[Array, Array, Array]:
+    """Sums over the rows of magnitudes times doubts, for a quantity (N, rows, 3) and its rates."""
+    p, t, s = answers.pose, answers.rate, answers.rest
+    totals = (
+        _summed(direct, p),
+        _summed(speed, p) + _summed(direct, t),
+        _summed(second, p) + _summed(bent, t) + _summed(direct, s),
+    )
+    # Nothing stays nothing, however near the fold.
+    position, velocity, acceleration = (
+        np.multiply(total, grown[:, None], out=np.zeros_like(total), where=total > 0)
+        for total, grown in zip(totals, answers.grown, strict=True)
+    )
+    return position, velocity, acceleration
+
+
+def _summed(answer: Array, doubt: Array) -> Array:
+    total: Array = np.einsum("nrc,nr->nc", np.abs(answer), doubt)
+    return total

@@ -1,0 +1,166 @@
+"""The three ends of a strut's motion: found where the closed form has them, and told by their links."""
+
+import importlib.util
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import absolute
+
+Array = NDArray[np.float64]
+Held = Callable[[float, float], dict[str, Array]]
+EPS = float(np.finfo(float).eps)
+LINKS = (
+    ("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"),
+    ("strut axis",),
+    ("link tie_rod_inner - tie_rod_outer",),
+)
+
+
+def load(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+form, struts = load("moving_form"), load("struts")
+
+
+class End(NamedTuple):
+    """Where the motion of a car ends when one input runs: the last double with a pose, and the way out."""
+
+    car: dict[str, Array]
+    links: tuple[str, ...]
+    limit: str
+    inside: tuple[float, float]
+    out: tuple[float, float]
+
+
+def end_of(car: dict[str, Array], limit: str, out: float) -> End:
+    """The end of one input's run from the drawing, by bisection of the closed form."""
+    angle, rack = form.drawn_inputs(car)
+
+    def at(change: float) -> tuple[float, float]:
+        return (angle + out * change, rack) if limit == "arm_angle" else (angle, rack + out * change)
+
+    low, high = 0.0, 0.0
+    while form.moving_form(car, *((x, 0, 0) for x in at(high)), "drawn") is not None:
+        low, high = high, high + (0.02 if limit == "arm_angle" else 5.0)
+    while at(0.5 * (low + high)) not in (at(low), at(high)):
+        middle = 0.5 * (low + high)
+        inside = form.moving_form(car, *((x, 0, 0) for x in at(middle)), "drawn")
+        low, high = (low, middle) if inside is None else (middle, high)
+    exact = form.moving_form(car, *((x, 0, 0) for x in at(low)), "drawn")
+    assert exact is not None
+    links = LINKS[int(np.argmin([float(margin) for margin in exact.margins]))]
+    return End(car, links, limit, at(low), (out, 0.0) if limit == "arm_angle" else (0.0, out * 219.0))
+
+
+def low_mount() -> dict[str, Array]:
+    """A strut so short that its ball joint comes abreast of its top mount, 130 mm beside the axis."""
+    car = struts.off_axis_strut(5)
+    car["strut_top"] = np.array([460.0, -310.0, 190.0])
+    car["strut_lower"] = np.array([452.0, -420.0, 60.0])
+    car["strut_rod_end"] = car["strut_top"] - 0.3 * (car["strut_top"] - car["strut_lower"])
+    car["lower_ball_joint"] = np.array([450.0, -330.0, -40.0])
+    return {"rack_centre": car["tie_rod_inner"], **car}
+
+
+ENDS = [
+    end_of(low_mount(), "arm_angle", -1.0),
+    end_of(low_mount(), "arm_angle", 1.0),
+    end_of(low_mount(), "rack", -1.0),
+    end_of(low_mount(), "rack", 1.0),
+]
+
+
+def test_the_ends_here_are_all_there_are() -> None:
+    assert {end.links for end in ENDS} == set(LINKS)
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-6, 1e-3, 0.05])
+def test_beyond_an_end_the_refusal_names_links_input_and_limit(end: End, held: Held, beyond: float) -> None:
+    goal = end.inside[0] + beyond * end.out[0], end.inside[1] + beyond * end.out[1]
+    with pytest.raises(absolute.PoseError) as caught:
+        absolute.solve(absolute.macpherson(end.car), held(*goal))
+    error = caught.value
+    assert error.instant == 0
+    assert error.limits == end.links
+    assert error.limit == end.limit
+    assert error.inputs == dict(zip(("arm_angle", "rack"), goal, strict=True))
+    assert f"limited by {', '.join(end.links)}" in str(error)
+    if beyond >= 1e-6:
+        assert isinstance(error, absolute.UnreachableError)
+        # Followed until the fold is about sqrt(eps) away, and the input about eps times constants.
+        asked = dict(zip(("arm_angle", "rack"), end.inside, strict=True))
+        assert abs(error.reached[end.limit] - asked[end.limit]) < 1e-10 * max(1.0, abs(end.out[1]))
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("before", [1e-12, 1e-10, 1e-8, 1e-5, 1e-2])
+def test_just_before_an_end_the_pose_is_the_exact_one(end: End, held: Held, before: float) -> None:
+    goal = end.inside[0] - before * end.out[0], end.inside[1] - before * end.out[1]
+    exact = form.moving_form(end.car, *((x, 0, 0) for x in goal), "drawn")
+    assert exact is not None
+    motion = absolute.solve(absolute.macpherson(end.car), held(*goal), rates=False, conditions=True)
+    assert motion.condition is not None
+    tolerance = 8 * EPS * 400 * motion.condition[0]
+    for name, place in exact.points.items():
+        assert form.errors_of([x.x for x in place], motion.position[name][0]).max() <= tolerance, name
+
+
+@pytest.mark.parametrize("lift", [0.0, 1e-13])
+def test_a_ball_joint_drawn_abreast_of_the_top_mount_is_refused(held: Held, lift: float) -> None:
+    car = low_mount()
+    # The foot of its normal is the top mount itself; powers of two make it exact.
+    car["strut_top"], car["strut_lower"] = np.array([512.0, -256.0, 256.0]), np.array([512.0, -256.0, 128.0])
+    car["strut_rod_end"] = np.array([512.0, -256.0, 192.0])
+    car["lower_ball_joint"] = np.array([512.0, -384.0, 256.0 + lift])
+    with pytest.raises(
+        (absolute.SingularError, absolute.BranchError), match="limited by strut axis"
+    ) as caught:
+        absolute.solve(absolute.macpherson(car), held(1.6, 0.0))
+    assert caught.value.limits == ("strut axis",)
+    assert caught.value.instant is None
+
+
+def test_a_strut_without_length_is_refused(held: Held) -> None:
+    car = low_mount()
+    for name in ("strut_lower", "strut_rod_end"):
+        with pytest.raises(absolute.DescriptionError, match=f"{name}.*strut_top.*coincide"):
+            absolute.macpherson({**car, name: car["strut_top"]})
+        near = car["strut_top"] + np.array([0.0, 0.0, 1e-7])
+        with pytest.raises(absolute.DescriptionError, match="apart"):
+            absolute.solve(absolute.macpherson({**car, name: near}), held(1.6, 0.0))
+
+
+def test_a_linkage_without_sides_has_no_links_to_name(held: Held) -> None:
+    strut = absolute.macpherson(low_mount())
+    bare = absolute.Model(strut.points, strut.chassis, strut.bodies, strut.joints, strut.inputs)
+    with pytest.raises(absolute.UnreachableError) as caught:
+        absolute.solve(bare, held(0.5, 0.0))
+    assert caught.value.limits == ()
+    assert "limited by" not in str(caught.value)
+    assert caught.value.limit == "arm_angle"
+
+
+def test_a_drawing_that_locks_before_it_closes_names_its_links(held: Held) -> None:
+    # The rack's line further away than the tie rod is long.
+    car = {**low_mount(), "rack_centre": np.array([570.0, 60.0, 1500.0])}
+    with pytest.raises(
+        absolute.AssemblyError, match="limited by link tie_rod_inner - tie_rod_outer"
+    ) as caught:
+        absolute.solve(absolute.macpherson(car), held(1.6, 0.0))
+    assert caught.value.limits == ("link tie_rod_inner - tie_rod_outer",)
+    assert caught.value.instant is None

@@ -1,0 +1,47 @@
+"""What Newton's method reports and when it stops."""
+
+import numpy as np
+import pytest
+
+import absolute
+from absolute.assemble import assemble
+from absolute.assembly import Mechanism
+from absolute.finish import finish
+from absolute.march import Found
+from absolute.newton import correct
+
+EPS = float(np.finfo(float).eps)
+
+
+@pytest.mark.parametrize("off", [0.25, -0.5, 3.0, -7.0])
+def test_the_residual_reported_is_how_far_a_row_is_off_its_target_on_either_side(
+    strut: absolute.Model, monkeypatch: pytest.MonkeyPatch, off: float
+) -> None:
+    mechanism = Mechanism(strut)
+    pose, _ = assemble(mechanism)
+    # No correction at all: the pose of the drawing stays, and the rack's row misses by `off` mm.
+    monkeypatch.setattr(absolute.finish, "MOST_CORRECTIONS", 0)
+    angle, rack = mechanism.drawn_inputs.tolist()
+    series = np.array([[[angle, rack], [0, 0], [0, 0]], [[angle, rack + off], [0, 0], [0, 0]]])
+    finished = finish(mechanism, [Found(pose.q, 0)] * 2, mechanism.target_series(series), False)
+    residual = finished.residual * mechanism.drawing.size
+    # The rows themselves are closed to a few roundings of the size.
+    assert 0 <= residual[0] <= 16 * EPS * mechanism.drawing.size
+    assert abs(residual[1] - abs(off)) <= 16 * EPS * mechanism.drawing.size
+
+
+@pytest.mark.parametrize(("share", "corrections"), [(0.3, 1), (3.0, 2)])
+def test_one_correction_is_enough_below_the_root_of_eps_rcond(
+    strut: absolute.Model, share: float, corrections: int
+) -> None:
+    # After a correction s about s^2 / rcond is left: below eps nothing is.
+    mechanism = Mechanism(strut)
+    pose, _ = assemble(mechanism)
+    inputs = mechanism.drawn_inputs.tolist()
+    target = mechanism.targets(inputs, [0.0, 0.0], [0.0, 0.0])[0]
+    way = np.random.default_rng(2).normal(size=mechanism.stack.count)
+    away = share * np.sqrt(EPS * pose.rcond) * way / np.linalg.norm(way)
+    outcome = correct(mechanism, mechanism.moved(pose.q, pose.poses.rotation, away), target, pose.rcond)
+    assert outcome.corrections == corrections
+    assert outcome.pose is not None
+    assert np.allclose(outcome.pose.poses.origin, pose.poses.origin, rtol=0, atol=16 * EPS / pose.rcond)
