@@ -88,9 +88,8 @@ def enclosed_coordinates(
     inverse = factors.preconditioner
     magnitude = np.abs(inverse)
     proven = uncertainty.copy()
-    proven[:, :n] = (
-        certificate.spread + certificate.tail[:, None] + 32 * UNIT_ROUNDOFF * np.abs(certificate.step)
-    )
+    rounded = certificate.spread + 32 * UNIT_ROUNDOFF * np.abs(certificate.step)
+    proven[:, :n] = rounded + _tail(system, certificate, magnitude)
     rounded = _applied(magnitude, system.uncertainty(y, expected))
     expected = expected + UNIT_ROUNDOFF * np.abs(y)
     expected[:, :n] += rounded
@@ -112,6 +111,22 @@ def enclosed_coordinates(
             made = summed[derivative].expected(states[derivative], factors.condition, powers[derivative])
             state.radius[1, :, :n] += made[:, :n]
     return result
+
+
+def _tail(system: QuadraticMap, certificate: Certificate, magnitude: Array) -> Array:
+    """What is left of the error of each coordinate beside e and its spread, (N, unknowns).
+
+    By the mean value form of `certificate`, with r the error of each coordinate instead of the largest:
+    |I - X C_u| r + |X| |C_u(y + r) - C_u(y)| r / 2, first for the largest and then for what that gives.
+    """
+    radius = np.broadcast_to(certificate.radius[:, None], certificate.step.shape)
+    tail = radius
+    for _ in range(2):
+        moved = np.concatenate([radius, np.zeros((len(radius), system.size - system.unknowns))], axis=-1)
+        bent = 0.5 * magnitude @ system.jacobian_uncertainty(moved)
+        tail = np.minimum(_applied(certificate.defect + bent, radius), certificate.tail[:, None])
+        radius = np.minimum(radius, np.abs(certificate.step) + certificate.spread + tail)
+    return tail
 
 
 def _corrected(
