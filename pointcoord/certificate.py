@@ -53,8 +53,8 @@ class Certificate:
         radius: exactly one assembly lies within it; infinite where nothing could be proven.
         unique_within: no other assembly lies within this distance.
         newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1.
-        contraction: z + omega radius >= |I - X C_u| everywhere within the radius, shape (...,); infinite where
-            nothing could be proven.
+        contraction: z + omega radius >= |I - X C_u| everywhere within the radius, shape (...,); infinite
+            where nothing could be proven.
         defect: |I - X C_u(y)| element by element, shape (..., unknowns, unknowns).
         step: e, shape (..., unknowns).
         spread: uncertainty of each component of e, |X| d, shape (..., unknowns).

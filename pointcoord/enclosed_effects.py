@@ -1,14 +1,14 @@
-r"""Where everything that a scene asks for exactly is, from where the coordinates of a pose and their rates are.
+r"""Where everything that a scene asks for exactly is, from where the coordinates and their rates are.
 
-A carried point is p = p_0 + a e1 + b e2 + c e1 x e2 with weights that are known to twice the working precision.
-A body turns as two edges of it do: with n = e1 x e2 and what an approximate rate w leaves of the edges' rates,
-s_i = e_i' - w x e_i,
+A carried point is p = p_0 + a e1 + b e2 + c e1 x e2 with weights that are known to twice the working
+precision. A body turns as two edges of it do: with n = e1 x e2 and what an approximate rate w leaves of the
+edges' rates, s_i = e_i' - w x e_i,
 
     omega - w = [ (s_1 . e2) n - (s_1 . n) e2 + (s_2 . n) e1 ] / |n|^2,
 
 since s_i = (omega - w) x e_i exactly; alpha likewise from s_i = e_i'' - omega x (omega x e_i) - w x e_i. The
-points of a rigid body give the same rates whichever of them are taken. An angle atan2(p, q) that was found as f
-is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
+points of a rigid body give the same rates whichever of them are taken. An angle atan2(p, q) that was found as
+f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 """
 
 from __future__ import annotations
@@ -50,8 +50,7 @@ def _edges(points: Points, names: Sequence[str]) -> tuple[Enclosed, Enclosed]:
 def _carried(weights: Enclosed, edges: Sequence[tuple[Enclosed, Enclosed]]) -> list[Enclosed]:
     """p - p_0 and its derivatives."""
     a, b, c = (weights.take([i]) for i in range(3))
-    result = [a * e1 + b * e2 + c * crossed for (e1, e2), crossed in zip(edges, _normals(edges), strict=True)]
-    return result
+    return [a * e1 + b * e2 + c * crossed for (e1, e2), crossed in zip(edges, _normals(edges), strict=True)]
 
 
 def _normals(edges: Sequence[tuple[Enclosed, Enclosed]]) -> list[Enclosed]:

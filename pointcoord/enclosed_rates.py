@@ -8,14 +8,14 @@ with known rates w', w''. For a computed v with the exact w' in it, r = 2 B(y*, 
 
     C_u(y*) (v* - v) = -r,        v* - v = -X r + E (v* - v),        E = I - X C_u(y*).
 
-With q >= |X r|, rounding and doubt of r included, and z' = z + omega r_pose >= |E| of the certificate, z' < 1,
+With q >= |X r|, rounding and doubt of r included, and z' = z + omega r_pose >= |E| of the certificate,
 
     |v* - v| <= max q / (1 - z') = d,    |v* - v| <= q + F d,    |v* - v| <= q + F (q + F d),
 
-element by element, F = |I - X C_u(y)| + |X| |C_u(y*) - C_u(y)| >= |E|; so a coordinate that does not depend on
-another does not share its error. And the same for a with r = 2 B(y*, a) + 2 B(v*, v*). r is taken in twice the working precision of numbers that
-are known to twice the working precision, so nothing is left of rounding but what the data have; and it sees
-whatever a series left out.
+element by element, F = |I - X C_u(y)| + |X| |C_u(y*) - C_u(y)| >= |E|; so a coordinate that does not depend
+on another does not share its error. The same for a with r = 2 B(y*, a) + 2 B(v*, v*). r is taken in twice the
+working precision of numbers that are known to twice the working precision, so nothing is left of rounding but
+what the data have; and it sees whatever a series left out.
 
 What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds, with
 the pose (and the velocity) off by as much as rounding makes them; and of a series what it leaves out on
@@ -78,7 +78,7 @@ def enclosed_coordinates(
 
     Args:
         states: computed y and its time derivatives, (N, size), units per unit of time^d.
-        data: what the known coordinates of y lack and their uncertainty, and the uncertainty expected, (N, size).
+        data: what the known coordinates of y lack, their uncertainty and the one expected, (N, size).
         driven: by place in y each driven coordinate with its first and second derivative, each (N,).
         summed: how each of the states was summed; empty if they were solved for.
         powers: of the unit of time, s^d, each (N,).

@@ -22,8 +22,8 @@ Arrays = Mapping[str, Array]
 
 RATES = ("position", "velocity", "acceleration")
 TURNS = ("angular_velocity", "angular_acceleration")
-# Solving rounds a few times as often as looking at an equation does: a factorisation, its use, a refinement; and
-# a series leaves out less than the last two terms that its expected error counts.
+# Solving rounds a few times as often as looking at an equation does: a factorisation, its use, a refinement;
+# and a series leaves out less than the last two terms that its expected error counts.
 ROUNDINGS = 3.0
 # Powers of two by which a unit of time is chosen: its square still is a number.
 LONGEST = 400
@@ -57,7 +57,7 @@ class Reported:
         laws: the driving inputs.
         lines: for each wheel angle the line that leans, from point to point.
         axes: for each wheel angle the directions whose components along the line give -sine and cosine.
-        summed: how the coordinates and their derivatives were summed at instants; nothing if they were solved.
+        summed: how the coordinates and their derivatives were summed at instants; nothing if solved for.
     """
 
     numbers: Bounds

@@ -1,7 +1,7 @@
 """What a formulation really gave: arrays that can be compared, and a line for everything that cannot.
 
-A formulation may be anybody's. What is missing, has another shape, is given at other times or is no real number
-is told and left out; the rest is compared.
+A formulation may be anybody's. What is missing, has another shape, is given at other times or is no real
+number is told and left out; the rest is compared.
 """
 
 from __future__ import annotations

@@ -95,9 +95,7 @@ def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
         velocity=_rounded(velocity, rate),
         acceleration=_rounded(acceleration, push),
     )
-    return replace(
-        home, position=position, velocity=velocity, acceleration=acceleration, accuracy=accuracy
-    )
+    return replace(home, position=position, velocity=velocity, acceleration=acceleration, accuracy=accuracy)
 
 
 def _rounded(sums: Mapping[str, Array], added: Array) -> dict[str, Array]:
