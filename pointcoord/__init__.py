@@ -21,6 +21,7 @@ from pointcoord.errors import (
 from pointcoord.motion import Motion, Samples
 from pointcoord.scene import Scene, built_in_scenes
 from pointcoord.simulate import simulate
+from pointcoord.standing import Standing, standing
 
 __all__ = [
     "AssemblyError",
@@ -36,7 +37,9 @@ __all__ = [
     "Scene",
     "SceneError",
     "SingularConfiguration",
+    "Standing",
     "UnknownName",
     "built_in_scenes",
     "simulate",
+    "standing",
 ]

@@ -172,7 +172,25 @@ def as_pose(
     )
 
 
-def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float | None = None) -> Pose:
+def close_drawing(mechanism: Mechanism, instant: float | None = None) -> Path:
+    """The drawing assembled at its own inputs.
+
+    Raises:
+        AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
+    """
+    own = mechanism.drawn[..., mechanism.map.unknowns :]
+    path = follow(mechanism.map, mechanism.drawn, own)
+    _require(mechanism, path, own, "the drawing cannot be assembled", instant)
+    _require_sense(mechanism, path, instant)
+    return path
+
+
+def assemble(
+    mechanism: Mechanism,
+    inputs: Mapping[str, Array],
+    instant: float | None = None,
+    closed: Path | None = None,
+) -> Pose:
     """The pose for given inputs on the branch of the drawing.
 
     The drawing is first assembled at its own inputs, then the inputs are taken from there to the wanted
@@ -181,16 +199,14 @@ def assemble(mechanism: Mechanism, inputs: Mapping[str, Array], instant: float |
     Args:
         inputs: value of each input, shape (...,), rad or mm.
         instant: for messages, s.
+        closed: the closed drawing, if it is at hand.
     Raises:
         AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
     """
-    system, n = mechanism.map, mechanism.map.unknowns
     target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
     target = target[..., 0, :]
-    drawing = follow(system, mechanism.drawn, mechanism.drawn[..., n:])
-    _require(mechanism, drawing, mechanism.drawn[..., n:], "the drawing cannot be assembled", instant)
-    _require_sense(mechanism, drawing, instant)
-    path = follow(system, drawing.y, target)
+    drawing = close_drawing(mechanism, instant) if closed is None else closed
+    path = follow(mechanism.map, drawing.y, target)
     _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
     return as_pose(mechanism, path.y, path.factors, path.iterations, drawing.work + path.work)
 

@@ -1,38 +1,82 @@
 r"""The kinds of constraint, each as rows of the quadratic map.
 
 A constraint is data: the names of the points, directions and coordinates it ties together. Its rows
-hold no numbers of a particular car; those are in y. p_a is the position of point a.
+hold no numbers of a particular car; those are in y. p_a is the position of point a. What a kind needs in y
+beside points, and how it reads that off a drawing, it knows itself.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
+import numpy as np
+
+from pointcoord.doubled import exact_square
+from pointcoord.drawing import Drawing, Placed
+from pointcoord.errors import MechanismError
 from pointcoord.layout import Layout, Triple
-from pointcoord.quadratic import Product, Row
+from pointcoord.quadratic import UNIT_ROUNDOFF, Product, Row
 
 
-class Constraint(Protocol):
-    """Named rows over a layout."""
+class Constraint(ABC):
+    """Named rows over a layout, and the coordinates of y that belong to them alone."""
 
     @property
+    @abstractmethod
     def labels(self) -> tuple[str, ...]:
         """A name for each row, for messages."""
-        ...
 
+    @abstractmethod
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """The rows, in the order of the labels."""
-        ...
+
+    @property
+    def vectors(self) -> tuple[str, ...]:
+        """Unknown vectors that it brings along."""
+        return ()
+
+    @property
+    def slides(self) -> tuple[str, ...]:
+        """Unknown places along a line that it brings along."""
+        return ()
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Numbers of the drawing that its rows need."""
+        return ()
+
+    @property
+    def squared_lengths(self) -> tuple[tuple[str, str], ...]:
+        """Ends of the links whose squared length its rows need."""
+        return ()
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of points that a picture of the linkage joins."""
+        return ()
+
+    @property
+    def is_length(self) -> bool:
+        """Whether its rows at the drawing are the components of a distance that the drawing misses."""
+        return False
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """Its own coordinates as drawn.
+
+        Raises:
+            MechanismError: the drawing gives them no value.
+        """
+        return ()
 
 
-def _dot(a: Triple, b: Triple, c: Triple, d: Triple) -> Row:
+def dot(a: Triple, b: Triple, c: Triple, d: Triple) -> Row:
     """(y_a - y_b) . (y_c - y_d) as products, for vectors given by their indices."""
     return tuple(Product(1.0, (a[i], b[i]), (c[i], d[i])) for i in range(3))
 
 
 @dataclass(frozen=True)
-class Link:
+class Link(Constraint):
     r"""Fixed distance: |p_start - p_end|^2 - d^2 = 0, d as drawn (paper eqs. 1-7). One row."""
 
     start: str
@@ -43,16 +87,38 @@ class Link:
         """One row."""
         return (f"link {self.start} - {self.end}",)
 
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """The link."""
+        return ((self.start, self.end),)
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Quadratic in the difference of the ends."""
         start, end = layout.vector(self.start), layout.vector(self.end)
         square = layout.squared_length(self.start, self.end)
         length = Product(-1.0, (square, layout.zero), (layout.one, layout.zero))
-        return ((*_dot(start, end, start, end), length),)
+        return ((*dot(start, end, start, end), length),)
+
+    @property
+    def squared_lengths(self) -> tuple[tuple[str, str], ...]:
+        """Its own."""
+        return ((self.start, self.end),)
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The square of the drawn length; five units of rounding at most, which are measured."""
+        start, end = drawing.vectors[self.start], drawing.vectors[self.end]
+        square = np.sum((start - end) ** 2, axis=-1)
+        if not (square > 0.0).all():
+            raise no_length(self.start, self.end)
+        exact, rest = exact_square(start, end)
+        place = (layout.squared_length(self.start, self.end),)
+        lacks = (exact - square) + rest
+        doubt = 256 * UNIT_ROUNDOFF**2 * square
+        return (Placed(place, square[..., None], lacks[..., None], doubt[..., None]),)
 
 
 @dataclass(frozen=True)
-class OnLine:
+class OnLine(Constraint):
     r"""A point on the line through two others, with the place along it as a coordinate of its own:
 
     p - p_start - ratio (p_end - p_start) = 0. Three rows and one unknown, no preferred axis, and
@@ -69,6 +135,11 @@ class OnLine:
         """A row per axis."""
         return tuple(f"{self.point} on the line {self.start} - {self.end} ({axis})" for axis in "xyz")
 
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """The piece of the line up to the point."""
+        return ((self.start, self.point),)
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the ratio and the line's direction."""
         p, a, b = (layout.vector(name) for name in (self.point, self.start, self.end))
@@ -78,9 +149,29 @@ class OnLine:
             for i in range(3)
         )
 
+    @property
+    def is_length(self) -> bool:
+        """The point's distance from the line."""
+        return True
+
+    @property
+    def slides(self) -> tuple[str, ...]:
+        """The ratio."""
+        return (self.ratio,)
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The ratio of the point's foot on the drawn line."""
+        start = drawing.vectors[self.start]
+        line = drawing.vectors[self.end] - start
+        reach = np.sum((drawing.vectors[self.point] - start) * line, axis=-1)
+        square = np.sum(line * line, axis=-1)
+        if not (square > 0.0).all():
+            raise no_length(self.start, self.end)
+        return (Placed((layout.scalar(self.ratio),), (reach / square)[..., None]),)
+
 
 @dataclass(frozen=True)
-class Rack:
+class Rack(Constraint):
     r"""A point held on a line of the chassis and driven along it (paper eqs. 13-15, any direction):
 
     p - p_origin + travel e = 0, so that positive travel moves the point against e. Three rows.
@@ -96,6 +187,11 @@ class Rack:
         """A row per axis."""
         return tuple(f"{self.point} on the rack ({axis})" for axis in "xyz")
 
+    @property
+    def is_length(self) -> bool:
+        """The point's distance from the line of the rack."""
+        return True
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the travel and the direction, which both are known."""
         p, o, e = (layout.vector(name) for name in (self.point, self.origin, self.direction))
@@ -107,7 +203,7 @@ class Rack:
 
 
 @dataclass(frozen=True)
-class Rise:
+class Rise(Constraint):
     r"""Driven height of a point over another: (p - p_pivot) . e - rise = 0. One row.
 
     With rise = d cos(theta) this is the paper's arm angle, eq. (12).
@@ -128,11 +224,11 @@ class Rise:
         p, o, e = (layout.vector(name) for name in (self.point, self.pivot, self.direction))
         zeros: Triple = (layout.zero, layout.zero, layout.zero)
         driven = Product(-1.0, (layout.scalar(self.rise), layout.zero), (layout.one, layout.zero))
-        return ((*_dot(p, o, e, zeros), driven),)
+        return ((*dot(p, o, e, zeros), driven),)
 
 
 @dataclass(frozen=True)
-class PrintedParallel:
+class PrintedParallel(Constraint):
     r"""Two lines parallel as the paper prints it, eqs. (8), (9) and again (10), (11):
 
     the x and y components only of (p_end - p_start) x (p_head - p_tail) = 0, with z as the preferred
@@ -159,3 +255,10 @@ class PrintedParallel:
             (Product(1.0, (e[i], s[i]), (h[2], t[2])), Product(-1.0, (e[2], s[2]), (h[i], t[i])))
             for i in (1, 0)
         )
+
+
+def no_length(start: str, end: str) -> MechanismError:
+    """The error for two points in one place that a length or a line needs apart."""
+    return MechanismError(
+        f"link {start} - {end} has no length: both points are at the same place; move one", [start, end]
+    )

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.doubled import exact_product, exact_square
+from pointcoord.drawing import Drawing
 from pointcoord.enclosure import Enclosed, cosine_sine
 from pointcoord.errors import InputOutOfRange
 from pointcoord.inputs import cosine
@@ -21,21 +22,7 @@ from pointcoord.quadratic import UNIT_ROUNDOFF
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Drawing:
-    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3)."""
-
-    vectors: dict[str, Array]
-    unit: Array
-
-    def distance(self, start: str, end: str) -> Array:
-        """Drawn distance between two points, shape (...,)."""
-        return np.asarray(np.linalg.norm(self.vectors[start] - self.vectors[end], axis=-1))
-
-    def along(self, start: str, end: str, direction: str) -> Array:
-        """Component of the drawn vector from start to end along a direction, shape (...,)."""
-        difference = self.vectors[end] - self.vectors[start]
-        return np.asarray(np.sum(difference * self.vectors[direction], axis=-1))
+EXTREME = 8.0  # sizes of the mechanism
 
 
 class Drive(Protocol):
@@ -77,6 +64,10 @@ class Drive(Protocol):
 
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The input that gives a coordinate."""
+        ...
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
         ...
 
 
@@ -144,6 +135,11 @@ class ArmAngle:
         ratio = coordinate / drawing.distance(self.pivot, self.point)
         return np.asarray(np.arccos(np.clip(ratio, -1.0, 1.0)))
 
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The arm straight up and straight down."""
+        length = drawing.distance(self.pivot, self.point)
+        return length, -length
+
 
 @dataclass(frozen=True)
 class Travel:
@@ -175,3 +171,7 @@ class Travel:
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The displacement in mm."""
         return np.asarray(coordinate * drawing.unit)
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Eight sizes to either side: no rod that is drawn within one size reaches as far."""
+        return -EXTREME * np.ones_like(drawing.unit), EXTREME * np.ones_like(drawing.unit)

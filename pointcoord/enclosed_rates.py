@@ -17,8 +17,8 @@ on another does not share its error. The same for a with r = 2 B(y*, a) + 2 B(v*
 working precision of numbers that are known to twice the working precision, so nothing is left of rounding but
 what the data have; and it sees whatever a series left out.
 
-What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds, with
-the pose (and the velocity) off by as much as rounding makes them; and of a series what it leaves out on
+What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds,
+with the pose (and the velocity) off by as much as rounding makes them; and of a series what it leaves out on
 purpose, of each derivative apart, because the series of a rate is cut where the pose's is.
 """
 

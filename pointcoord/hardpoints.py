@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.constraints import Link, OnLine
-from pointcoord.doubled import exact_square
-from pointcoord.drives import Drawing
+from pointcoord.drawing import Drawing
 from pointcoord.errors import MechanismError, UnknownName
 from pointcoord.linear import EPS, factorise, null_directions
 from pointcoord.mechanism import Mechanism
@@ -24,14 +22,20 @@ def build_mechanism(
     """Hardpoints put on a topology, checked.
 
     Args:
-        points: every point of the topology, shape (..., 3), mm.
+        points: every point of the topology, shape (..., 3), mm; where one is left out that may be, the point
+            that stands in for it is taken.
         directions: every direction of the topology, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
         MechanismError: a coordinate is not finite, a link has no length, or the mechanism is under- or
             over-determined; the message names the free direction or the redundant rows.
     """
-    located = _checked(points, topology.points, "point")
+    _check_names(points, topology.points, "point")
+    _check_names(directions, topology.directions, "direction")
+    topology = topology.given(points)
+    standing = {name: points[other] for name, other in topology.stand_ins.items() if other in points}
+    taken = {name: place for name, place in standing.items() if name in topology.chassis}
+    located = _checked(taken | dict(points), topology.points, "point")
     turned = _checked(directions, topology.directions, "direction")
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -47,14 +51,15 @@ def build_mechanism(
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
     vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
     drawing = Drawing(vectors, unit)
-    drawn = _drawn(topology, drawing)
+    drawn, lacks, doubt = _drawn(topology, drawing)
     mechanism = Mechanism(
         topology=topology,
         origin=origin,
         unit=unit,
         drawing=drawing,
         drawn=drawn,
-        drawn_lacks=_drawn_lacks(topology, drawing, drawn),
+        drawn_lacks=lacks,
+        drawn_doubt=doubt,
         carrier_weights={
             name: _carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
         },
@@ -63,10 +68,13 @@ def build_mechanism(
     return mechanism
 
 
-def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
+def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
     for name in given:
         if name not in names:
             raise UnknownName(kind, name, names)
+
+
+def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
     result: dict[str, Array] = {}
     for name in names:
         if name not in given:
@@ -80,48 +88,21 @@ def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) ->
     return result
 
 
-def _drawn(topology: Topology, drawing: Drawing) -> Array:
-    """The coordinates y at which the drawing stands, whether or not it is assembled."""
+def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
+    """The coordinates y at which the drawing stands, assembled or not, what they lack and their doubt."""
     layout = topology.layout
     batch = np.broadcast_shapes(*(v.shape[:-1] for v in drawing.vectors.values()))
-    y = np.zeros((*batch, layout.size))
+    y, lacks, doubt = (np.zeros((*batch, layout.size)) for _ in range(3))
     y[..., layout.one] = 1.0
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., list(layout.vector(name))] = drawing.vectors[name]
     for constraint in topology.constraints:
-        if isinstance(constraint, OnLine):
-            start = drawing.vectors[constraint.start]
-            line = drawing.vectors[constraint.end] - start
-            reach = np.sum((drawing.vectors[constraint.point] - start) * line, axis=-1)
-            square = np.sum(line * line, axis=-1)
-            if not (square > 0.0).all():
-                raise _no_length(constraint.start, constraint.end)
-            y[..., layout.scalar(constraint.ratio)] = reach / square
-        elif isinstance(constraint, Link):
-            difference = drawing.vectors[constraint.start] - drawing.vectors[constraint.end]
-            square = np.sum(difference * difference, axis=-1)
-            if not (square > 0.0).all():
-                raise _no_length(constraint.start, constraint.end)
-            y[..., layout.squared_length(constraint.start, constraint.end)] = square
+        for own in constraint.placed(layout, drawing):
+            places = list(own.places)
+            y[..., places], lacks[..., places], doubt[..., places] = own.values, own.lacks, own.doubt
     for drive in topology.drives:
         y[..., layout.scalar(drive.coordinate)] = drive.drawn(drawing)
-    return y
-
-
-def _drawn_lacks(topology: Topology, drawing: Drawing, drawn: Array) -> Array:
-    """The rounding of the squared lengths, five units at most; the rest of the drawing is not rounded."""
-    lacks = np.zeros_like(drawn)
-    for start, end in topology.layout.squared_lengths:
-        place = topology.layout.squared_length(start, end)
-        square, rest = exact_square(drawing.vectors[start], drawing.vectors[end])
-        lacks[..., place] = (square - drawn[..., place]) + rest
-    return lacks
-
-
-def _no_length(start: str, end: str) -> MechanismError:
-    return MechanismError(
-        f"link {start} - {end} has no length: both points are at the same place; move one", [start, end]
-    )
+    return y, lacks, doubt
 
 
 def _carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str]) -> Array:

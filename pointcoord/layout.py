@@ -1,8 +1,9 @@
 """Which number of y is what: the order of the coordinates of a mechanism.
 
-Unknown ones first: three per moving point, then one per slide. Known ones after them: the constants 0
-and 1, three per chassis point, three per direction, one per driven coordinate, one squared length per
-link. All lengths are in units of the mechanism's size, measured from its own origin.
+Unknown ones first: three per moving point, three per vector of a body, then one per slide. Known ones after
+them: the constants 0 and 1, three per chassis point, three per direction, one per driven coordinate, one per
+constant of the drawing, one squared length per link. All lengths are in units of the mechanism's size,
+measured from its own origin.
 """
 
 from __future__ import annotations
@@ -25,11 +26,13 @@ class Layout:
     directions: tuple[str, ...]
     driven: tuple[str, ...]
     squared_lengths: tuple[tuple[str, str], ...]
+    vectors: tuple[str, ...] = ()
+    constants: tuple[str, ...] = ()
 
     @property
     def unknowns(self) -> int:
         """How many coordinates are unknown."""
-        return 3 * len(self.moving) + len(self.ratios)
+        return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
 
     @property
     def zero(self) -> int:
@@ -43,34 +46,36 @@ class Layout:
 
     @cached_property
     def _vectors(self) -> dict[str, int]:
-        first = {name: 3 * i for i, name in enumerate(self.moving)}
+        first = {name: 3 * i for i, name in enumerate((*self.moving, *self.vectors))}
         known = self.unknowns + 2
         first |= {name: known + 3 * i for i, name in enumerate((*self.chassis, *self.directions))}
         return first
 
     @cached_property
     def _scalars(self) -> dict[str, int]:
-        first = {name: 3 * len(self.moving) + i for i, name in enumerate(self.ratios)}
+        slides = 3 * (len(self.moving) + len(self.vectors))
+        first = {name: slides + i for i, name in enumerate(self.ratios)}
         known = self.unknowns + 2 + 3 * (len(self.chassis) + len(self.directions))
-        return first | {name: known + i for i, name in enumerate(self.driven)}
+        return first | {name: known + i for i, name in enumerate((*self.driven, *self.constants))}
 
     @property
     def size(self) -> int:
         """How many coordinates there are in all."""
         vectors = 3 * (len(self.chassis) + len(self.directions))
-        return self.unknowns + 2 + vectors + len(self.driven) + len(self.squared_lengths)
+        scalars = len(self.driven) + len(self.constants) + len(self.squared_lengths)
+        return self.unknowns + 2 + vectors + scalars
 
     def vector(self, name: str) -> Triple:
-        """Indices of the three coordinates of a point or a direction."""
+        """Indices of the three coordinates of a point, a direction or a vector of a body."""
         if name not in self._vectors:
-            raise UnknownName("point or direction", name, self._vectors)
+            raise UnknownName("point, direction or vector", name, self._vectors)
         first = self._vectors[name]
         return first, first + 1, first + 2
 
     def scalar(self, name: str) -> int:
-        """Index of a slide's ratio or of a driven coordinate."""
+        """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
         if name not in self._scalars:
-            raise UnknownName("slide or driven coordinate", name, self._scalars)
+            raise UnknownName("slide, driven coordinate or constant", name, self._scalars)
         return self._scalars[name]
 
     def squared_length(self, start: str, end: str) -> int:
@@ -81,6 +86,7 @@ class Layout:
 
     def describe(self, index: int) -> str:
         """An unknown coordinate in words, such as 'y of tie_rod_outer'."""
-        if index < 3 * len(self.moving):
-            return f"{'xyz'[index % 3]} of {self.moving[index // 3]}"
-        return self.ratios[index - 3 * len(self.moving)]
+        vectors = (*self.moving, *self.vectors)
+        if index < 3 * len(vectors):
+            return f"{'xyz'[index % 3]} of {vectors[index // 3]}"
+        return self.ratios[index - 3 * len(vectors)]

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.drives import Drawing
+from pointcoord.drawing import Drawing
 from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.layout import Layout
-from pointcoord.quadratic import UNIT_ROUNDOFF, QuadraticMap
+from pointcoord.quadratic import QuadraticMap
+from pointcoord.rigid import carried_series
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]
@@ -31,7 +32,8 @@ class Mechanism:
         unit: the length that is 1 in its coordinates, a power of two, shape (...,), mm.
         drawing: its drawn points and its directions in its own coordinates.
         drawn: the coordinates y of the drawing, shape (..., size).
-        drawn_lacks: what these lack by rounding, to some 100 u^2 of themselves, shape (..., size).
+        drawn_lacks: what the known ones of these lack by rounding, shape (..., size).
+        drawn_doubt: how uncertain they still are with that added, shape (..., size).
         carrier_weights: place of each carried point in the frame of its three carriers, shape (..., 3).
     """
 
@@ -41,6 +43,7 @@ class Mechanism:
     drawing: Drawing
     drawn: Array
     drawn_lacks: Array
+    drawn_doubt: Array
     carrier_weights: Mapping[str, Array]
 
     @property
@@ -52,6 +55,17 @@ class Mechanism:
     def map(self) -> QuadraticMap:
         """The constraints."""
         return self.topology.map
+
+    def places(self, y: Array) -> dict[str, Array]:
+        """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
+        topology = self.topology
+        found = {
+            name: y[..., list(self.layout.vector(name))] for name in (*topology.chassis, *topology.moving)
+        }
+        for name, carriers in topology.carried.items():
+            series = (found[carrier][..., None, :] for carrier in carriers)
+            found[name] = carried_series(self.carrier_weights[name], *series)[..., 0, :]
+        return found
 
     def known_series(self, inputs: Mapping[str, Array]) -> Array:
         """Series of all known coordinates from the series of the inputs.
@@ -102,8 +116,8 @@ class Mechanism:
     def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
-        Drawn points, directions and constants are exact. What a squared length lacks was kept when it was
-        drawn; of a drive its kind knows (see `drives`).
+        Drawn points and directions are exact. What a length or another constant of the drawing lacks was
+        kept when it was drawn; of a drive its kind knows (see `drives`).
 
         Args:
             laws: how far the value of each input may be off, shape (...,), rad or mm; nothing unless given.
@@ -111,13 +125,12 @@ class Mechanism:
             Two arrays of shape (..., size): y plus the first is right to within the second.
         """
         layout = self.layout
-        lacking, uncertainty = np.zeros_like(y), np.zeros_like(y)
+        lacking, uncertainty = (
+            np.broadcast_to(drawn, y.shape).copy() for drawn in (self.drawn_lacks, self.drawn_doubt)
+        )
         for drive in self.topology.drives:
             place = layout.scalar(drive.coordinate)
             lacking[..., place], uncertainty[..., place] = drive.rounding(
                 y[..., place], self.drawing, 0.0 if laws is None else laws[drive.input]
             )
-        links = layout.size - len(layout.squared_lengths)
-        lacking[..., links:] = self.drawn_lacks[..., links:]
-        uncertainty[..., links:] = 256 * UNIT_ROUNDOFF**2 * y[..., links:]
         return lacking, uncertainty

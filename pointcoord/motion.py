@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.assembly import Pose
+from pointcoord.closing import Closing
 from pointcoord.errors import NotComputed, UnknownName
 from pointcoord.proof import Proof
 from pointcoord.work import Work
@@ -81,6 +82,7 @@ class Motion(Samples):
     Attributes:
         method: how it was solved: series, newton or printed.
         start: the assembled pose at the first instant, with its condition number and proven bound.
+        closing: how far the drawing's points moved to close.
         work: what it cost.
         notes: numbers that have no meaning, and why; empty if there are none.
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
@@ -91,6 +93,7 @@ class Motion(Samples):
 
     method: str
     start: Pose
+    closing: Closing
     work: Work
     notes: tuple[str, ...]
     unit: float

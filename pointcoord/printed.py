@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from pointcoord.instants import square_velocity_term
 from pointcoord.quadratic import QuadraticMap
-from pointcoord.suspensions.macpherson import MACPHERSON_PRINTED
+from pointcoord.suspensions.macpherson import PRINTED
 
 Array = NDArray[np.float64]
 
-_PARALLEL = [i for i, label in enumerate(MACPHERSON_PRINTED.labels) if "parallel" in label]
+_PARALLEL = [i for i, label in enumerate(PRINTED.labels) if "parallel" in label]
 
 
 def printed_square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:

@@ -56,7 +56,9 @@ class Readout:
                 omegas[body], alphas[body] = self.body_rates(
                     *({point: states[order][point] for point in points} for order in range(3))
                 )
-        angles = self._wheel_angles(states[0]) if "wheel_angles" in asked else None
+        angles = None
+        if "wheel_angles" in asked:
+            angles = wheel_angles(self.mechanism, states[0], self.outboard)
         times = times.copy()
         times.setflags(write=False)
         return Samples(
@@ -80,7 +82,8 @@ class Readout:
     @property
     def angle_lines(self) -> dict[str, tuple[str, str]]:
         """The line that each wheel angle is of, from point to point."""
-        return {"camber": ("strut_lower", "wheel_centre"), "kingpin": ("lower_ball_joint", "strut_lower")}
+        topology = self.mechanism.topology
+        return {"camber": topology.wheel_axis, "kingpin": topology.steering_axis}
 
     @property
     def angle_axes(self) -> dict[str, tuple[Array, Array]]:
@@ -88,12 +91,16 @@ class Readout:
         up = self.mechanism.drawing.vectors["up"]
         return {"camber": (up, self.outboard), "kingpin": (self.outboard, up)}
 
-    def _wheel_angles(self, position: Mapping[str, Array]) -> dict[str, Array]:
-        up, lower = self.mechanism.drawing.vectors["up"], position["strut_lower"]
-        return {
-            "camber": wheel.camber_angle(lower, position["wheel_centre"], up, self.outboard),
-            "kingpin": wheel.kingpin_angle(position["lower_ball_joint"], lower, up, self.outboard),
-        }
+
+def wheel_angles(mechanism: Mechanism, position: Mapping[str, Array], outboard: Array) -> dict[str, Array]:
+    """Camber and kingpin angle of poses, rad, from positions of shape (..., 3)."""
+    topology, up = mechanism.topology, mechanism.drawing.vectors["up"]
+    inner, centre = (position[name] for name in topology.wheel_axis)
+    lower, upper = (position[name] for name in topology.steering_axis)
+    return {
+        "camber": wheel.camber_angle(inner, centre, up, outboard),
+        "kingpin": wheel.kingpin_angle(lower, upper, up, outboard),
+    }
 
 
 def _added(states: Mapping[str, Array], offset: Array | None) -> Mapping[str, Array]:

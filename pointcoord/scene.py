@@ -22,6 +22,7 @@ from pointcoord.errors import PointcoordError, SceneError
 from pointcoord.faults import problem_of
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
 from pointcoord.suspensions import TOPOLOGIES
+from pointcoord.topology import Topology
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
@@ -38,9 +39,15 @@ class _Part(BaseModel):
 
 
 class MechanismPart(_Part):
-    """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes."""
+    """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes.
+
+    `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, `collinear`
+    puts the ball joint and the strut's points on one line, as the paper does. `points` has an entry for
+    rack_centre also where the file leaves it to the drawn tie_rod_inner.
+    """
 
     type: Literal["macpherson"]
+    closure: Literal["drawn", "collinear"] = "drawn"
     side: Literal["left", "right"] = "left"
     up: Vector = (0.0, 0.0, 1.0)
     right: Vector = (0.0, 1.0, 0.0)
@@ -49,14 +56,17 @@ class MechanismPart(_Part):
     @field_validator("points")
     @classmethod
     def _known_points(cls, points: dict[str, Vector]) -> dict[str, Vector]:
-        needed = TOPOLOGIES["macpherson"].points
-        extra = [name for name in points if name not in needed]
-        missing = [name for name in needed if name not in points]
+        topology = TOPOLOGIES["macpherson"]["drawn"]
+        extra = [name for name in points if name not in topology.points]
+        missing = [name for name in topology.required_points if name not in points]
         if extra:
-            raise ValueError(f"no point is called {extra[0]!r}; allowed: {', '.join(needed)}")
+            raise ValueError(f"no point is called {extra[0]!r}; allowed: {', '.join(topology.points)}")
         if missing:
-            raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(needed)}")
-        return points
+            needed = ", ".join(topology.required_points)
+            raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
+        standing = {name: points[other] for name, other in topology.stand_ins.items()}
+        taken = {name: place for name, place in standing.items() if name in topology.chassis}
+        return taken | points
 
     @model_validator(mode="after")
     def _orthonormal(self) -> Self:
@@ -67,6 +77,25 @@ class MechanismPart(_Part):
         if not worst <= 1e-12:
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
         return self
+
+    @model_validator(mode="after")
+    def _wheel_outboard(self) -> Self:
+        top, wheel = (np.array(self.points[name]) for name in ("strut_top", "wheel_centre"))
+        with np.errstate(over="ignore", invalid="ignore"):
+            inboard = float((top - wheel) @ self.outboard)
+        if inboard >= 0.0:
+            other = "right" if self.side == "left" else "left"
+            raise ValueError(
+                f"wheel_centre lies {inboard:.6g} mm inboard of strut_top for side = {self.side!r}; allowed: "
+                f"a wheel outboard of its strut top, here towards {'-' if self.side == 'left' else '+'}right "
+                f"{self.right}; check the signs of the points, or try side = {other!r}"
+            )
+        return self
+
+    @property
+    def topology(self) -> Topology:
+        """The linkage that its points are put on."""
+        return TOPOLOGIES[self.type][self.closure].given(self.points)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -176,7 +205,7 @@ class Scene(_Part):
 
     @model_validator(mode="after")
     def _inputs_fit(self) -> Self:
-        topology = TOPOLOGIES[self.mechanism.type]
+        topology = self.mechanism.topology
         for name in self.inputs:
             if name not in topology.inputs:
                 raise ValueError(f"no input is called {name!r}; allowed: {', '.join(topology.inputs)}")

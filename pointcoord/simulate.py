@@ -9,9 +9,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.assembly import Pose, assemble
+from pointcoord.assembly import Pose, assemble, close_drawing
 from pointcoord.chain import Chain, Settings, build_chain
 from pointcoord.chassis import ChassisMotion
+from pointcoord.closing import ALLOWED, Closing, closing
 from pointcoord.effects import plan_effects
 from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import (
@@ -72,9 +73,25 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
     _check_range(mechanism, functions, scene.instants)
     readout.chassis.states(scene.instants, readout.plan.derivative_of_points)
     first = scene.time.start
-    pose = assemble(mechanism, {name: f.series(first, 0)[..., 0] for name, f in functions.items()}, first)
+    path = close_drawing(mechanism, first)
+    moved = closing(mechanism, path.y)
+    _require_the_drawn_car(scene, moved)
+    start = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
+    pose = assemble(mechanism, start, first, path)
     solve = _by_series if method == "series" else _by_newton
-    return solve(scene, method, readout, functions, pose)
+    return solve(scene, method, readout, functions, pose, moved)
+
+
+def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
+    """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name."""
+    if scene.mechanism.closure == "drawn" and moved.changes_the_car:
+        raise SceneError(
+            scene.title or "scene",
+            "mechanism.points",
+            f"{moved.words}: that is another car",
+            f"at most {ALLOWED:.0%} of the car's size, {ALLOWED * moved.size:.3g} mm; draw the points that "
+            "miss where they belong, or ask for the paper's strut with closure = 'collinear'",
+        )
 
 
 def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
@@ -84,11 +101,21 @@ def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
         SceneError: its hardpoints do not make one.
     """
     part = scene.mechanism
-    topology = (PRINTED_TOPOLOGIES if printed else TOPOLOGIES)[part.type]
+    closures = (PRINTED_TOPOLOGIES if printed else TOPOLOGIES)[part.type]
+    source = scene.title or "scene"
+    if part.closure not in closures:
+        raise SceneError(
+            source,
+            "mechanism.closure",
+            f"the method 'printed' cannot solve closure = {part.closure!r}: the paper prints the strut with "
+            "its ball joint on the strut axis",
+            ", ".join(closures),
+        )
+    topology = closures[part.closure]
     try:
         return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
     except MechanismError as error:
-        raise SceneError(scene.title or "scene", "mechanism.points", error.problem) from error
+        raise SceneError(source, "mechanism.points", error.problem) from error
 
 
 def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
@@ -102,7 +129,12 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
 
 
 def _by_series(
-    scene: Scene, method: Method, readout: Readout, functions: Mapping[str, TimeFunction], pose: Pose
+    scene: Scene,
+    method: Method,
+    readout: Readout,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    moved: Closing,
 ) -> Motion:
     mechanism, plan, time = readout.mechanism, readout.plan, scene.time
     tolerance = TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit)
@@ -112,7 +144,9 @@ def _by_series(
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
         prover = _prover(readout, functions, sampler.coordinates, sampler.summed)
-        return _motion(sampler(instants), method, pose, work, sampler, prover, mechanism, sampler.term_sizes)
+        return _motion(
+            sampler(instants), method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes
+        )
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -124,7 +158,12 @@ def _by_series(
 
 
 def _by_newton(
-    scene: Scene, method: Method, readout: Readout, functions: Mapping[str, TimeFunction], pose: Pose
+    scene: Scene,
+    method: Method,
+    readout: Readout,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    moved: Closing,
 ) -> Motion:
     term = printed_square_velocity_term if method == "printed" else square_velocity_term
 
@@ -141,7 +180,7 @@ def _by_newton(
 
         prover = _prover(readout, functions, coordinates, lambda instants: ())
         cost = pose.work + solved.work + work
-        return _motion(samples, method, pose, cost, None, prover, readout.mechanism, tuple)
+        return _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
 
     try:
         solved = solve_instants(
@@ -189,6 +228,7 @@ def _motion(
     samples: Samples,
     method: Method,
     pose: Pose,
+    moved: Closing,
     work: Work,
     resample: Callable[[Array], Samples] | None,
     prover: Prover,
@@ -209,6 +249,7 @@ def _motion(
         **fields,
         method=method,
         start=pose,
+        closing=moved,
         work=work,
         notes=tuple(notes),
         unit=float(mechanism.unit),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.constraints import Constraint, Link, OnLine
+from pointcoord.constraints import Constraint
 from pointcoord.drives import Drive
 from pointcoord.layout import Layout
 from pointcoord.quadratic import QuadraticMap, quadratic_map
@@ -28,6 +28,9 @@ class Topology:
         directions: unit vectors that the chassis carries.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
+        steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
+        wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
+        stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
     """
 
@@ -39,12 +42,29 @@ class Topology:
     directions: tuple[str, ...]
     constraints: tuple[Constraint, ...]
     drives: tuple[Drive, ...]
+    steering_axis: tuple[str, str]
+    wheel_axis: tuple[str, str]
+    stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Every point that a car of this kind needs."""
+        """Every point that a car of this kind has."""
         return (*self.chassis, *self.moving, *self.carried)
+
+    @property
+    def required_points(self) -> tuple[str, ...]:
+        """Points that must be given."""
+        return tuple(name for name in self.points if name not in self.stand_ins)
+
+    def given(self, points: Collection[str]) -> Topology:
+        """The topology of a car that gives these points: what only rides on a body may be left out."""
+        left_out = {name for name in self.carried if name in self.stand_ins and name not in points}
+        if not left_out:
+            return self
+        inner, outer = (self.stand_ins[name] if name in left_out else name for name in self.wheel_axis)
+        riding = {name: carriers for name, carriers in self.carried.items() if name not in left_out}
+        return replace(self, carried=riding, wheel_axis=(inner, outer))
 
     @property
     def required_inputs(self) -> tuple[str, ...]:
@@ -80,19 +100,24 @@ class Topology:
     @cached_property
     def layout(self) -> Layout:
         """The order of the coordinates."""
-        slides = [c for c in self.constraints if isinstance(c, OnLine)]
-        links = [c for c in self.constraints if isinstance(c, Link)]
         return Layout(
             moving=self.moving,
-            ratios=tuple(slide.ratio for slide in slides),
+            ratios=tuple(name for c in self.constraints for name in c.slides),
             chassis=self.chassis,
             directions=self.directions,
             driven=tuple(drive.coordinate for drive in self.drives),
-            squared_lengths=tuple((link.start, link.end) for link in links),
+            squared_lengths=tuple(ends for c in self.constraints for ends in c.squared_lengths),
+            vectors=tuple(name for c in self.constraints for name in c.vectors),
+            constants=tuple(name for c in self.constraints for name in c.constants),
         )
 
     @cached_property
     def map(self) -> QuadraticMap:
         """All constraints as one quadratic map; the same for every car of this topology."""
-        rows = [row for constraint in self.constraints for row in constraint.rows(self.layout)]
-        return quadratic_map(rows, self.layout.unknowns, self.layout.size)
+        return _map(self.constraints, self.layout)
+
+
+@lru_cache(maxsize=64)
+def _map(constraints: tuple[Constraint, ...], layout: Layout) -> QuadraticMap:
+    rows = [row for constraint in constraints for row in constraint.rows(layout)]
+    return quadratic_map(rows, layout.unknowns, layout.size)

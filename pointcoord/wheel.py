@@ -12,20 +12,21 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def kingpin_angle(lower_ball_joint: Array, strut_lower: Array, up: Array, outboard: Array) -> Array:
+def kingpin_angle(lower: Array, upper: Array, up: Array, outboard: Array) -> Array:
     """Inclination of the steering axis in the transverse plane, paper eq. (16), shape (...,).
 
-    atan2((p7 - p5) . inboard, (p7 - p5) . up): positive when the axis leans inboard at the top.
+    atan2(k . inboard, k . up) with k from a lower point of the axis to an upper one: positive when the axis
+    leans inboard at the top.
     """
-    axis = strut_lower - lower_ball_joint
+    axis = upper - lower
     return np.asarray(np.arctan2(-(axis @ outboard), axis @ up))
 
 
-def camber_angle(strut_lower: Array, wheel_centre: Array, up: Array, outboard: Array) -> Array:
+def camber_angle(inner: Array, centre: Array, up: Array, outboard: Array) -> Array:
     """Inclination of the wheel plane in the transverse plane, paper eq. (17), shape (...,).
 
-    atan2((p7 - p10) . up, (p10 - p7) . outboard): positive when the wheel leans out at the top. The
-    line from point 7 to point 10 is the spin axis.
+    atan2(-(n . up), n . outboard) with n along the spin axis, from an inner point of it to the wheel's
+    centre: positive when the wheel leans out at the top.
     """
-    spindle = wheel_centre - strut_lower
+    spindle = centre - inner
     return np.asarray(np.arctan2(-(spindle @ up), spindle @ outboard))

@@ -17,7 +17,7 @@ from absolute.assembly import Mechanism
 from absolute.continuation import follow
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.rigid import body_rates
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
 from validate.deep_store import Store
 from validate.formulations import formulation
@@ -106,7 +106,7 @@ RECIPES: dict[str, Recipe] = {
         {"effect": "wheel_angles", "quantity": lambda name: "camber" in name},
     ),
     "pointcoord.errors.MechanismError": Recipe(
-        lambda *_: build_mechanism(MACPHERSON, {**TABLE, "strut_lower": TABLE["lower_ball_joint"]}, UPRIGHT),
+        lambda *_: build_mechanism(COLLINEAR, {**TABLE, "strut_lower": TABLE["lower_ball_joint"]}, UPRIGHT),
         ("link", "lower_ball_joint", "strut_lower", "no length", "move one"),
         {"names": lambda names: set(names) == {"lower_ball_joint", "strut_lower"}, "problem": bool},
     ),

@@ -57,12 +57,6 @@ def test_modules_of_a_package_form_layers(package: str) -> None:
             del below[name]
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_no_file_holds_two_ideas(package: str) -> None:
-    for path in (ROOT / package).rglob("*.py"):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= 300, path
-
-
 def test_pointcoord_works_without_pinocchio() -> None:
     program = (
         "import sys; sys.modules['pinocchio'] = None; sys.modules['absolute'] = None\n"

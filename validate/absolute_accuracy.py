@@ -2,8 +2,8 @@ r"""What the absolute model claims of its accuracy: its own estimates, and what 
 
 The model estimates the error of every point's and body's motion from what its equations are rounded from,
 and measures lengths from a place near the car. To this come the sum with that place, rounded by u of the
-result, and the chassis' displacement along `up`, u of it. An angle of a line a, seen along z = a . right + i a . up, is
-off by
+result, and the chassis' displacement along `up`, u of it. An angle of a line a, seen along
+z = a . right + i a . up, is off by
 
     |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
 

@@ -130,6 +130,7 @@ def _checked(
             "effects": [],
             "mechanism": {
                 "type": "macpherson",
+                "closure": "collinear",
                 "side": car.side,
                 "up": list(car.up),
                 "right": list(car.right),

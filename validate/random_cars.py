@@ -73,6 +73,7 @@ def random_car(number: int, samples: int = 3) -> RandomCar:
         "tolerance": 1e-9 * scale,
         "mechanism": {
             "type": "macpherson",
+            "closure": "collinear",
             "side": side,
             "up": up.tolist(),
             "right": right.tolist(),

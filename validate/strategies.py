@@ -102,6 +102,7 @@ def make_scene(
             "tolerance": tolerance,
             "mechanism": {
                 "type": "macpherson",
+                "closure": "collinear",
                 "side": side,
                 "up": list(up),
                 "right": list(right),

@@ -1,10 +1,10 @@
-"""The linkages that can be solved, by the name that a scene gives them."""
+"""The linkages that can be solved, by the name that a scene gives them and by how it closes its drawing."""
 
-from pointcoord.suspensions.macpherson import MACPHERSON, MACPHERSON_PRINTED
+from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN, PRINTED
 from pointcoord.topology import Topology
 
-TOPOLOGIES: dict[str, Topology] = {"macpherson": MACPHERSON}
-"""Each linkage with slides that have coordinates of their own."""
+TOPOLOGIES: dict[str, dict[str, Topology]] = {"macpherson": {"drawn": DRAWN, "collinear": COLLINEAR}}
+"""Each linkage by its closures: `drawn` takes the drawing as it stands, others put its points in place."""
 
-PRINTED_TOPOLOGIES: dict[str, Topology] = {"macpherson": MACPHERSON_PRINTED}
+PRINTED_TOPOLOGIES: dict[str, dict[str, Topology]] = {"macpherson": {"collinear": PRINTED}}
 """Each linkage with its constraints as a paper prints them."""

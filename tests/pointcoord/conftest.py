@@ -9,7 +9,7 @@ import pytest
 from pointcoord import Scene
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.mechanism import Mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.paper_car import PAPER, Points
 
 EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
@@ -24,7 +24,7 @@ def table() -> Points:
 @pytest.fixture(scope="session")
 def strut(table: Points) -> Mechanism:
     """The strut of table 1, axes x rearward, y right, z up."""
-    return build_mechanism(MACPHERSON, table, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
+    return build_mechanism(COLLINEAR, table, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
 
 
 @pytest.fixture(scope="session")
@@ -48,6 +48,7 @@ def make_scene(table: Points) -> Callable[..., Scene]:
         up: Any = (0.0, 0.0, 1.0),
         right: Any = (0.0, 1.0, 0.0),
         side: str = "left",
+        closure: str = "collinear",
     ) -> Scene:
         inputs = {"arm_angle": as_input(arm_angle), "rack": as_input(rack)}
         if heave is not None:
@@ -59,6 +60,7 @@ def make_scene(table: Points) -> Callable[..., Scene]:
                 "tolerance": tolerance,
                 "mechanism": {
                     "type": "macpherson",
+                    "closure": closure,
                     "side": side,
                     "points": located,
                     "up": tuple(np.asarray(up, float).tolist()),

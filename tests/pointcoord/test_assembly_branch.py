@@ -13,7 +13,7 @@ from pointcoord.assembly import Pose, assemble, follow, proven_step
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.linear import factorise
 from pointcoord.mechanism import Mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
@@ -176,10 +176,10 @@ def test_poses_of_a_batch_are_those_of_each(strut: Mechanism, values: list[tuple
 def test_batch_of_cars_is_assembled_like_each_of_them(table: Points) -> None:
     axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
     factors = np.array([0.5, 1.0, 3.0])
-    cars = build_mechanism(MACPHERSON, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
+    cars = build_mechanism(COLLINEAR, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
     batch = at(cars, 1.4, 0.0)
     for i, factor in enumerate(factors):
-        car = build_mechanism(MACPHERSON, {n: factor * np.array(p) for n, p in table.items()}, axes)
+        car = build_mechanism(COLLINEAR, {n: factor * np.array(p) for n, p in table.items()}, axes)
         alone = at(car, 1.4, 0.0)
         assert np.abs(batch.y[i] - alone.y).max() * car.unit <= batch.bound[i] + alone.bound
 
@@ -187,11 +187,11 @@ def test_batch_of_cars_is_assembled_like_each_of_them(table: Points) -> None:
 def test_batch_of_cars_of_which_one_cannot_be_assembled_names_its_inputs(table: Points) -> None:
     axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
     factors = np.array([1.0, 0.3])
-    cars = build_mechanism(MACPHERSON, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
+    cars = build_mechanism(COLLINEAR, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
     with pytest.raises(AssemblyError, match="bring 'rack' back") as caught:
         at(cars, np.pi / 2, 100.0)  # 100 mm are inside the range of the first car only
     assert caught.value.wanted["rack"] == pytest.approx(100.0, rel=1e-12)
-    small = build_mechanism(MACPHERSON, {n: factors[1] * np.array(p) for n, p in table.items()}, axes)
+    small = build_mechanism(COLLINEAR, {n: factors[1] * np.array(p) for n, p in table.items()}, axes)
     with pytest.raises(AssemblyError) as alone:
         at(small, np.pi / 2, 100.0)
     # Both walks stop within 1e-5 of the path of 100 mm from the end of the second car's range.

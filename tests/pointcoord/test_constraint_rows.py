@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord import constraints
+from pointcoord import body_axis, constraints
+from pointcoord.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
 from pointcoord.constraints import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
 from pointcoord.layout import Layout
 from pointcoord.quadratic import quadratic_map
@@ -17,6 +18,9 @@ Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2
 LARGEST = 4.0
 
+BODY = Normal("n", "a", "b", "c")
+AXIS = AxisInBody("axis", "a", "b", BODY)
+HELD = HeldOnAxis("c", "d", AXIS, "held")
 LAYOUT = Layout(
     moving=("a", "b", "c", "d"),
     ratios=("place",),
@@ -24,6 +28,8 @@ LAYOUT = Layout(
     directions=("e",),
     driven=("travel",),
     squared_lengths=(("a", "b"), ("a", "o")),
+    vectors=("n", "axis"),
+    constants=(*AXIS.constants, *HELD.constants),
 )
 
 
@@ -54,6 +60,19 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
     (OnLine("c", "o", "b", "place"), lambda p: p.c - p.o - p.scalar("place") * (p.b - p.o)),
     (Rack("a", "o", "e", "travel"), lambda p: p.a - p.o + p.scalar("travel") * p.e),
     (Rise("a", "o", "e", "travel"), lambda p: np.array([(p.a - p.o) @ p.e - p.scalar("travel")])),
+    (BODY, lambda p: p.n - np.cross(p.b - p.a, p.c - p.a)),
+    (
+        AXIS,
+        lambda p: (
+            p.axis
+            - p.scalar("axis along b") * (p.b - p.a)
+            - p.scalar("axis along c") * (p.c - p.a)
+            - p.scalar("axis along n") * p.n
+        ),
+    ),
+    (OnAxis("b", "a", "axis", "place"), lambda p: p.b - p.a - p.scalar("place") * p.axis),
+    (OnAxis("o", "a", "axis", "place"), lambda p: p.o - p.a - p.scalar("place") * p.axis),
+    (HELD, lambda p: p.c - p.d - p.scalar("held") * p.axis),
     (
         PrintedParallel("a", "b", "c", "d"),
         # x component as it is; the second row is minus the y component of the cross product
@@ -78,8 +97,9 @@ def states() -> st.SearchStrategy[Array]:
 def test_every_kind_of_constraint_takes_part_in_the_properties_below() -> None:
     kinds = {
         item
-        for item in vars(constraints).values()
-        if isinstance(item, type) and item.__module__ == constraints.__name__ and item is not Constraint
+        for module in (constraints, body_axis)
+        for item in vars(module).values()
+        if isinstance(item, type) and item.__module__ == module.__name__ and item is not Constraint
     }
     assert {type(constraint) for constraint, _ in CASES} == kinds
 

@@ -12,12 +12,14 @@ from pointcoord import NotComputed, Scene, UnknownName, assembly, newton, simula
 from pointcoord.effects import EFFECTS, plan_effects
 from pointcoord.linear import Factors, factorise
 from pointcoord.states import Sampler
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.paper_car import PAPER
 
 SUBSETS = list(chain.from_iterable(combinations(EFFECTS, n) for n in range(len(EFFECTS) + 1)))
 SAMPLES = 7
-MOVING = len(MACPHERSON.moving) + len(MACPHERSON.carried)
-KNUCKLE = len(MACPHERSON.bodies["knuckle"])
+POINTS = COLLINEAR.given(PAPER).points
+MOVING = len(POINTS) - len(COLLINEAR.chassis)
+KNUCKLE = len(COLLINEAR.bodies["knuckle"])
 NEEDED = {"velocity": 1, "acceleration": 2, "knuckle_rates": 2, "wheel_angles": 0}
 READ = {
     "velocity": lambda m: m.velocity["wheel_centre"],
@@ -42,7 +44,7 @@ def test_only_the_derivatives_that_are_asked_for_are_evaluated(
     everything = of_every_point(effects)
     assert motion.work.derivatives_evaluated == highest + 1
     # Positions always; then each derivative of every point, or of the knuckle's three points only.
-    points = MOVING if method == "series" else len(MACPHERSON.points)
+    points = MOVING if method == "series" else len(POINTS)
     wanted = 3 * points * (everything + 1)
     more = 3 * KNUCKLE * (highest - everything)
     # One product gives all derivatives of a group of points, so the series sum the knuckle's from position.

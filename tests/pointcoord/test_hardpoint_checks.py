@@ -14,16 +14,16 @@ from pointcoord.constraints import Link
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.linear import null_directions
 from pointcoord.mechanism import Mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from pointcoord.topology import Topology
 
 Points = dict[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-LINKS = [c for c in MACPHERSON.constraints if isinstance(c, Link)]
+LINKS = [c for c in COLLINEAR.constraints if isinstance(c, Link)]
 
 
 def without(*left_out: Link) -> Topology:
-    return replace(MACPHERSON, constraints=tuple(c for c in MACPHERSON.constraints if c not in left_out))
+    return replace(COLLINEAR, constraints=tuple(c for c in COLLINEAR.constraints if c not in left_out))
 
 
 def doubled(topology: Topology, link: Link) -> Topology:
@@ -38,11 +38,11 @@ def test_missing_link_is_under_determined_and_the_free_coordinates_are_named(
     with pytest.raises(MechanismError, match=r"under-determined: 17 unknowns, 16 equations; free") as caught:
         build_mechanism(topology, table, AXES)
     # An own null space from the drawing: with that row gone exactly one direction is free.
-    whole = build_mechanism(MACPHERSON, table, AXES)
-    row = MACPHERSON.labels.index(link.labels[0])
+    whole = build_mechanism(COLLINEAR, table, AXES)
+    row = COLLINEAR.labels.index(link.labels[0])
     jacobian = np.delete(whole.map.jacobian(whole.drawn), row, axis=0)
     free = np.abs(np.linalg.svd(jacobian)[2][-1])
-    moving = {MACPHERSON.layout.describe(i) for i in np.flatnonzero(free > 0.1 * free.max())}
+    moving = {COLLINEAR.layout.describe(i) for i in np.flatnonzero(free > 0.1 * free.max())}
     assert set(caught.value.names) == moving
     assert all(name in str(caught.value) for name in moving)
 
@@ -57,7 +57,7 @@ def test_without_the_tie_rod_the_knuckle_is_free_to_turn_and_the_arm_is_not(tabl
 
 @pytest.mark.parametrize("link", LINKS, ids=lambda link: link.labels[0])
 def test_doubled_link_is_over_determined_and_both_rows_are_named(table: Points, link: Link) -> None:
-    topology = doubled(MACPHERSON, link)
+    topology = doubled(COLLINEAR, link)
     with pytest.raises(MechanismError, match=r"over-determined: 17 unknowns, 18 equations") as caught:
         build_mechanism(topology, table, AXES)
     assert set(caught.value.names) == {f"link {link.start} - {link.end}", f"link {link.end} - {link.start}"}
@@ -82,7 +82,7 @@ def test_drawn_mechanism_of_the_paper_is_determined(strut: Mechanism) -> None:
 def test_link_without_length_is_refused_by_name(table: Points, link: Link) -> None:
     points = table | {link.start: table[link.end]}
     with pytest.raises(MechanismError, match="has no length") as caught:
-        build_mechanism(MACPHERSON, points, AXES)
+        build_mechanism(COLLINEAR, points, AXES)
     assert {link.start, link.end} == set(caught.value.names)
 
 
@@ -90,39 +90,39 @@ def test_link_without_length_is_refused_by_name(table: Points, link: Link) -> No
 @pytest.mark.parametrize("name", ["strut_top", "tie_rod_outer", "wheel_centre"])
 def test_number_that_is_not_finite_is_refused_by_name(table: Points, name: str, bad: float) -> None:
     with pytest.raises(MechanismError, match=f"point '{name}'.*three finite numbers") as caught:
-        build_mechanism(MACPHERSON, table | {name: (1.0, bad, 2.0)}, AXES)
+        build_mechanism(COLLINEAR, table | {name: (1.0, bad, 2.0)}, AXES)
     assert caught.value.names == (name,)
 
 
 def test_point_with_two_coordinates_is_refused_by_name(table: Points) -> None:
     with pytest.raises(MechanismError, match=r"point 'strut_top'.*three finite numbers"):
-        build_mechanism(MACPHERSON, {**table, "strut_top": (1.0, 2.0)}, AXES)
+        build_mechanism(COLLINEAR, {**table, "strut_top": (1.0, 2.0)}, AXES)
 
 
-@pytest.mark.parametrize("name", MACPHERSON.points)
+@pytest.mark.parametrize("name", COLLINEAR.required_points)
 def test_missing_point_is_refused_by_name(table: Points, name: str) -> None:
     points = {other: place for other, place in table.items() if other != name}
     with pytest.raises(MechanismError, match=f"point '{name}' is missing; needed: .*strut_top"):
-        build_mechanism(MACPHERSON, points, AXES)
+        build_mechanism(COLLINEAR, points, AXES)
 
 
 def test_missing_and_unknown_directions_are_refused_by_name(table: Points) -> None:
     with pytest.raises(MechanismError, match="direction 'right' is missing"):
-        build_mechanism(MACPHERSON, table, {"up": AXES["up"]})
+        build_mechanism(COLLINEAR, table, {"up": AXES["up"]})
     with pytest.raises(UnknownName, match=r"direction.*'forward'.*up, right"):
-        build_mechanism(MACPHERSON, table, AXES | {"forward": (1.0, 0.0, 0.0)})
+        build_mechanism(COLLINEAR, table, AXES | {"forward": (1.0, 0.0, 0.0)})
 
 
 def test_unknown_point_is_refused_with_the_names_that_exist(table: Points) -> None:
     with pytest.raises(UnknownName, match="did you mean 'strut_top'") as caught:
-        build_mechanism(MACPHERSON, {**table, "strut_topp": (0.0, 0.0, 0.0)}, AXES)
-    assert set(caught.value.valid) == set(MACPHERSON.points)
+        build_mechanism(COLLINEAR, {**table, "strut_topp": (0.0, 0.0, 0.0)}, AXES)
+    assert set(caught.value.valid) == set(COLLINEAR.points)
 
 
 def test_carriers_in_line_are_refused_by_name(table: Points) -> None:
     lower, upper = (np.array(table[name]) for name in ("lower_ball_joint", "strut_lower"))
     with pytest.raises(MechanismError, match="in one line, so they cannot carry wheel_centre") as caught:
-        build_mechanism(MACPHERSON, table | {"tie_rod_outer": tuple(lower + 4.0 * (upper - lower))}, AXES)
+        build_mechanism(COLLINEAR, table | {"tie_rod_outer": tuple(lower + 4.0 * (upper - lower))}, AXES)
     assert set(caught.value.names) == {"lower_ball_joint", "tie_rod_outer", "strut_lower"}
 
 
@@ -130,7 +130,7 @@ def test_carriers_in_line_are_refused_by_name(table: Points) -> None:
 def test_car_without_a_usable_size_is_refused(table: Points, size: float) -> None:
     points = {name: tuple(size * np.sign(place)) for name, place in table.items()}
     with pytest.raises(MechanismError, match="the points span"):
-        build_mechanism(MACPHERSON, points, AXES)
+        build_mechanism(COLLINEAR, points, AXES)
 
 
 far = st.floats(-1e12, 1e12, allow_subnormal=False)
@@ -145,7 +145,7 @@ def test_origin_and_size_are_taken_off_without_rounding(
     # What the user gives is rounded at its distance; from there on nothing is lost.
     points = {name: np.array(p) + rng.normal(size=3) + np.array(shift) for name, p in table.items()}
     try:
-        mechanism = build_mechanism(MACPHERSON, points, AXES)
+        mechanism = build_mechanism(COLLINEAR, points, AXES)
     except MechanismError:
         # so far out that rounding has put two points together or in line
         assert max(abs(s) for s in shift) > 1e11
@@ -209,10 +209,10 @@ def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
 def test_batch_of_cars_is_each_of_them(table: Points) -> None:
     factors = np.array([0.5, 1.0, 3.0])
     batch = build_mechanism(
-        MACPHERSON, {name: factors[:, None] * np.array(p) for name, p in table.items()}, AXES
+        COLLINEAR, {name: factors[:, None] * np.array(p) for name, p in table.items()}, AXES
     )
     for i, factor in enumerate(factors):
-        one = build_mechanism(MACPHERSON, {name: factor * np.array(p) for name, p in table.items()}, AXES)
+        one = build_mechanism(COLLINEAR, {name: factor * np.array(p) for name, p in table.items()}, AXES)
         assert np.array_equal(batch.drawn[i], one.drawn)
         assert np.array_equal(batch.origin[i], one.origin)
         assert batch.unit[i] == one.unit

@@ -11,7 +11,12 @@ from pointcoord.mechanism import Mechanism
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
 from pointcoord.topology import Topology
 
-EVERY = [*TOPOLOGIES.values(), *PRINTED_TOPOLOGIES.values()]
+EVERY = [
+    topology
+    for kinds in (TOPOLOGIES, PRINTED_TOPOLOGIES)
+    for closures in kinds.values()
+    for topology in closures.values()
+]
 by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topology.name)
 
 
@@ -19,9 +24,9 @@ by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topolo
 def test_every_index_of_the_coordinates_is_used_once(topology: Topology) -> None:
     layout = topology.layout
     used = [layout.zero, layout.one]
-    for name in (*layout.moving, *layout.chassis, *layout.directions):
+    for name in (*layout.moving, *layout.vectors, *layout.chassis, *layout.directions):
         used += layout.vector(name)
-    used += [layout.scalar(name) for name in (*layout.ratios, *layout.driven)]
+    used += [layout.scalar(name) for name in (*layout.ratios, *layout.driven, *layout.constants)]
     used += [layout.squared_length(*link) for link in layout.squared_lengths]
     assert sorted(used) == list(range(layout.size))
 
@@ -29,9 +34,8 @@ def test_every_index_of_the_coordinates_is_used_once(topology: Topology) -> None
 @by_name
 def test_unknown_coordinates_come_first(topology: Topology) -> None:
     layout = topology.layout
-    first = {i for name in layout.moving for i in layout.vector(name)} | {
-        layout.scalar(n) for n in layout.ratios
-    }
+    vectors = {i for name in (*layout.moving, *layout.vectors) for i in layout.vector(name)}
+    first = vectors | {layout.scalar(name) for name in layout.ratios}
     assert first == set(range(layout.unknowns))
 
 
@@ -40,7 +44,7 @@ def test_every_unknown_has_a_name_of_its_own(topology: Topology) -> None:
     layout = topology.layout
     names = [layout.describe(i) for i in range(layout.unknowns)]
     assert len(set(names)) == layout.unknowns
-    for name in layout.moving:
+    for name in (*layout.moving, *layout.vectors):
         assert [names[i] for i in layout.vector(name)] == [f"{axis} of {name}" for axis in "xyz"]
     for name in layout.ratios:
         assert names[layout.scalar(name)] == name
@@ -91,7 +95,7 @@ def test_unknown_name_raises_with_the_names_that_exist(
 
 
 def test_unknown_link_raises_with_the_links_that_exist() -> None:
-    layout = TOPOLOGIES["macpherson"].layout
+    layout = TOPOLOGIES["macpherson"]["drawn"].layout
     with pytest.raises(UnknownName, match="tie_rod_inner"):
         layout.squared_length("strut_top", "wheel_centre")
 

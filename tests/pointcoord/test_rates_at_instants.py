@@ -15,7 +15,7 @@ from pointcoord.instants import square_velocity_term
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import polish
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
-from pointcoord.suspensions.macpherson import MACPHERSON, MACPHERSON_PRINTED
+from pointcoord.suspensions.macpherson import COLLINEAR, PRINTED
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
@@ -33,8 +33,8 @@ def quarter_turn(vector: Array) -> Array:
 def cars(points: dict[str, Array], up: Array, right: Array) -> dict[str, Mechanism]:
     axes = {"up": up, "right": right}
     return {
-        "slide": build_mechanism(MACPHERSON, points, axes),
-        "printed": build_mechanism(MACPHERSON_PRINTED, points, axes),
+        "slide": build_mechanism(COLLINEAR, points, axes),
+        "printed": build_mechanism(PRINTED, points, axes),
     }
 
 
@@ -91,10 +91,10 @@ def test_square_velocity_term_is_the_second_difference_of_the_constraints(strut:
 
 
 def test_printed_term_differs_in_the_rows_of_the_strut_only(table: Points) -> None:
-    system = MACPHERSON_PRINTED.map
+    system = PRINTED.map
     v = np.random.default_rng(2).normal(size=system.size)
     true, printed = square_velocity_term(system, v), printed_square_velocity_term(system, v)
-    strut_rows = [i for i, label in enumerate(MACPHERSON_PRINTED.labels) if "parallel" in label]
+    strut_rows = [i for i, label in enumerate(PRINTED.labels) if "parallel" in label]
     others = [i for i in range(len(true)) if i not in strut_rows]
     assert np.array_equal(printed[others], true[others])
     assert np.array_equal(printed[strut_rows[:3]], true[strut_rows[:3]] / 2)
@@ -130,8 +130,8 @@ def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not
             points[name][:2] = points["lower_ball_joint"][:2]
         turned = {name: quarter_turn(p) for name, p in points.items()}
         up, right = quarter_turn([0.0, 0.0, 1.0]), quarter_turn([0.0, 1.0, 0.0])
-        flat = build_mechanism(MACPHERSON, turned, {"up": up, "right": right})
-        upright = build_mechanism(MACPHERSON, points, {"up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]})
+        flat = build_mechanism(COLLINEAR, turned, {"up": up, "right": right})
+        upright = build_mechanism(COLLINEAR, points, {"up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]})
         y, tolerance = flat.drawn, 0.0
     else:
         # The assembled strut of the paper, turned about x until its axis has no z component.
@@ -140,13 +140,13 @@ def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not
         c, s = np.array([axis[1], -axis[2]]) / np.hypot(axis[1], axis[2])
         about = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
         turned = {name: about @ p for name, p in points.items()}
-        flat = build_mechanism(MACPHERSON, turned, {"up": about[:, 2], "right": about[:, 1]})
+        flat = build_mechanism(COLLINEAR, turned, {"up": about[:, 2], "right": about[:, 1]})
         pose = pose_of(flat)
         # The axis is flat up to the rounding of the turn and of the pose.
         y, tolerance = pose.y, 16 * EPS + 4 * float(pose.bound / flat.unit)
     shape = replace(
-        MACPHERSON_PRINTED,
-        constraints=tuple(c for c in MACPHERSON_PRINTED.constraints if isinstance(c, PrintedParallel)),
+        PRINTED,
+        constraints=tuple(c for c in PRINTED.constraints if isinstance(c, PrintedParallel)),
     )
     z = np.zeros(shape.layout.size)
     for name in (*shape.moving, *shape.chassis):

@@ -10,7 +10,7 @@ import pytest
 
 from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
 from pointcoord.effects import EFFECTS
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 
 POINTS = "\n".join(
     f"{name} = {place}"
@@ -203,13 +203,13 @@ def test_built_in_scene_loads_and_moves_with_all_its_effects(name: str) -> None:
     scene = Scene.load(name)
     motion = simulate(scene)
     assert len(motion.times) == scene.time.samples
-    for point in MACPHERSON.points:
+    for point in scene.mechanism.topology.points:
         assert np.isfinite(motion.position[point]).all()
     # Within the tolerance of the scene and the bound of its rounding of Newton's poses.
     newton = simulate(scene, "newton")
     proof = newton.proof()
     assert np.isfinite(proof.bound).all()
-    for point in MACPHERSON.moving:
+    for point in COLLINEAR.moving:
         gap = np.abs(motion.position[point] - newton.position[point]).max(axis=-1)
         assert (gap <= scene.tolerance + 4 * proof.bound).all()
 

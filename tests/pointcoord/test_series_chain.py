@@ -15,7 +15,7 @@ from pointcoord.hardpoints import build_mechanism
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
 from pointcoord.mechanism import Mechanism
 from pointcoord.summation import evaluate
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from pointcoord.work import Work
 
 Array = NDArray[np.float64]
@@ -227,12 +227,12 @@ def test_batch_of_cars_shares_its_segments_and_moves_as_each(table: dict[str, tu
     shifts = np.array([0.0, 3.0, -5.0])
     points = {name: np.array([p] * 3, dtype=float) for name, p in table.items()}
     points["strut_top"][:, 1] += shifts
-    cars = build_mechanism(MACPHERSON, points, axes)
+    cars = build_mechanism(COLLINEAR, points, axes)
     batch = chain_of(cars, BOUNCE, 1e-9)
     instants = np.linspace(0.0, 2.0, 7)
     together = evaluate(batch, [s.coefficients for s in batch.segments], instants, 2)
     for i in range(3):
-        car = build_mechanism(MACPHERSON, {name: p[i] for name, p in points.items()}, axes)
+        car = build_mechanism(COLLINEAR, {name: p[i] for name, p in points.items()}, axes)
         alone = chain_of(car, BOUNCE, 1e-9)
         values = evaluate(alone, [s.coefficients for s in alone.segments], instants, 2)
         # Both chains keep the tolerance, relative to the size of each derivative.

@@ -21,13 +21,14 @@ unknowns = st.lists(fractions, min_size=SIZE, max_size=SIZE)
 
 
 def known_numbers(numbers: list[Fraction]) -> Known:
-    """A set of given quantities filled from a list of 30 fractions."""
+    """A set of given quantities filled from a list of 27 fractions."""
     take = iter(numbers)
 
     def vector() -> tuple[Fraction, Fraction, Fraction]:
         return next(take), next(take), next(take)
 
-    return Known({n: vector() for n in CHASSIS}, vector(), vector(), {k: next(take) for k in LINKS}, *take)
+    chassis, up, right = {n: vector() for n in CHASSIS}, vector(), vector()
+    return Known("collinear", chassis, up, right, {k: next(take) for k in LINKS}, *take, knuckle={})
 
 
 knowns = st.lists(fractions, min_size=27, max_size=27).map(known_numbers)

@@ -11,7 +11,7 @@ from pointcoord import MechanismError
 from pointcoord.assembly import assemble
 from pointcoord.errors import AssemblyError
 from pointcoord.hardpoints import build_mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.hard import contradictions
 from validate.hard.case import unexpected
 from validate.hard.contradictions import CASES, ROD, at_drawing, longest_rod, second_pivot, with_rod
@@ -31,7 +31,7 @@ def test_what_contradicts_itself_is_refused(name: str) -> None:
 @pytest.mark.parametrize("share", [1.0, 1e-3, 1e-6])
 def test_a_third_link_of_a_moving_arm_would_have_to_change_its_length(share: float) -> None:
     points = second_pivot(share)
-    mechanism = build_mechanism(MACPHERSON, assembled(), AXES)
+    mechanism = build_mechanism(COLLINEAR, assembled(), AXES)
     lengths = []
     for turn in (0.0, 0.1):
         pose = assemble(mechanism, {"arm_angle": np.array(drawn_angle() + turn), "rack": np.array(0.0)})

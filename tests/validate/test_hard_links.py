@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError, Scene
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.formulations import formulation
 from validate.hard import links, numbers
 from validate.hard.case import REFUSED, unexpected
@@ -35,7 +35,7 @@ def test_what_is_free_without_a_link_belongs_to_its_points(number: float) -> Non
     answer = next(a for a in trial.answers if a.formulation == "pointcoord")
     assert answer.outcome == "refused"
     ends = str(trial.facts["link"]).removeprefix("link ").split(" - ")
-    moving = [end for end in ends if end in MACPHERSON.moving]
+    moving = [end for end in ends if end in COLLINEAR.moving]
     assert any(f"{axis} of {end}" in answer.reason for end in moving for axis in "xyz")
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import KNUCKLE
 from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
 from validate.hard.case import FAILS, RIGHT, Case
 from validate.hard.content import SQUARE, paper_car
@@ -62,7 +62,7 @@ def _steered(value: float) -> dict[str, Any]:
 def across_the_plane(arm_angle: float) -> float:
     """Sine of the angle of the true omega with the plane of the knuckle's points; the rack is held."""
     pose = solve_truth(PAPER_CAR.points, {"arm_angle": (arm_angle, 1, 0), "rack": (0, 0, 0)})
-    first, second, third = (np.array(pose.position_as_float(name)) for name in MACPHERSON.bodies["knuckle"])
+    first, second, third = (np.array(pose.position_as_float(name)) for name in KNUCKLE)
     normal = np.cross(second - first, third - first)
     omega = np.array([float(x) for x in pose.angular_velocity["knuckle"]])
     return float(omega @ normal) / float(np.linalg.norm(omega) * np.linalg.norm(normal))

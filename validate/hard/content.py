@@ -49,6 +49,7 @@ def paper_car(
         "tolerance": tolerance,
         "mechanism": {
             "type": "macpherson",
+            "closure": "collinear",
             "side": side,
             "up": [float(x) for x in up],
             "right": [float(x) for x in right],

@@ -20,7 +20,7 @@ from pointcoord.drives import ArmAngle
 from pointcoord.errors import AssemblyError, PointcoordError
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.mechanism import Mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from pointcoord.topology import Topology
 from validate.hard.case import REFUSED, Answer, Case, Expected, Trial
 from validate.hard.content import decades
@@ -46,9 +46,9 @@ def driven_twice(gap: float) -> Trial:
     second = ArmAngle("arm rise again", "arm_angle_again", "lower_arm_front", "lower_ball_joint", "up")
     row = Rise("lower_ball_joint", "lower_arm_front", "up", "arm rise again")
     topology = replace(
-        MACPHERSON,
-        constraints=(*MACPHERSON.constraints, row),
-        drives=(*MACPHERSON.drives, second),
+        COLLINEAR,
+        constraints=(*COLLINEAR.constraints, row),
+        drives=(*COLLINEAR.drives, second),
     )
 
     def again() -> Model:
@@ -69,12 +69,12 @@ def second_pivot(share: float) -> dict[str, Array]:
 
 def three_links(driven: bool) -> Topology:
     """The arm on three links; driven, or held by the third instead."""
-    kept = tuple(c for c in MACPHERSON.constraints if driven or not isinstance(c, Rise))
+    kept = tuple(c for c in COLLINEAR.constraints if driven or not isinstance(c, Rise))
     return replace(
-        MACPHERSON,
-        chassis=(*MACPHERSON.chassis, "second_pivot"),
+        COLLINEAR,
+        chassis=(*COLLINEAR.chassis, "second_pivot"),
         constraints=(*kept, THIRD),
-        drives=tuple(d for d in MACPHERSON.drives if driven or d.input != "arm_angle"),
+        drives=tuple(d for d in COLLINEAR.drives if driven or d.input != "arm_angle"),
     )
 
 
@@ -159,7 +159,7 @@ def longest_rod() -> float:
 
 def with_rod(length: float) -> Mechanism:
     """The assembled car, its tie rod made another length, mm, after it was drawn."""
-    mechanism = build_mechanism(MACPHERSON, assembled(), AXES)
+    mechanism = build_mechanism(COLLINEAR, assembled(), AXES)
     place = mechanism.layout.squared_length(*ROD)
     drawn, lacks = mechanism.drawn.copy(), mechanism.drawn_lacks.copy()
     drawn[..., place], lacks[..., place] = (length / float(mechanism.unit)) ** 2, 0.0

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from pointcoord import MechanismError
 from pointcoord.constraints import Constraint, Link
 from pointcoord.hardpoints import build_mechanism
-from pointcoord.suspensions.macpherson import MACPHERSON
+from pointcoord.suspensions.macpherson import COLLINEAR
 from pointcoord.topology import Topology
 from validate.hard.case import REFUSED, Answer, Case, Trial
 from validate.hard.near_points import drawn_angle
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 GROUP = "10. Links and numbers that make no mechanism"
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-LINKS = tuple(c for c in MACPHERSON.constraints if isinstance(c, Link))
+LINKS = tuple(c for c in COLLINEAR.constraints if isinstance(c, Link))
 JOINTS = (
     "arm_pivot",
     "strut",
@@ -53,7 +53,7 @@ NUMBERS = tuple(float(n) for n in range(1, len(LINKS) + 1))
 
 def with_constraints(change: Callable[[tuple[Constraint, ...]], tuple[Constraint, ...]]) -> Topology:
     """The strut with other constraints."""
-    return replace(MACPHERSON, constraints=change(MACPHERSON.constraints))
+    return replace(COLLINEAR, constraints=change(COLLINEAR.constraints))
 
 
 def twice(link: Link) -> Link:
@@ -124,9 +124,7 @@ def missing(number: float) -> Trial:
 
     topology = with_constraints(lambda all_: tuple(c for c in all_ if c != link))
     # All else held, what can move violates the link that is gone, so that one of its ends moves.
-    free = {
-        f"{axis} of {end}" for axis in "xyz" for end in (link.start, link.end) if end in MACPHERSON.moving
-    }
+    free = {f"{axis} of {end}" for axis in "xyz" for end in (link.start, link.end) if end in COLLINEAR.moving}
     return Trial(
         number,
         (by_pointcoord(topology, set(), free), by_absolute(without)),

@@ -1,4 +1,4 @@
-"""The truth: the paper's equations in many digits, with a proof of every one.
+"""The truth: the equations of both struts in many digits, with a proof of every one.
 
 Third and independent: it shares no code with the formulations it judges. Where the project says
 "error" it means the distance from these numbers.
@@ -7,6 +7,8 @@ Third and independent: it shares no code with the formulations it judges. Where 
 from validate.truth.assemblies import Assemblies as Assemblies
 from validate.truth.assemblies import count_assemblies as count_assemblies
 from validate.truth.branches import Choices as Choices
+from validate.truth.drawing import ClosedDrawing as ClosedDrawing
+from validate.truth.drawing import closed_drawing as closed_drawing
 from validate.truth.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
 from validate.truth.errors import BadInputError as BadInputError
 from validate.truth.errors import InfeasibleError as InfeasibleError

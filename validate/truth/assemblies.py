@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from flint import arb
 
 from validate.truth.branches import every_candidate
+from validate.truth.closures import equations_for
 from validate.truth.design import Design, Driven, values_only
-from validate.truth.equations import MU, SIZE, Known, jacobian, residual
+from validate.truth.equations import Known
 from validate.truth.errors import BadInputError, InfeasibleError, SingularPoseError
 from validate.truth.instant import Instant, prove_instant
 from validate.truth.solve import Points, with_enough_digits
@@ -31,7 +32,7 @@ class Assemblies:
 
     Attributes:
         found: distinct assemblies, each with its proof: there are at least so many.
-        possible: how many combinations of the four choices are proven feasible: exactly so many exist.
+        possible: how many combinations of the choices are proven feasible: exactly so many exist.
         starts: random starts tried.
         converged: starts that settled on a zero.
     """
@@ -57,6 +58,7 @@ def count_assemblies(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
+    closure: str = "collinear",
 ) -> Assemblies:
     """Search the assemblies of a pose from random starts and prove each find.
 
@@ -65,7 +67,7 @@ def count_assemblies(
     two numbers check each other.
 
     Args:
-        points: as for `solve_truth`, mm; also up, right, side, digits.
+        points: as for `solve_truth`, mm; also up, right, side, digits, closure.
         inputs: as for `solve_truth`.
         starts: number of random starts.
         seed: of the random numbers.
@@ -75,7 +77,7 @@ def count_assemblies(
     """
     if starts < 1:
         raise BadInputError("starts", starts, "at least 1")
-    design = Design.from_points(points, up, right, side)
+    design = Design.from_points(points, up, right, side, closure)
     driven = Driven.from_mapping(inputs)
     ends = _search(_as_floats(design, driven), starts, np.random.default_rng(seed))
 
@@ -98,33 +100,33 @@ def count_assemblies(
 
 
 def _search(known: Known, starts: int, random: np.random.Generator) -> list[Floats]:
-    """Newton's method in float64 from all starts at once; the unknowns (17,) of those that settle."""
+    """Newton's method in float64 from all starts at once; the unknowns of those that settle."""
+    equations = equations_for(known.closure)
+    points = equations.COORDINATES
     corners = np.array(list(known.chassis.values()))
     reach = sum(float(squared) ** 0.5 for squared in known.squared_length.values())
-    unknown = random.uniform(-1.0, 1.0, (SIZE, starts))
-    unknown[:MU] *= 0.5 * reach
-    unknown[:MU] += np.tile(corners.mean(axis=0), MU // 3)[:, None]
-    unknown[MU:] *= 2.0  # the ratios of an assembly are of order one
+    unknown = random.uniform(-1.0, 1.0, (equations.SIZE, starts))
+    unknown[:points] *= 0.5 * reach
+    unknown[:points] += np.tile(corners.mean(axis=0), points // 3)[:, None]
+    unknown[points:] *= 2.0  # ratios and direction cosines of an assembly are of order one
     ends: list[Floats] = []
     for _ in range(STEPS):
-        if unknown.shape[1] == 0:
-            break
         step = _newton_step(unknown, known)
         size = np.abs(step).max(axis=0)
         unknown = unknown - step * np.minimum(1.0, LARGEST_STEP / np.maximum(size, 1e-300))
         settled = size < SETTLED
         ends.extend(unknown[:, settled].T)
         unknown = unknown[:, ~settled & np.isfinite(size)]
-    return ends
+    return [end for end in ends if equations.handedness(list(end)) > 0]
 
 
 def _newton_step(unknown: Floats, known: Known) -> Floats:
-    """C'^-1 C for a batch of unknowns, shape (17, starts)."""
-    starts = unknown.shape[1]
-    rows = np.array([np.broadcast_to(row, starts) for row in residual(list(unknown), known)])
+    """C'^-1 C for a batch of unknowns, shape (n, starts)."""
+    equations, starts = equations_for(known.closure), unknown.shape[1]
+    rows = np.array([np.broadcast_to(row, starts) for row in equations.residual(list(unknown), known)])
     # A shift far below the accuracy asked for: an exactly singular matrix must not stop the batch.
-    matrix = np.tile(1e-14 * np.eye(SIZE), (starts, 1, 1))
-    for row, column, entry in jacobian(list(unknown), known):
+    matrix = np.tile(1e-14 * np.eye(equations.SIZE), (starts, 1, 1))
+    for row, column, entry in equations.jacobian(list(unknown), known):
         matrix[:, row, column] += entry
     step: Floats = np.linalg.solve(matrix, rows.T[:, :, None])[:, :, 0].T
     return step
@@ -163,11 +165,13 @@ def _as_floats(design: Design, driven: Driven) -> Known:
     def floats(vector: Vector) -> Vector:
         return float(vector[0]), float(vector[1]), float(vector[2])
 
-    return Known(
+    return replace(
+        known,
         chassis={n: floats(p) for n, p in known.chassis.items()},
         up=floats(known.up),
         right=floats(known.right),
         squared_length={link: float(squared) for link, squared in known.squared_length.items()},
         arm_height=float(known.arm_height),
         rack=float(known.rack),
+        knuckle={n: floats(numbers) for n, numbers in known.knuckle.items()},
     )

@@ -17,9 +17,11 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx
 
-from validate.truth.equations import LAMBDA, MU, SIZE, Known, jacobian, points_of, residual, strut_ratios
+from validate.truth.closures import equations_for
+from validate.truth.equations import CHASSIS, Known
 from validate.truth.errors import NotDecidedError
 from validate.truth.exact import as_ball
+from validate.truth.vectors import plus
 
 MOST_STEPS = 60  # quadratic convergence needs 5 from float accuracy; the rest is for a far guess
 
@@ -51,7 +53,11 @@ def refine(start: Sequence[arb], known: Known) -> list[arb]:
     good_enough = arb(2) ** (-ctx.prec // 2)  # the next step's error is the square of this one's
     for _ in range(MOST_STEPS):
         try:
-            step = jacobian_matrix(x, known).mid().solve(_column(residual(x, known)))
+            step = (
+                jacobian_matrix(x, known)
+                .mid()
+                .solve(_column(equations_for(known.closure).residual(x, known)))
+            )
         except ZeroDivisionError:
             raise NotDecidedError("Newton's method: the Jacobian has no inverse", "0", "not 0") from None
         corrections = step.entries()
@@ -70,36 +76,43 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     Raises:
         NotDecidedError: the proof fails, because the centre is wrong, the pose singular or digits few.
     """
-    width = as_ball(radius).upper()
+    equations, width = equations_for(known.closure), as_ball(radius).upper()
     box = [arb(number, width) for number in centre]
-    # The ratios follow from the points, so they need not be searched: give them room for every value
-    # that points of the box can have. Then "one zero in the box" is "one assembly near the points".
-    ratios = strut_ratios(points_of(box, known), known)
-    for place, ratio in zip((MU, LAMBDA), ratios, strict=True):
-        box[place] = arb(centre[place], (4 * ratio.rad() + abs(ratio - centre[place])).upper())
-        if not box[place].contains_interior(ratio):
-            raise NotDecidedError("the strut's ratio in its box", ratio, box[place])
+    # The other unknowns follow from the points, so they need not be searched: give them room for every
+    # value that points near these can have. Then "one zero in the box" is "one assembly near the points".
+    near = {
+        n: p if n in CHASSIS else plus(p, (arb(0, width),) * 3)
+        for n, p in equations.points_of(centre, known).items()
+    }
+    for place, value in enumerate(equations.implied(near, known), start=equations.COORDINATES):
+        box[place] = arb(centre[place], (4 * value.rad() + abs(value - centre[place])).upper())
+        if not box[place].contains_interior(value):
+            raise NotDecidedError("what follows from the points in its box", value, box[place])
 
     at_centre = jacobian_matrix(centre, known).mid()
     try:
         inverse = at_centre.inv().mid()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian", "0", "not 0") from None
-    newton = inverse * _column(residual(centre, known))
-    contraction = _identity() - inverse * jacobian_matrix(box, known)
+    newton = inverse * _column(equations.residual(centre, known))
+    contraction = _identity(equations.SIZE) - inverse * jacobian_matrix(box, known)
     spread = contraction * _column([side - number for side, number in zip(box, centre, strict=True)])
     enclosure = [number - newton[i, 0] + spread[i, 0] for i, number in enumerate(centre)]
     for number, side, image in zip(centre, box, enclosure, strict=True):
         if not side.contains_interior(image):
             reach = (image - number).abs_upper()
             raise NotDecidedError("Krawczyk's image inside its box, reach from the centre", reach, side.rad())
+    hand = equations.handedness(enclosure)
+    if not hand > 0:
+        raise NotDecidedError("the handedness of the knuckle", hand, "> 0")
     return Certificate(centre, radius, enclosure, _condition(at_centre, inverse))
 
 
 def jacobian_matrix(unknown: Sequence[arb], known: Known) -> arb_mat:
-    """dC/dy as a matrix of balls, 17 x 17."""
-    matrix = arb_mat(SIZE, SIZE)
-    for row, column, entry in jacobian(unknown, known):
+    """dC/dy as a square matrix of balls."""
+    equations = equations_for(known.closure)
+    matrix = arb_mat(equations.SIZE, equations.SIZE)
+    for row, column, entry in equations.jacobian(unknown, known):
         matrix[row, column] = entry
     return matrix
 
@@ -117,8 +130,8 @@ def _column(numbers: Sequence[arb]) -> arb_mat:
     return arb_mat(len(numbers), 1, list(numbers))
 
 
-def _identity() -> arb_mat:
-    return arb_mat([[int(i == j) for j in range(SIZE)] for i in range(SIZE)])
+def _identity(size: int) -> arb_mat:
+    return arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
 
 
 def _largest(numbers: Sequence[arb]) -> arb:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from flint import arb
 
-from validate.truth.equations import CHASSIS, LINKS, NUMBER_OF, Known
+from validate.truth.closures import equations_for
+from validate.truth.equations import CHASSIS, NUMBER_OF, Known
 from validate.truth.errors import BadInputError
 from validate.truth.exact import as_ball, as_fraction
 from validate.truth.jet import Jet
 from validate.truth.vectors import Vector, cross, dot, minus, plus, times
 
 DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
+OPTIONAL = ("rack_centre", "wheel_axis_inner")
 INPUTS = ("arm_angle", "rack", "heave")
 
 
@@ -55,16 +57,18 @@ class Design:
     the mechanism is 1e-3 or 1e6 mm in size.
 
     Attributes:
-        table: points 1 to 10, local.
+        closure: which strut, "drawn" or "collinear".
+        table: the points, local; without 11 where that is not given.
         origin: point 1, mm.
         unit: a power of two near the mechanism's size, mm.
         up: direction of z.
         right: direction of y.
         outboard: +1 where outboard is `right`, -1 where it is the opposite.
         squared_length: d_ij^2 of every link, local.
-        wheel: (a, b, c) with p10 = p5 + a r6 + b r7 + c r6 x r7, r_i = p_i - p5.
+        knuckle: its shape, in the numbers that the equations of the closure use, local.
     """
 
+    closure: str
     table: Mapping[int, Vector]
     origin: Vector
     unit: Fraction
@@ -72,7 +76,7 @@ class Design:
     right: Vector
     outboard: int
     squared_length: Mapping[tuple[int, int], Fraction]
-    wheel: tuple[Fraction, Fraction, Fraction]
+    knuckle: Mapping[int, Vector]
 
     @classmethod
     def from_points(
@@ -81,17 +85,22 @@ class Design:
         up: Sequence[object],
         right: Sequence[object],
         side: str,
+        closure: str = "collinear",
     ) -> Design:
-        """Take over the ten named points, mm.
+        """Take over the named points, mm. Without a rack centre the rack's line passes through point 9.
 
         Raises:
             BadInputError: a point is missing or unknown, a number is not finite, `up` and `right` are not
-                unit vectors at right angles, a link or the knuckle's triangle has no extent, or the arm's
-                axis is upright (then theta does not move the arm).
+                unit vectors at right angles, a link or the knuckle has no extent, or the arm's axis is
+                upright (then theta does not move the arm).
         """
-        if set(points) != set(NUMBER_OF):
-            raise BadInputError("points", sorted(points), f"exactly the names {', '.join(NUMBER_OF)}")
+        needed = [name for name in NUMBER_OF if name not in OPTIONAL]
+        if not set(needed) <= set(points) <= set(NUMBER_OF):
+            allowed = f"exactly the names {', '.join(needed)}, with or without {' and '.join(OPTIONAL)}"
+            raise BadInputError("points", sorted(points), allowed)
+        equations = equations_for(closure)
         given = {NUMBER_OF[name]: exact_vector(p, f"points[{name!r}]") for name, p in points.items()}
+        given.setdefault(3, given[9])
         z, y = exact_vector(up, "up"), exact_vector(right, "right")
         if abs(dot(z, z) - 1) > DIRECTION_SLACK or abs(dot(y, y) - 1) > DIRECTION_SLACK:
             raise BadInputError("up and right", (up, right), "unit vectors, to 1e-12")
@@ -102,7 +111,7 @@ class Design:
         unit = _unit(given)
         table = {n: times(minus(p, given[1]), 1 / unit) for n, p in given.items()}
         lengths = {}
-        for i, j in LINKS:
+        for i, j in equations.LINKS:
             link = minus(table[i], table[j])
             lengths[i, j] = dot(link, link)
             if lengths[i, j] == 0:
@@ -111,7 +120,13 @@ class Design:
         if dot(upright, upright) == 0:
             raise BadInputError("the arm's axis 1-2", "upright or without length", "an axis not along up")
         outboard = -1 if side == "left" else 1
-        return cls(table, given[1], unit, z, y, outboard, lengths, _carried_by_knuckle(table))
+        shape = equations.knuckle_of(table)
+        return cls(closure, table, given[1], unit, z, y, outboard, lengths, shape)
+
+    @property
+    def names(self) -> dict[str, int]:
+        """The points that this car has, by name."""
+        return {name: n for name, n in NUMBER_OF.items() if n in self.table}
 
     def known(self, driven: Driven) -> Known:
         """What the equations take as given, as jets of balls at the present precision, local.
@@ -127,25 +142,21 @@ class Design:
         d51 = as_ball(self.squared_length[5, 1]).sqrt()
         bend = cosine * theta.rate * theta.rate + sine * theta.acceleration
         return Known(
+            closure=self.closure,
             chassis={n: plus(ball_vector(self.table[n]), lift) for n in CHASSIS},
             up=up,
             right=ball_vector(self.right),
             squared_length={link: as_ball(squared) for link, squared in self.squared_length.items()},
             arm_height=Jet(d51 * cosine, -d51 * sine * theta.rate, -d51 * bend),
             rack=balls(driven.rack) * as_ball(1 / self.unit),
+            knuckle={n: ball_vector(numbers) for n, numbers in self.knuckle.items()},
         )
 
 
 def values_only(known: Known) -> Known:
     """The same with the values of the jets, for the position equations."""
-    return Known(
-        chassis={n: (p[0].value, p[1].value, p[2].value) for n, p in known.chassis.items()},
-        up=known.up,
-        right=known.right,
-        squared_length=known.squared_length,
-        arm_height=known.arm_height.value,
-        rack=known.rack.value,
-    )
+    chassis = {n: (p[0].value, p[1].value, p[2].value) for n, p in known.chassis.items()}
+    return replace(known, chassis=chassis, arm_height=known.arm_height.value, rack=known.rack.value)
 
 
 def exact_vector(numbers: Sequence[object], what: str) -> Vector:
@@ -172,15 +183,3 @@ def _unit(points: Mapping[int, Vector]) -> Fraction:
         raise BadInputError("points", "all in one place", "points with some distance between them")
     power = size.numerator.bit_length() - size.denominator.bit_length()
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
-
-
-def _carried_by_knuckle(table: Mapping[int, Vector]) -> tuple[Fraction, Fraction, Fraction]:
-    """Exact since the triangle keeps its side lengths: (a, b) solve a Gram system of those lengths."""
-    r6, r7, r10 = (minus(table[n], table[5]) for n in (6, 7, 10))
-    normal = cross(r6, r7)
-    area = dot(normal, normal)  # also the Gram determinant |r6|^2 |r7|^2 - (r6 . r7)^2
-    if area == 0:
-        raise BadInputError("the knuckle", "points 5, 6 and 7 on one line", "a triangle 5, 6, 7")
-    a = dot(cross(r10, r7), normal) / area
-    b = dot(cross(r6, r10), normal) / area
-    return a, b, dot(r10, normal) / area

@@ -30,13 +30,17 @@ class InfeasibleError(TruthError):
     """The inputs ask for a pose that the links cannot reach, and that is proven.
 
     Attributes:
-        closure: "arm" (the lower ball joint) or "tie_rod" (its outer end).
-        gap: how far the link is too short, mm (the 5-1 length for the arm, 6-5 for the tie rod).
+        closure: "arm" (the lower ball joint), "strut" (a drawn axis that passes the ball joint farther off
+            than the strut top is) or "tie_rod" (its outer end).
+        gap: how far the link is too short, mm (the 5-1 length for the arm, 5-4 for the strut, 6-5 for the
+            tie rod).
     """
 
     def __init__(self, closure: str, gap: float) -> None:
         self.closure, self.gap = closure, gap
-        remedy = "an arm angle nearer the design's" if closure == "arm" else "less rack travel or arm angle"
+        remedy = (
+            "less rack travel or arm angle" if closure == "tie_rod" else "an arm angle nearer the design's"
+        )
         super().__init__(f"the {closure} closure misses by {gap:.6g} mm (limit 0); try {remedy}")
 
 

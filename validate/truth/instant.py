@@ -10,13 +10,14 @@ from flint import arb
 from mpmath import mpf
 
 from validate.truth.branches import Choices, choices_of
-from validate.truth.certificate import certify, refine
+from validate.truth.certificate import Certificate, certify, refine
+from validate.truth.closures import equations_for
 from validate.truth.design import Design, ball_vector, values_only
-from validate.truth.equations import MU, NUMBER_OF, Known
+from validate.truth.equations import MOVING, Known
 from validate.truth.errors import NotDecidedError, TruthError
 from validate.truth.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
-from validate.truth.kinematics import body_rates, point_jets, wheel_angles
-from validate.truth.vectors import Vector, plus, times
+from validate.truth.kinematics import body_rates, unknown_jets, wheel_angles
+from validate.truth.vectors import Vector, minus, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
 
@@ -29,16 +30,16 @@ class Instant:
     them, or mpmath rounds the result.
 
     Attributes:
-        position: ten points, mm.
-        velocity: ten points, mm/s.
-        acceleration: ten points, mm/s^2.
+        position: every point, mm.
+        velocity: every point, mm/s.
+        acceleration: every point, mm/s^2.
         angular_velocity: "knuckle" and "lower_arm", rad/s.
         angular_acceleration: "knuckle" and "lower_arm", rad/s^2.
         angles: "camber" and "kingpin", rad; one that is undefined (0/0, or at 180 deg) is left out.
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
-        choices: which of the sixteen possible assemblies this is.
+        choices: which of the possible assemblies this is.
         digits: how many digits it took.
     """
 
@@ -102,19 +103,22 @@ def prove_instant(
     # the arithmetic, which a nearly singular Jacobian wears down.
     box = Fraction(1, 10 ** ((digits + working) // 2))
     certificate = certify(refine(start, still), still, box)
-    points = point_jets(certificate.enclosure, known, design)
-    choices = choices_of({n: _part(p, "value") for n, p in points.items()}, still.up)
+    equations = equations_for(known.closure)
+    solved = unknown_jets(certificate.enclosure, known)
+    points = equations.points_of(solved, known)
+    choices = choices_of({n: _part(p, "value") for n, p in points.items()}, still)
     if expected is not None and choices != expected:
         raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    named = {name: points[number] for name, number in NUMBER_OF.items()}
+    named = {name: points[number] for name, number in design.names.items()}
     position = {name: plus(origin, times(_part(p, "value"), unit)) for name, p in named.items()}
     velocity = {name: times(_part(p, "rate"), unit) for name, p in named.items()}
     acceleration = {name: times(_part(p, "acceleration"), unit) for name, p in named.items()}
     omega, alpha = {}, {}
-    for body, (a, b, c) in {"knuckle": (5, 6, 7), "lower_arm": (1, 2, 5)}.items():
-        omega[body], alpha[body] = body_rates(points[a], points[b], points[c])
+    lower_arm = minus(points[2], points[1]), minus(points[5], points[1])
+    for body, pair in {"knuckle": equations.knuckle_frame(solved, known), "lower_arm": lower_arm}.items():
+        omega[body], alpha[body] = body_rates(*pair)
 
     fastest, hardest = _greatest(velocity.values()), _greatest(acceleration.values())
     push = hardest + fastest * fastest / unit  # centripetal parts may cancel: their size counts
@@ -144,7 +148,7 @@ def prove_instant(
     # box about the answer lies inside the whole box about the centre, so the proof holds there too;
     # a shift of at most a quarter leaves room for the rounding of the radius itself.
     radius = box * design.unit / 2
-    shift = _farthest(certificate.enclosure, certificate.centre) * unit + bounds["position"]
+    shift = _farthest(certificate, still) * unit + bounds["position"]
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
@@ -179,10 +183,11 @@ def _greatest_radius(vectors: Iterable[Vector]) -> arb:
     return greatest
 
 
-def _farthest(enclosure: Sequence[arb], centre: Sequence[arb]) -> arb:
-    """Greatest distance of the points of an enclosure from the centre, from above; ratios left out."""
-    pairs = list(zip(enclosure, centre, strict=True))[:MU]
-    return max((ball - number).abs_upper() for ball, number in pairs)
+def _farthest(certificate: Certificate, known: Known) -> arb:
+    """Greatest distance of points 5 to 9 from the centre's, from above."""
+    points_of = equations_for(known.closure).points_of
+    there, here = (points_of(y, known) for y in (certificate.enclosure, certificate.centre))
+    return _greatest(minus(there[n], here[n]) for n in MOVING)
 
 
 def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:

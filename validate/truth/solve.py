@@ -8,17 +8,18 @@ from typing import TypeVar
 
 from flint import arb, ctx
 
-from validate.truth.branches import Candidate, candidate, choices_of_table, every_candidate
+from validate.truth.branches import CLEAR_SIGN, Candidate, candidate, choices_of_table, every_candidate
+from validate.truth.closures import equations_for
 from validate.truth.design import Design, Driven, ball_vector, exact_vector, values_only
-from validate.truth.equations import NUMBER_OF, Known, unknown_of
+from validate.truth.equations import Known
 from validate.truth.errors import AmbiguousAssemblyError, BadInputError, NotDecidedError, SingularPoseError
 from validate.truth.exact import as_ball, bits
 from validate.truth.instant import Instant, prove_instant
-from validate.truth.kinematics import wheel_centre
 from validate.truth.vectors import Vector, minus, times
 
 MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
 LEAST_PROMISED, MOST_PROMISED = 15, 200  # leaves one doubling at least
+DOUBLINGS = 5  # from 15 digits to 400
 CLEARLY_NEARER = 0.5  # the wanted assembly must be at most half as far from the guess as the next one
 
 Answer = TypeVar("Answer")
@@ -33,8 +34,10 @@ def solve_truth(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
+    closure: str = "collinear",
+    clearness: float = CLEAR_SIGN,
 ) -> Instant:
-    """Solve the paper's equations at one instant, with a proof of every digit.
+    """Solve the car at one instant, with a proof of every digit.
 
     All numbers given (int, float, Fraction, mpf) are taken as exact. Without a guess the assembly
     is the one that the given points make: the same four `Choices`, which is the assembly that a
@@ -43,13 +46,20 @@ def solve_truth(
     It sets the precision of python-flint, which is global: not for several threads at once.
 
     Args:
-        points: the ten points by name, mm; they fix the lengths and need not be assembled.
+        points: the points by name, mm; they fix the lengths and need not be assembled. Without
+            rack_centre the rack's line passes through tie_rod_inner; without wheel_axis_inner the wheel's
+            spin axis starts in strut_lower.
         inputs: "arm_angle" (rad), "rack" (mm), "heave" (mm), each (value, rate, acceleration).
         guess: some or all points by name, mm, near the wanted assembly.
         up: unit vector of the paper's z in the frame of the points.
         right: unit vector of the paper's y in the frame of the points.
         side: "left" or "right" wheel, for camber and kingpin angle.
         digits: digits of every number, relative to the greatest of its kind; 15 to 200.
+        closure: "drawn" holds the strut's axis in the knuckle on the line of strut_lower and strut_top as
+            drawn (see `knuckle_equations`); "collinear" is the paper's strut, the ball joint on one
+            line with it (see `equations`).
+        clearness: how far the given points must be from where two assemblies meet, as a sine; 0 takes
+            the exact sign, however small the product.
     Returns:
         The instant, mm, s, rad.
     Raises:
@@ -58,27 +68,41 @@ def solve_truth(
         AmbiguousAssemblyError: points or guess do not single out an assembly.
         SingularPoseError: no proof with 400 digits.
     """
-    design = Design.from_points(points, up, right, side)
+    design = Design.from_points(points, up, right, side, closure)
     driven = Driven.from_mapping(inputs)
     choose: Callable[[Known], Candidate]
     if guess is None:
-        choose = partial(candidate, choices=choices_of_table(design.table, design.up))
+        choose = partial(candidate, choices=choices_of_table(design.table, design.up, closure, clearness))
     else:
-        choose = partial(_nearest, design=design, near=_local(guess, design))
+        choose = partial(_nearest, near=_local(guess, design))
+    return prove_assembly(design, partial(design.known, driven), choose, digits)
+
+
+def prove_assembly(
+    design: Design, given: Callable[[], Known], choose: Callable[[Known], Candidate], digits: int
+) -> Instant:
+    """The proven instant of the assembly chosen, with as many digits as it takes.
+
+    Args:
+        given: what the equations take as given, with rates, at the present precision.
+        choose: the closed form to start from.
+    Raises:
+        InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+    """
 
     def attempt(working: int) -> Instant:
-        known = design.known(driven)
+        known = given()
         still = values_only(known)
         chosen = choose(still)
         chosen.require_feasible(float(design.unit))
-        start = unknown_of(chosen.points, still)
+        start = equations_for(design.closure).unknown_of(chosen.points, still)
         return prove_instant(design, known, start, chosen.choices, digits, working)
 
     return with_enough_digits(attempt, digits)
 
 
 def with_enough_digits(attempt: Callable[[int], Answer], digits: int) -> Answer:
-    """Repeat with twice the digits until the proofs hold.
+    """Repeat with twice the digits until the proofs hold: 15 digits or more are 400 after five doublings.
 
     Raises:
         BadInputError: `digits` is not from 15 to 200.
@@ -86,33 +110,31 @@ def with_enough_digits(attempt: Callable[[int], Answer], digits: int) -> Answer:
     """
     if not LEAST_PROMISED <= digits <= MOST_PROMISED:
         raise BadInputError("digits", digits, f"{LEAST_PROMISED} to {MOST_PROMISED}")
-    working = digits
-    while True:
+    for working in (min(digits << doublings, MOST_DIGITS) for doublings in range(DOUBLINGS + 1)):
         try:
             with ctx.workprec(bits(working)):
                 return attempt(working)
         except NotDecidedError as doubt:
-            if working == MOST_DIGITS:
+            if working >= MOST_DIGITS:
                 raise SingularPoseError(working, doubt) from doubt
-        working = min(2 * working, MOST_DIGITS)
+    raise NotDecidedError("a proof, digits of the arithmetic", working, MOST_DIGITS)
 
 
 def _local(guess: Points, design: Design) -> dict[int, Vector]:
     near = {}
     for name, place in guess.items():
-        if name not in NUMBER_OF:
-            raise BadInputError("guess", name, f"names among {', '.join(NUMBER_OF)}")
+        if name not in design.names:
+            raise BadInputError("guess", name, f"names among {', '.join(design.names)}")
         absolute = exact_vector(place, f"guess[{name!r}]")
-        near[NUMBER_OF[name]] = times(minus(absolute, design.origin), 1 / design.unit)
+        near[design.names[name]] = times(minus(absolute, design.origin), 1 / design.unit)
     return near
 
 
-def _nearest(known: Known, design: Design, near: Mapping[int, Vector]) -> Candidate:
+def _nearest(known: Known, near: Mapping[int, Vector]) -> Candidate:
     """The candidate nearest to the guess in the maximum norm; it may still be infeasible."""
 
     def distance(one: Candidate) -> arb:
-        places = {**one.points, 10: wheel_centre(one.points, design)}
-        apart = [x for n, place in near.items() for x in minus(places[n], ball_vector(place))]
+        apart = [x for n, place in near.items() for x in minus(one.points[n], ball_vector(place))]
         if not all(x.is_finite() for x in apart):
             return arb.pos_inf()  # a closure divides by zero: nothing is near it
         return max((x.abs_upper() for x in apart), default=as_ball(0))

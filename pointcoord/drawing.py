@@ -1,0 +1,45 @@
+"""The drawing: where every point and direction of a car stands, before anything is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3)."""
+
+    vectors: dict[str, Array]
+    unit: Array
+
+    def distance(self, start: str, end: str) -> Array:
+        """Drawn distance between two points, shape (...,)."""
+        return np.asarray(np.linalg.norm(self.vectors[start] - self.vectors[end], axis=-1))
+
+    def along(self, start: str, end: str, direction: str) -> Array:
+        """Component of the drawn vector from start to end along a direction, shape (...,)."""
+        difference = self.vectors[end] - self.vectors[start]
+        return np.asarray(np.sum(difference * self.vectors[direction], axis=-1))
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Coordinates of y that a constraint reads off the drawing.
+
+    Attributes:
+        places: their indices in y.
+        values: shape (..., len(places)).
+        lacks: what the values lack by rounding, at most 5 u of themselves; zero for unknowns, which the
+            solver improves anyway.
+        doubt: how uncertain values + lacks still are.
+    """
+
+    places: tuple[int, ...]
+    values: Array
+    lacks: Array | float = 0.0
+    doubt: Array | float = 0.0

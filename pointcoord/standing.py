@@ -1,0 +1,93 @@
+"""Where a drawing stands: the inputs' drawn values, how far each can go from there, and the wheel's angles.
+
+Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`),
+until it meets a pose beyond which there is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.assembly import Path, close_drawing, follow
+from pointcoord.closing import Closing, closing
+from pointcoord.linear import weakest_balance
+from pointcoord.mechanism import Mechanism
+from pointcoord.readout import wheel_angles
+from pointcoord.scene import Scene
+from pointcoord.simulate import scene_mechanism
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of an input's range.
+
+    Attributes:
+        value: the last reachable value, rad or mm.
+        limits: the links and joints that hold each other there; empty where the input itself ends.
+    """
+
+    value: float
+    limits: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A drawing, closed, and what it can do.
+
+    Attributes:
+        inputs: drawn value of each input, rad or mm.
+        reach: the lower and the upper end of each input, the others as drawn.
+        camber, kingpin: of the closed drawing, rad.
+        closing: how far its points moved to close.
+    """
+
+    inputs: Mapping[str, float]
+    reach: Mapping[str, tuple[End, End]]
+    camber: float
+    kingpin: float
+    closing: Closing
+
+
+def standing(scene: Scene) -> Standing:
+    """Close a scene's drawing and try how far its inputs go.
+
+    Raises:
+        SceneError: the hardpoints make no mechanism.
+        AssemblyError: the drawing cannot be closed.
+    """
+    mechanism = scene_mechanism(scene)
+    closed = close_drawing(mechanism)
+    first = mechanism.map.unknowns
+    drawn = {name: float(value) + 0.0 for name, value in mechanism.input_values(closed.y[first:]).items()}
+    angles = wheel_angles(mechanism, mechanism.places(closed.y), scene.mechanism.outboard)
+    return Standing(
+        inputs=drawn,
+        reach={name: _ends(mechanism, closed, name) for name in drawn},
+        camber=float(angles["camber"]),
+        kingpin=float(angles["kingpin"]),
+        closing=closing(mechanism, closed.y),
+    )
+
+
+def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
+    """Both ends of one input, the lower value first."""
+    first = mechanism.map.unknowns
+    (drive,) = (drive for drive in mechanism.topology.drives if drive.input == name)
+    place = mechanism.layout.scalar(drive.coordinate)
+    found = []
+    for farthest in drive.extremes(mechanism.drawing):
+        target = closed.y[first:].copy()
+        target[place - first] = farthest
+        path = follow(mechanism.map, closed.y, target)
+        value = float(drive.input_value(path.y[place], mechanism.drawing))
+        stopped = float(path.done) < 1.0
+        limits = mechanism.topology.strongest(weakest_balance(path.factors.matrix)) if stopped else ()
+        found.append(End(value, limits))
+    low, high = sorted(found, key=lambda end: end.value)
+    return low, high
