@@ -143,7 +143,7 @@ SOLVED: dict[str, dict[str, str]] = {
         RACK: "{ sine = { amplitude = 20.0, angular_frequency = 1.0, phase = -3e272 } }"
     },
     # The kingpin angles of a strut that hangs upside down were a whole turn apart.
-    "car upside down": {'"left"': '"left"\nup = [0.0, 0.6, -0.8]\nright = [0.0, -0.8, -0.6]'},
+    "car upside down": {'"left"': '"right"\nup = [0.0, 0.6, -0.8]\nright = [0.0, -0.8, -0.6]'},
     # The series' unit of time was the motion's own, and its square was lost.
     "motion of 1e-200 s": {"stop = 2.6": "stop = 1e-200"},
     # Some instants lay after the stop.

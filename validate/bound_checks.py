@@ -23,6 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord.suspensions.macpherson import DRAWN
+from validate.closed_form import Closure
 from validate.inputs import rates
 from validate.singular import NearPose, near_pose
 from validate.truth import InfeasibleError, Instant, TruthError, solve_truth
@@ -32,7 +34,6 @@ Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
 EPS = float(np.finfo(float).eps)
-CARRIED = "wheel_centre"
 DIGITS = 40  # of the truth: its error is 1e-20 of any error in double precision
 INSTANTS = 4  # per motion
 
@@ -42,17 +43,19 @@ class Check:
     """One pose of pointcoord held against the truth; lengths in mm.
 
     Attributes:
-        number, driven, closure, distance: of the `NearPose`; distance of the instant, for a motion.
+        number, driven, lock, distance: of the `NearPose`; distance of the instant, for a motion.
+        strut: the car's closure.
         instant: s, for a motion; a held pose has the instant 0.
         condition: of the Jacobian.
         size: of the mechanism, a power of two.
         far: largest coordinate of a point in the frame of the scene.
-        error, bound: of the solved points. carried_error, carried_bound: of the wheel centre.
+        error, bound: of the solved points. carried_error, carried_bound: of those carried.
     """
 
     number: int
+    strut: Closure
     driven: str
-    closure: str
+    lock: str
     distance: float
     instant: float
     condition: float
@@ -84,6 +87,7 @@ class Refusal:
     """A pose without an answer: who refused it, and the kind of reason."""
 
     number: int
+    strut: Closure
     distance: float
     reason: str
 
@@ -130,7 +134,7 @@ def _checked(
             "effects": [],
             "mechanism": {
                 "type": "macpherson",
-                "closure": "collinear",
+                "closure": car.closure,
                 "side": car.side,
                 "up": list(car.up),
                 "right": list(car.right),
@@ -152,6 +156,7 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
     if isinstance(motion, str) or (isinstance(truth, str) and truth != InfeasibleError.__name__):
         return Refusal(
             pose.number,
+            pose.car.closure,
             distance,
             f"pointcoord: {motion if isinstance(motion, str) else 'answers'}; "
             f"truth: {truth if isinstance(truth, str) else 'answers'}",
@@ -160,23 +165,25 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
     proof = motion.prover(samples, False)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
-        return Refusal(pose.number, distance, "pointcoord: no finite bound")
-    errors = {CARRIED: math.inf, "solved points": math.inf}  # where the truth has no such assembly
+        return Refusal(pose.number, pose.car.closure, distance, "pointcoord: no finite bound")
+    error = carried_error = math.inf  # where the truth has no such assembly
     if isinstance(truth, Instant):
         each = {name: _error(truth, name, place[0]) for name, place in samples.position.items()}
-        errors = {CARRIED: each.pop(CARRIED), "solved points": max(each.values())}
+        carried_error = max(each.pop(name) for name in DRAWN.carried if name in each)
+        error = max(each.values())
     return Check(
         number=pose.number,
+        strut=pose.car.closure,
         driven=pose.driven,
-        closure=pose.closure,
+        lock=pose.lock,
         distance=distance,
         instant=instant,
         condition=float(proof.condition[0]),
         size=motion.unit,
         far=max(float(np.abs(place).max()) for place in samples.position.values()),
-        error=errors["solved points"],
+        error=error,
         bound=bound,
-        carried_error=errors[CARRIED],
+        carried_error=carried_error,
         carried_bound=carried,
     )
 
@@ -194,7 +201,15 @@ def _truth(pose: NearPose, scene: Scene, instant: float) -> Instant:
     at = np.array([instant])
     inputs = {name: (float(rates(law, at)[0, 0]), 0, 0) for name, law in scene.inputs.items()}
     car = pose.car
-    return solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side, digits=DIGITS)
+    return solve_truth(
+        car.points,
+        inputs,
+        up=car.up,
+        right=car.right,
+        side=car.side,
+        closure=car.closure,
+        digits=DIGITS,
+    )
 
 
 def _error(truth: Instant, name: str, place: Array) -> float:

@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.bound_checks import BoundStudy, Check
+from validate.closed_form import Closure
 from validate.report import table
 
 Array = NDArray[np.float64]
 
 LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
+STRUTS: tuple[Closure, ...] = ("drawn", "collinear")
 FOLD = 1e-3  # nearer to the end than this part of the range, its fold is all that matters
 
 
@@ -61,8 +63,13 @@ def looseness(checks: Sequence[Check]) -> dict[str, Array]:
     with np.errstate(divide="ignore"):
         return {
             "solved points": np.array([c.bound for c in checks]) / [c.error for c in checks],
-            "wheel centre": np.array([c.carried_bound for c in checks]) / [c.carried_error for c in checks],
+            "carried points": np.array([c.carried_bound for c in checks]) / [c.carried_error for c in checks],
         }
+
+
+def of_strut(checks: Sequence[Check], strut: Closure) -> tuple[Check, ...]:
+    """The checks of one kind of strut."""
+    return tuple(check for check in checks if check.strut == strut)
 
 
 def decades(checks: Sequence[Check]) -> list[tuple[int, list[Check]]]:
@@ -76,8 +83,18 @@ def decades(checks: Sequence[Check]) -> list[tuple[int, list[Check]]]:
 def bounds_text(study: BoundStudy) -> str:
     """The whole study."""
     parts = [
-        _set_text("poses held close to the end of an input", study.held),
-        _set_text("instants of motions that run towards one", study.moving),
+        *(
+            _set_text(
+                f"poses of struts {strut} held close to the end of an input", of_strut(study.held, strut)
+            )
+            for strut in STRUTS
+        ),
+        *(
+            _set_text(
+                f"instants of motions of struts {strut} that run towards one", of_strut(study.moving, strut)
+            )
+            for strut in STRUTS
+        ),
         f"refused: {len(study.refusals)}",
         *(f"  {count}  {reason}" for reason, count in _reasons(study)),
         f"bounds below the error: {len(study.broken)}",
@@ -131,9 +148,10 @@ def _set_text(name: str, checks: Sequence[Check]) -> str:
 
 def _case(check: Check) -> str:
     return (
-        f"number {check.number}, {check.driven} {check.distance:.2e} from the end ({check.closure}), "
+        f"number {check.number}, {check.strut}, "
+        f"{check.driven} {check.distance:.2e} from the end ({check.lock}), "
         f"t = {check.instant!r} s: error / bound {check.share:.3g}, error {check.error:.2e} mm, "
-        f"wheel centre {check.carried_error:.2e} mm, condition {check.condition:.2e}, loss {check.loss:.2g}"
+        f"carried points {check.carried_error:.2e} mm, condition {check.condition:.2e}, loss {check.loss:.2g}"
     )
 
 
@@ -147,8 +165,8 @@ def bounds_data(study: BoundStudy) -> dict[str, Any]:
         "seed": study.seed,
         "refusals": [{"reason": reason, "poses": count} for reason, count in _reasons(study)],
         "broken": [_plain(asdict(check)) for check in study.broken],
-        "held": _set_data(study.held),
-        "moving": _set_data(study.moving),
+        "held": {strut: _set_data(of_strut(study.held, strut)) for strut in STRUTS},
+        "moving": {strut: _set_data(of_strut(study.moving, strut)) for strut in STRUTS},
     }
 
 

@@ -26,7 +26,7 @@ from validate.deep_store import CHUNK, Chunk, Store, StoreError
 from validate.deep_table import table_text
 from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
-from validate.random_cars import KINDS, SEED, RandomCar, random_car
+from validate.random_cars import CLOSURES, KINDS, SEED, RandomCar, random_car
 from validate.refusals import same_reason, why_refused
 from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 
@@ -126,14 +126,20 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
     for index in range(number * CHUNK, (number + 1) * CHUNK):
         car = random_car(index)
         result = examine(car)
-        outcomes[f"{car.kind}/{result.outcome}"] += 1
+        outcomes[f"{car.closure}/{car.kind}/{result.outcome}"] += 1
         for quantity, share in result.shares.items():
             shares[quantity] = max(shares.get(quantity, (share, index)), (share, index))
         if result.kept:
             found.append(index)
             if index not in known:
                 data = car.scene.model_dump(mode="json", exclude_none=True)
-                line = {"kind": car.kind, "outcome": result.outcome, "reason": result.reason, "content": data}
+                line = {
+                    "closure": car.closure,
+                    "kind": car.kind,
+                    "outcome": result.outcome,
+                    "reason": result.reason,
+                    "content": data,
+                }
                 store.finding(index, line)
     chunk = Chunk(number, dict(outcomes), shares, tuple(found), time.perf_counter() - began)
     store.chunk(chunk)
@@ -175,7 +181,7 @@ def run(count: int, path: Path, workers: int = 1) -> int:
         if any(process.exitcode for process in crew):
             raise StoreError(f"{path}: a worker died; start again, and it goes on from what is recorded")
     record = store.read()
-    print(table_text(record, KINDS), flush=True)
+    print(table_text(record, CLOSURES, KINDS), flush=True)
     return 1 if any("disagreed" in o or " fails: " in o for o in record.outcomes()) else 0
 
 

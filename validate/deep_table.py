@@ -8,17 +8,9 @@ from validate.deep_store import CHUNK, Record
 from validate.report import table
 
 
-def table_text(record: Record, kinds: Sequence[str]) -> str:
-    """Every outcome by kind of scene, and the largest share of each tolerance that was used."""
-    total = record.outcomes()
-    outcomes = sorted({key.split("/", 1)[1] for key in total}, key=_order)
-    rows = []
-    for outcome in outcomes:
-        counts = [total[f"{kind}/{outcome}"] for kind in kinds]
-        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
-    tried = [sum(n for key, n in total.items() if key.startswith(f"{kind}/")) for kind in kinds]
-    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
-    blocks = [table(("outcome", "all", *kinds), rows)]
+def table_text(record: Record, closures: Sequence[str], kinds: Sequence[str]) -> str:
+    """Every outcome by kind of strut and of scene, and the largest share of each tolerance that was used."""
+    blocks = [f"Struts {closure}:\n{_outcomes(record, closure, kinds)}" for closure in closures]
     shares = record.shares()
     if shares:
         lines = [(q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items()]
@@ -31,6 +23,19 @@ def table_text(record: Record, kinds: Sequence[str]) -> str:
         f"{record.torn} torn lines ignored, {seconds:.0f} s."
     )
     return "\n\n".join(blocks)
+
+
+def _outcomes(record: Record, closure: str, kinds: Sequence[str]) -> str:
+    total = record.outcomes()
+    here = [key for key in total if key.startswith(f"{closure}/")]
+    outcomes = sorted({key.split("/", 2)[2] for key in here}, key=_order)
+    rows = []
+    for outcome in outcomes:
+        counts = [total[f"{closure}/{kind}/{outcome}"] for kind in kinds]
+        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
+    tried = [sum(total[key] for key in here if key.startswith(f"{closure}/{kind}/")) for kind in kinds]
+    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
+    return table(("outcome", "all", *kinds), rows)
 
 
 def _order(outcome: str) -> tuple[int, str]:

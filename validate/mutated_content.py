@@ -85,7 +85,7 @@ def _other_number(random: Random, content: Content) -> None:
 
 
 def _points(random: Random, content: Content) -> None:
-    """Points swapped, made equal, nearly equal or collinear; all of them flat, scaled or moved."""
+    """Points swapped, made equal, nearly equal, collinear or given by choice; all flat, scaled or moved."""
     table = _part(content, "mechanism", "points")
     names = [n for n, p in table.items() if isinstance(p, list) and len(p) == 3 and all(map(_is_number, p))]
     if len(names) < 3:
@@ -107,8 +107,11 @@ def _points(random: Random, content: Content) -> None:
             {n: [x + factor for x in table[n]] for n in names},
             {n: [x + random.gauss(0.0, abs(factor)) for x in table[n]] for n in names},
             {n: [-x if k == axis else x for k, x in enumerate(table[n])] for n in names},
+            {"wheel_axis_inner": [x + near * factor for x in b]},
         )
     )
+    if random.random() < 0.1:
+        table.pop("rack_centre", None)
 
 
 def _input(random: Random, content: Content) -> None:
@@ -172,6 +175,8 @@ def _settings(random: Random, content: Content) -> None:
         random.choice(
             (
                 {"side": random.choice(("left", "right", "Left"))},
+                {"closure": random.choice(("drawn", "collinear", "Drawn"))},
+                {"closure": random.choice(("drawn", "collinear"))},
                 {"up": [0.0, -s, c], "right": [0.0, c, s]},
                 {"up": [s, 0.0, c], "right": [0.0, 1.0, 0.0]},
                 {"up": [-s, c, 0.0], "right": [c, s, 0.0]},

@@ -18,7 +18,7 @@ from pointcoord.scene import MOST_SAMPLES
 from validate.mutated_content import CONTENT_CHANGES, Content, anything, size, word
 
 # Named here, so that a further built-in scene does not change what a number means.
-SCENES = ("bounce", "bounce-and-steer", "bounce-on-a-heaving-chassis", "steer")
+SCENES = ("bounce", "off-axis-strut", "bounce-and-steer", "bounce-on-a-heaving-chassis", "steer")
 # More instants than this take honest seconds to write, which would hide a hang.
 MOST_INSTANTS = 20_000
 # What a number of a file may be replaced by, as text that no writer of TOML would make.

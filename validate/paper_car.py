@@ -16,8 +16,6 @@ PAPER: Points = {
     "tie_rod_inner": (570.0, 60.0, 90.0),
     "wheel_centre": (452.0, -410.0, 20.0),
 }
-# Points that a random car may have anywhere; of the others the strut and the rack decide.
-FREE = tuple(name for name in PAPER if name not in ("strut_lower", "strut_rod_end", "tie_rod_inner"))
 EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
 
 

@@ -1,9 +1,10 @@
 """Random scenes by number: the same number is the same scene, on every machine and in every run.
 
-Hardpoints lie up to two hundred millimetres from the paper's in every coordinate, with the strut nearly in
-line, as in `strategies`; the whole car is then mirrored, turned, moved and scaled. Inputs are of every kind
-and go from slow and small to fast and large. A share of the scenes comes close to a singular pose:
-the arm at its dead point, tie rod and steering arm in line, or a drawing that is itself nearly singular.
+Seven in ten are struts as drawn, their ball joint beside the axis or on it, the others collinear ones; see
+`drawings`. The whole car is then mirrored, turned, moved and scaled. Inputs are of every kind
+and go from slow and small to fast and large. A share of the scenes comes close to a singular pose: the arm at
+its dead point, tie rod and steering arm in line, a slide that runs out, or a drawing that is itself nearly
+singular.
 """
 
 from __future__ import annotations
@@ -16,24 +17,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.locks import arm_limits, rack_limits
-from validate.paper_car import EFFECTS, FREE, PAPER, Points, mirrored
+from validate.closed_form import Closure
+from validate.drawings import Drawing, as_tuple, as_tuples, placed, random_drawing, with_slide_that_runs_out
+from validate.input_ends import STRUT, Car, Linkage
+from validate.paper_car import EFFECTS
 
 Array = NDArray[np.float64]
-Kind = Literal["regular", "dead arm", "toggle", "singular drawing"]
-KINDS: tuple[Kind, ...] = ("regular", "dead arm", "toggle", "singular drawing")
-SHARES = (0.9, 0.04, 0.04, 0.02)
+Kind = Literal["regular", "dead arm", "toggle", "slide out", "singular drawing"]
+KINDS: tuple[Kind, ...] = ("regular", "dead arm", "toggle", "slide out", "singular drawing")
+CLOSURES: tuple[Closure, ...] = ("drawn", "collinear")
+SHARES = (0.88, 0.035, 0.035, 0.03, 0.02)
+COLLINEAR = 0.3  # of the scenes, but for those whose slide runs out: it does so beside the ball joint only
 
-SEED = 20250101  # another recipe for the scenes takes another seed: a store of results keeps it
-REACH = 200.0  # mm, from the paper's hardpoints
+SEED = 20261121  # another recipe for the scenes takes another seed: a store of results keeps it
 NEAREST = -12.0  # decades: how near to a singular pose, as a share of the whole way to it
 
 
 @dataclass(frozen=True)
 class RandomCar:
-    """A scene with its number, and what it was made to come near to."""
+    """A scene with its number, its kind of strut, and what it was made to come near to."""
 
     number: int
+    closure: Closure
     kind: Kind
     scene: Scene
 
@@ -42,93 +47,95 @@ def random_car(number: int, samples: int = 3) -> RandomCar:
     """The random scene of a number, from zero up."""
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
-    drawn = _hardpoints(rng)
+    closure: Closure = "collinear" if rng.random() < COLLINEAR and kind != "slide out" else "drawn"
+    drawn = random_drawing(rng.uniform, closure)
+    if kind == "slide out":
+        drawn = with_slide_that_runs_out(rng.uniform, drawn)
     if kind == "singular drawing":
-        drawn = _nearly_singular(rng, drawn)
+        drawn = _nearly_singular(rng, drawn, closure)
     side = str(rng.choice(["left", "right"]))
-    points, up, right, scale = _placed(rng, mirrored(drawn) if side == "right" else drawn)
+    if side == "right":
+        drawn = {name: place * (1.0, -1.0, 1.0) for name, place in drawn.items()}
+    points, up, right, scale = placed(rng, drawn)
+    car = Car(as_tuples(points), side, as_tuple(up), as_tuple(right), closure)
     duration = 10.0 ** rng.uniform(-3.0, 2.0)
     start = float(rng.choice([0.0, rng.uniform(-duration, duration)]))
-    stop = start + duration
-    arm = points["lower_ball_joint"] - points["lower_arm_front"]
-    angle = math.acos(float(arm @ up) / float(np.linalg.norm(arm)))
-    middle = angle + float(rng.choice([0.0, rng.uniform(-0.25, 0.25)]))
-    inputs = {
-        "arm_angle": _law(rng, middle, 0.5, start, stop),
-        "rack": _law(rng, rng.uniform(-20.0, 20.0) * scale, 60.0 * scale, start, stop),
-    }
-    if kind == "dead arm":
-        inputs["arm_angle"] = _approach(rng, angle, float(rng.choice(arm_limits(points, up))), start, stop)
-    if kind == "toggle":
-        held = min(max(middle, 0.0), math.pi)
-        limits = rack_limits(points, up, right, held, 400.0 * scale)
-        if limits:
-            inputs["arm_angle"] = {"constant": held}
-            inputs["rack"] = _approach(rng, 0.0, float(rng.choice(limits)), start, stop)
-    if rng.random() < 0.5:
-        inputs["heave"] = _law(rng, rng.uniform(-30.0, 30.0) * scale, 200.0 * scale, start, stop)
     content = {
         "title": f"random car {number}",
         "effects": list(EFFECTS),
         "tolerance": 1e-9 * scale,
         "mechanism": {
             "type": "macpherson",
-            "closure": "collinear",
+            "closure": closure,
             "side": side,
-            "up": up.tolist(),
-            "right": right.tolist(),
-            "points": {name: point.tolist() for name, point in points.items()},
+            "up": list(car.up),
+            "right": list(car.right),
+            "points": {name: list(place) for name, place in car.points.items()},
         },
-        "inputs": inputs,
-        "time": {"start": start, "stop": stop, "samples": samples},
+        "inputs": _inputs(rng, kind, Linkage.of(car), scale, start, start + duration),
+        "time": {"start": start, "stop": start + duration, "samples": samples},
     }
-    return RandomCar(number, kind, Scene.from_mapping(content))
+    return RandomCar(number, closure, kind, Scene.from_mapping(content))
 
 
-def _hardpoints(rng: np.random.Generator) -> Points:
-    """A left-hand strut in the paper's axes, mm."""
-    points = {name: np.array(PAPER[name]) + rng.uniform(-REACH, REACH, 3) for name in FREE}
-    top, ball = points["strut_top"], points["lower_ball_joint"]
-    length = float(np.linalg.norm(ball - top))
-    for name, low, high in (("strut_lower", 0.55, 0.95), ("strut_rod_end", 0.2, 0.5)):
-        place = rng.uniform(low, high)
-        nearer = min(place, 1.0 - place) * length
-        points[name] = top + place * (ball - top) + 0.08 * nearer * rng.uniform(-1.0, 1.0, 3)
-    points["tie_rod_inner"] = points["rack_centre"] + rng.uniform(-5.0, 5.0, 3)
-    return {name: _triple(points[name]) for name in PAPER}
+def _inputs(
+    rng: np.random.Generator, kind: Kind, linkage: Linkage, scale: float, start: float, stop: float
+) -> dict[str, Any]:
+    angle, travel = linkage.drawn_angle, linkage.drawn_rack
+    middle = angle + float(rng.choice([0.0, rng.uniform(-0.25, 0.25)]))
+    inputs = {
+        "arm_angle": _law(rng, middle, 0.5, start, stop),
+        "rack": _law(rng, rng.uniform(-20.0, 20.0) * scale, 60.0 * scale, start, stop),
+    }
+    if kind == "dead arm":
+        inputs["arm_angle"] = _approach(rng, angle, float(rng.choice(linkage.dead_points())), start, stop)
+    if kind == "toggle":
+        held = min(max(middle, 0.0), math.pi)
+        if ends := _ends(linkage, {"arm_angle": held, "rack": travel}, "rack"):
+            inputs["arm_angle"] = {"constant": held}
+            inputs["rack"] = _approach(rng, travel, float(rng.choice([end for end, _ in ends])), start, stop)
+    if kind == "slide out":
+        ends = _ends(linkage, {"arm_angle": angle, "rack": travel}, "arm_angle")
+        if run_out := [end for end, lock in ends if lock == STRUT]:
+            inputs["arm_angle"] = _approach(rng, angle, float(rng.choice(run_out)), start, stop)
+            inputs["rack"] = {"constant": travel}
+    if rng.random() < 0.5:
+        inputs["heave"] = _law(rng, rng.uniform(-30.0, 30.0) * scale, 200.0 * scale, start, stop)
+    return inputs
 
 
-def _nearly_singular(rng: np.random.Generator, drawn: Points) -> Points:
-    """The drawing with one point moved close to where its joint locks."""
-    points = {name: np.array(point) for name, point in drawn.items()}
-    ball, outer = points["lower_ball_joint"], points["tie_rod_outer"]
+def _ends(linkage: Linkage, home: dict[str, float], driven: str) -> list[tuple[float, str]]:
+    found = (linkage.end(home, driven, ahead) for ahead in (True, False))
+    return [end for end in found if end is not None]
+
+
+def _nearly_singular(rng: np.random.Generator, drawn: Drawing, closure: Closure) -> Drawing:
+    """The drawing with one joint moved close to where it locks."""
+    points = dict(drawn)
+    ball, outer, top = points["lower_ball_joint"], points["tie_rod_outer"], points["strut_top"]
     left = 10.0 ** rng.uniform(NEAREST, -1.0)
-    what = rng.choice(["dead arm", "toggle", "thin knuckle"])
+    what = rng.choice(["dead arm", "toggle", "thin knuckle", "slide"][: 4 if closure == "drawn" else 3])
+    if closure == "drawn":
+        # Near a lock what is left over on the rack's line would move the car far, or could not close.
+        points.pop("rack_centre", None)
     if what == "dead arm":
         # The arm's dead points are in the vertical plane through its axis.
         pivot = points["lower_arm_front"]
         across = _unit(np.cross(points["lower_arm_rear"] - pivot, (0.0, 0.0, 1.0)))
         points["lower_ball_joint"] = ball - (1.0 - left) * ((ball - pivot) @ across) * across
     elif what == "toggle":
-        across = _unit(np.cross(points["strut_top"] - ball, points["tie_rod_inner"] - ball))
+        across = _unit(np.cross(top - ball, points["tie_rod_inner"] - ball))
         points["tie_rod_outer"] = outer - (1.0 - left) * ((outer - ball) @ across) * across
-    else:
-        along = _unit(points["strut_top"] - ball)
+    elif what == "thin knuckle":
+        along = _unit(top - ball)
         foot = ball + ((outer - ball) @ along) * along
         points["tie_rod_outer"] = foot + left * (outer - foot)
-    return {name: _triple(point) for name, point in points.items()}
-
-
-def _placed(rng: np.random.Generator, drawn: Points) -> tuple[dict[str, Array], Array, Array, float]:
-    """The car scaled, turned and moved: points, up, right, and the scale."""
-    scale = float(rng.choice([1.0, 10.0 ** rng.uniform(-3.0, 3.0)]))
-    turn = np.eye(3)
-    if rng.random() < 0.5:
-        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-        turn = turn * np.linalg.det(turn)
-    away = _unit(rng.normal(size=3)) * 10.0 ** rng.uniform(0.0, 7.0) * scale * rng.choice([0.0, 1.0])
-    points = {name: turn @ np.array(point) * scale + away for name, point in drawn.items()}
-    return points, turn @ (0.0, 0.0, 1.0), turn @ (0.0, 1.0, 0.0), scale
+    else:
+        # The axis at a right angle to the line from the top to the ball joint, but for this.
+        down = _unit(ball - top)
+        axis = _unit(_unit(np.cross(down, rng.normal(size=3))) + left * down)
+        points |= {"strut_lower": top + 400.0 * axis, "strut_rod_end": top + 150.0 * axis}
+    return points
 
 
 def _law(
@@ -173,8 +180,3 @@ def _approach(
 
 def _unit(vector: Array) -> Array:
     return np.asarray(vector / np.linalg.norm(vector))
-
-
-def _triple(vector: Array) -> tuple[float, float, float]:
-    x, y, z = (float(component) for component in vector)
-    return x, y, z

@@ -10,12 +10,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.closed_form import Closure
+from validate.drawings import as_tuple, as_tuples, placed, random_drawing, with_slide_that_runs_out
 from validate.input_ends import DRIVEN, Car, Inputs, Linkage
-from validate.paper_car import PAPER
-
-Array = NDArray[np.float64]
 
 NEAREST = 1e-12  # of an input's range: its own rounding is 1e-4 of that
 
@@ -29,7 +27,7 @@ class NearPose:
         home: the inputs at which the car is drawn; the way from there to `inputs` is open.
         inputs: arm angle (rad), rack and heave (mm).
         driven: the input that is near its last reachable value.
-        closure: what locks there, `arm` or `tie_rod`.
+        lock: what locks there, `arm`, `strut` or `tie_rod`.
         reach: range of that input, rad or mm.
         distance: from the last reachable value, in parts of the range.
     """
@@ -39,7 +37,7 @@ class NearPose:
     home: Inputs
     inputs: Inputs
     driven: str
-    closure: str
+    lock: str
     reach: float
     distance: float
 
@@ -104,39 +102,22 @@ def approach(
     other = linkage.end(held, driven, not forward) if last else None
     if last is None or other is None:
         return None
-    value, closure = last
+    value, lock = last
     inputs = held | {driven: value + (other[0] - value) * distance, "heave": 0.1 * size * heave}
     if not (0.0 < inputs["arm_angle"] < math.pi and linkage.way_is_open(home, inputs)):
         return None
-    return NearPose(number, car, home, inputs, driven, closure, abs(other[0] - value), distance)
+    return NearPose(number, car, home, inputs, driven, lock, abs(other[0] - value), distance)
 
 
 def random_car(rng: np.random.Generator) -> Car:
-    """Hardpoints up to 200 mm from the paper's, either side, a share turned, moved and scaled."""
-    free = {name: np.array(place) + rng.uniform(-200.0, 200.0, 3) for name, place in PAPER.items()}
-    top, ball = free["strut_top"], free["lower_ball_joint"]
-    length = float(np.linalg.norm(ball - top))
-    # As in any drawing of a strut, its inner points lie near its line, and up to 8 degrees off it.
-    for name, low, high in (("strut_lower", 0.55, 0.95), ("strut_rod_end", 0.2, 0.5)):
-        place = rng.uniform(low, high)
-        aside = 0.08 * min(place, 1.0 - place) * length * rng.uniform(-1.0, 1.0, 3)
-        free[name] = top + place * (ball - top) + aside
-    free["tie_rod_inner"] = free["rack_centre"] + rng.uniform(-5.0, 5.0, 3)
+    """A car of `drawings`, three in ten collinear and two in ten with a slide that can run out."""
+    share = rng.random()
+    closure: Closure = "collinear" if share < 0.3 else "drawn"
+    drawn = random_drawing(rng.uniform, closure)
+    if share > 0.8:
+        drawn = with_slide_that_runs_out(rng.uniform, drawn)
     side = ("left", "right")[int(rng.integers(2))]
     if side == "right":
-        free = {name: place * (1.0, -1.0, 1.0) for name, place in free.items()}
-    turn = np.eye(3)
-    if rng.random() < 0.3:
-        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        turn *= np.sign(np.linalg.det(turn))
-    scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.3 else 1.0
-    shift = np.zeros(3)
-    if rng.random() < 0.3:
-        shift = scale * 10.0 ** rng.uniform(2.0, 7.0) * rng.uniform(-1.0, 1.0, 3)
-    points = {name: _triple(scale * (turn @ place) + shift) for name, place in free.items()}
-    return Car(points, side, _triple(turn[:, 2]), _triple(turn[:, 1]))
-
-
-def _triple(vector: Array) -> tuple[float, float, float]:
-    x, y, z = (float(component) for component in vector)
-    return x, y, z
+        drawn = {name: place * (1.0, -1.0, 1.0) for name, place in drawn.items()}
+    points, up, right, _ = placed(rng, drawn)
+    return Car(as_tuples(points), side, as_tuple(up), as_tuple(right), closure)

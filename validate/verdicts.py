@@ -80,7 +80,7 @@ def _first_without_pose(scene: Scene, way: list[dict[str, tuple[float, ...]]]) -
 def _way_to_the_start(scene: Scene) -> list[dict[str, tuple[float, ...]]]:
     points = {name: np.array(point) for name, point in scene.mechanism.points.items()}
     arm = points["lower_ball_joint"] - points["lower_arm_front"]
-    slide = points["tie_rod_inner"] - points["rack_centre"]
+    slide = points["tie_rod_inner"] - points.get("rack_centre", points["tie_rod_inner"])
     rise = float(arm @ np.array(scene.mechanism.up)) / float(np.linalg.norm(arm))
     travel = -float(slide @ np.array(scene.mechanism.right))
     first = inputs_at(scene, scene.time.start)
@@ -105,7 +105,9 @@ def true_instant(scene: Scene, inputs: Mapping[str, tuple[float, ...]]) -> Insta
         TruthError: there is no pose, or none can be proven.
     """
     part = scene.mechanism
-    return solve_truth(dict(part.points), inputs, up=part.up, right=part.right, side=part.side)
+    return solve_truth(
+        dict(part.points), inputs, up=part.up, right=part.right, side=part.side, closure=part.closure
+    )
 
 
 def true_solution(scene: Scene) -> Solution:

@@ -77,7 +77,7 @@ def test_the_printed_formulas_fail_where_the_errata_say_and_nowhere_else() -> No
 def test_the_printed_rows_fail_where_the_strut_lies_flat_and_the_slide_does_not() -> None:
     """The whole car turned about x until its strut is horizontal: nothing about the mechanism changes."""
     inputs = {"arm_angle": {"constant": 1.6}, "rack": {"constant": 10.0}}
-    pose = simulate(make_scene(PAPER, inputs)).position
+    pose = simulate(make_scene(PAPER, inputs, closure="collinear")).position
     strut = (pose["strut_top"] - pose["lower_ball_joint"])[0]
     angle = -np.arctan2(strut[2], strut[1])
     turn = np.array(
@@ -85,7 +85,9 @@ def test_the_printed_rows_fail_where_the_strut_lies_flat_and_the_slide_does_not(
     )
     assert abs((turn @ strut)[2]) < 1e-12 * np.linalg.norm(strut)
     turned = {name: tuple(float(c) for c in turn @ point) for name, point in PAPER.items()}
-    scene = make_scene(turned, inputs, up=tuple(turn[:, 2].tolist()), right=tuple(turn[:, 1].tolist()))
+    scene = make_scene(
+        turned, inputs, closure="collinear", up=tuple(turn[:, 2].tolist()), right=tuple(turn[:, 1].tolist())
+    )
     assert compare(scene, "pointcoord", "absolute").agreed
     with pytest.raises(FormulationError, match="printed"):
         compare(scene, "pointcoord", "printed")
@@ -96,7 +98,7 @@ def test_differences_stay_at_rounding_when_the_car_is_far_away() -> None:
     shift = np.array([1e6, -2e6, 5e5])
     far = {name: tuple(float(c) for c in np.add(point, shift)) for name, point in PAPER.items()}
     inputs = {"arm_angle": {"polynomial": [1.2, 0.3]}, "rack": {"polynomial": [0.0, 50.0]}}
-    near = compare(make_scene(PAPER, inputs), "pointcoord", "absolute")
-    outcome = compare(make_scene(far, inputs), "pointcoord", "absolute")
+    near = compare(make_scene(PAPER, inputs, closure="collinear"), "pointcoord", "absolute")
+    outcome = compare(make_scene(far, inputs, closure="collinear"), "pointcoord", "absolute")
     assert near.agreed
     assert outcome.agreed

@@ -10,16 +10,18 @@ from hypothesis import strategies as st
 from validate.bound_checks import Check, Refusal, held_pose, moving_instants
 from validate.bounds import main, study
 from validate.bounds_report import (
+    STRUTS,
     bounds_data,
     bounds_text,
     error_over_distance,
     error_over_rounding,
     fitted,
     looseness,
+    of_strut,
 )
-from validate.input_ends import Car, Linkage
+from validate.input_ends import Linkage
 from validate.singular import approach, near_pose
-from validate.strategies import hardpoints
+from validate.strategies import cars
 from validate.truth import InfeasibleError, solve_truth
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
@@ -30,9 +32,9 @@ NUMBERS = st.integers(0, 2**32 - 1)
 
 @st.composite
 def checks(draw: st.DrawFn) -> Check:
-    """A car of `hardpoints` held near the end of an input, at a distance that a search can move."""
+    """A random car held near the end of an input, at a distance that a search can move."""
     pose = approach(
-        Car(draw(hardpoints()), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+        draw(cars()),
         driven=draw(st.sampled_from(["arm_angle", "rack"])),
         forward=draw(st.booleans()),
         aside=draw(st.floats(-1.0, 1.0)),
@@ -103,11 +105,13 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
 
 def test_report_as_text_and_as_plain_data_say_the_same(small: Any) -> None:
     text, data = bounds_text(small), bounds_data(small)
-    assert f"{len(small.held)} poses held" in text
     assert "bounds below the error: 0" in text
-    assert data["held"]["count"] == len(small.held)
+    for strut in STRUTS:
+        count = len(of_strut(small.held, strut))
+        assert f"{count} poses of struts {strut} held" in text
+        assert data["held"][strut]["count"] == count > 0
     assert sum(row["poses"] for row in data["refusals"]) == len(small.refusals)
-    assert f"slope {data['held']['error_over_rounding']['slope']:.3f}" in text
+    assert f"slope {data['held']['drawn']['error_over_rounding']['slope']:.3f}" in text
 
 
 def test_numbers_give_the_same_poses_again() -> None:
@@ -130,8 +134,8 @@ def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int) -> None:
     car = pose.car
     laws = {name: (value, 0, 0) for name, value in beyond.items()}
     with pytest.raises(InfeasibleError) as caught:
-        solve_truth(car.points, laws, up=car.up, right=car.right, side=car.side)
-    assert caught.value.closure == pose.closure
+        solve_truth(car.points, laws, up=car.up, right=car.right, side=car.side, closure=car.closure)
+    assert caught.value.closure == pose.lock
 
 
 def test_power_laws_are_fitted() -> None:
@@ -143,5 +147,5 @@ def test_power_laws_are_fitted() -> None:
 
 
 def test_refusals_carry_their_reason() -> None:
-    refusal = Refusal(3, 1e-12, "pointcoord: AssemblyError; truth: answers")
+    refusal = Refusal(3, "drawn", 1e-12, "pointcoord: AssemblyError; truth: answers")
     assert refusal.reason in bounds_text(study(0, 0).__class__(0, (), (), (refusal,)))

@@ -22,7 +22,7 @@ def at(case: str, *values: float) -> Case:
 def pose(key: str, arm_angle: float, rack: float, rate: float = 0.0) -> Instant:
     car = CARS[key]
     inputs: dict[str, Any] = {"arm_angle": (arm_angle, 0, 0), "rack": (rack, rate, 0)}
-    return solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side)
+    return solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
 
 
 @pytest.mark.parametrize("key", CARS)

@@ -47,7 +47,7 @@ def test_the_arm_ends_where_its_ball_joint_is_highest_or_lowest_on_its_circle(ca
         ends = {True: mpmath.acos((middle - half) / length), False: mpmath.acos((middle + half) / length)}
         for ahead, expected in ends.items():
             found = last_value(car, "arm_angle", ahead)
-            assert found.closure == "arm"
+            assert found.lock == "arm"
             # halved down to 1e-16 of the range
             value = mpmath.mpf(found.value.numerator) / found.value.denominator
             assert abs(value - expected) <= 2e-16 * found.reach

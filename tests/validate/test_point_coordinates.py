@@ -14,7 +14,7 @@ from validate.formulations import formulation
 from validate.input_ends import Car, Linkage
 from validate.paper_car import PAPER
 
-STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)))
+STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), "collinear"))
 
 
 def rack_to_its_end(short: float, tolerance: float = 1e-9) -> Scene:

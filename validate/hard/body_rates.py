@@ -61,7 +61,9 @@ def _steered(value: float) -> dict[str, Any]:
 
 def across_the_plane(arm_angle: float) -> float:
     """Sine of the angle of the true omega with the plane of the knuckle's points; the rack is held."""
-    pose = solve_truth(PAPER_CAR.points, {"arm_angle": (arm_angle, 1, 0), "rack": (0, 0, 0)})
+    pose = solve_truth(
+        PAPER_CAR.points, {"arm_angle": (arm_angle, 1, 0), "rack": (0, 0, 0)}, closure="collinear"
+    )
     first, second, third = (np.array(pose.position_as_float(name)) for name in KNUCKLE)
     normal = np.cross(second - first, third - first)
     omega = np.array([float(x) for x in pose.angular_velocity["knuckle"]])

@@ -1,4 +1,4 @@
-"""Cars of hard cases: the paper's as drawn, turned, mirrored, its strut upright, or drawn at a true pose."""
+"""Cars of hard cases: the paper's collinear one in several places, and struts beside the ball joint."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.drawings import as_tuple
 from validate.hard.content import Law, paper_car
 from validate.input_ends import Car
-from validate.paper_car import PAPER, mirrored
+from validate.paper_car import PAPER, Points, mirrored
 from validate.truth import solve_truth
 
 Array = NDArray[np.float64]
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
-PAPER_CAR = Car(PAPER, "left", UP, RIGHT)
+PAPER_CAR = Car(PAPER, "left", UP, RIGHT, "collinear")
 # On one vertical line, so that a quarter turn about x or y, which permutes axes, lays the strut exactly flat.
 UPRIGHT_CAR = Car(
     PAPER
@@ -27,13 +28,31 @@ UPRIGHT_CAR = Car(
     "left",
     UP,
     RIGHT,
+    "collinear",
+)
+# The paper's car with the axis of its strut 37 mm inboard of the ball joint, in whole millimetres and exactly
+# in line, and the spin axis of its wheel drawn by itself.
+BESIDE: Points = PAPER | {
+    "strut_lower": (452.0, -270.0, 60.0),
+    "strut_rod_end": (456.0, -225.0, 265.0),
+    "wheel_axis_inner": (452.0, -330.0, 22.0),
+}
+BESIDE_CAR = Car(BESIDE, "left", UP, RIGHT)
+# The same with the axis 400 mm beside the ball joint at the drawing: the slide runs out as the arm rises.
+WIDE_CAR = Car(
+    BESIDE | {"strut_lower": (456.0, -20.0, 220.0), "strut_rod_end": (459.0, -140.0, 407.5)},
+    "left",
+    UP,
+    RIGHT,
 )
 
 
 def turned(car: Car, turn: Array) -> Car:
     """The whole car turned by an orthogonal matrix of determinant 1, its axes with it."""
-    points = {name: _triple(turn @ np.array(place)) for name, place in car.points.items()}
-    return Car(points, car.side, _triple(turn @ np.array(car.up)), _triple(turn @ np.array(car.right)))
+    points = {name: as_tuple(turn @ np.array(place)) for name, place in car.points.items()}
+    return Car(
+        points, car.side, as_tuple(turn @ np.array(car.up)), as_tuple(turn @ np.array(car.right)), car.closure
+    )
 
 
 def rotation(axis: int, cosine: float, sine: float) -> Array:
@@ -56,23 +75,30 @@ def car_content(
 ) -> dict[str, Any]:
     """The content of a scene of a car; settings as for `content.paper_car`."""
     return paper_car(
-        arm_angle, rack, heave, points=car.points, side=car.side, up=car.up, right=car.right, **settings
+        arm_angle,
+        rack,
+        heave,
+        points=car.points,
+        closure=car.closure,
+        side=car.side,
+        up=car.up,
+        right=car.right,
+        **settings,
     )
 
 
 def drawn_at(car: Car, arm_angle: float, rack: float) -> Car:
     """The car drawn anew at the pose of these inputs, rad and mm: nothing is left to assemble."""
     pose = solve_truth(
-        car.points, {"arm_angle": (arm_angle, 0, 0), "rack": (rack, 0, 0)}, up=car.up, right=car.right
+        car.points,
+        {"arm_angle": (arm_angle, 0, 0), "rack": (rack, 0, 0)},
+        up=car.up,
+        right=car.right,
+        closure=car.closure,
     )
     points = {name: pose.position_as_float(name) for name in car.points}
-    return Car(points, car.side, car.up, car.right)
+    return Car(points, car.side, car.up, car.right, car.closure)
 
 
-def _triple(vector: Array) -> tuple[float, float, float]:
-    x, y, z = (float(component) for component in vector)
-    return x, y, z
-
-
-# The other side of the paper's car, leaning every way.
-OTHER_CAR = turned(Car(mirrored(PAPER), "right", UP, RIGHT), any_rotation(1))
+# The strut beside its ball joint on the other side of the car, leaning every way.
+OTHER_CAR = turned(Car(mirrored(BESIDE), "right", UP, RIGHT), any_rotation(1))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from validate.hard import (
+    beside,
     body_rates,
     branches,
     cancelling,
@@ -40,6 +41,7 @@ CASES: tuple[Case, ...] = (
     *numbers.CASES,
     *heaves.CASES,
     *found.CASES,
+    *beside.CASES,
 )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from validate.closed_form import Closure
 from validate.paper_car import EFFECTS, PAPER
 
 Triple = tuple[float, float, float]
@@ -25,6 +26,7 @@ def paper_car(
     heave: Law | None = None,
     *,
     points: Mapping[str, Sequence[float]] = PAPER,
+    closure: Closure = "collinear",
     side: str = "left",
     up: Sequence[float] = (0.0, 0.0, 1.0),
     right: Sequence[float] = (0.0, 1.0, 0.0),
@@ -39,6 +41,7 @@ def paper_car(
     Args:
         arm_angle, rack, heave: laws of the inputs, rad and mm over s.
         points: hardpoints, mm; the paper's if not given.
+        closure: what the strut is; the paper's is collinear.
         stop: s; the start if not given, which is a single instant.
         samples: instants; three of a motion if not given.
     """
@@ -49,7 +52,7 @@ def paper_car(
         "tolerance": tolerance,
         "mechanism": {
             "type": "macpherson",
-            "closure": "collinear",
+            "closure": closure,
             "side": side,
             "up": [float(x) for x in up],
             "right": [float(x) for x in right],

@@ -27,12 +27,12 @@ DEGREE = 64  # of the polynomial in the literature
 
 
 @cache
-def meeting() -> tuple[float, float]:
+def meeting(car: str = "paper") -> tuple[float, float]:
     """Arm angle and rack travel, rad and mm, at which the two sides of the tie rod just meet, near 35 deg.
 
     At less rack travel the arm cannot pass this angle, at more it can; there `spare` has a minimum of 0.
     """
-    linkage = Linkage.of(car_called("paper"))
+    linkage = Linkage.of(car_called(car))
 
     def least(rack: float) -> tuple[float, float]:
         found = minimize_scalar(
@@ -73,7 +73,9 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share)
     trial = try_on_side(share, paper_car(angle, rack), SOLVERS, followed)
-    listed = count_assemblies(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=STARTS)
+    listed = count_assemblies(
+        PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, closure="collinear", starts=STARTS
+    )
     facts: dict[str, float | str] = {
         "assemblies found, proven": float(len(listed.found)),
         "assemblies possible": float(listed.possible),

@@ -30,6 +30,7 @@ SEARCHED = Car(
     "left",
     UP,
     RIGHT,
+    "collinear",
 )
 ASIDE = 0.7681496121355411  # where its rack was held
 COARSE = 1e9  # mm, a tolerance that asks for nothing
@@ -54,7 +55,7 @@ def _folded(value: float) -> dict[str, Any]:
     top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
     x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
     points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}
-    return car_content(Car(points, "left", UP, RIGHT), [1.4, 0.2], stop=1.0)
+    return car_content(Car(points, "left", UP, RIGHT, "collinear"), [1.4, 0.2], stop=1.0)
 
 
 CASES: tuple[Case, ...] = (

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
+from pointcoord.suspensions.macpherson import DRAWN
 from validate.inputs import rates
 from validate.truth import TruthError
 from validate.verdicts import inputs_at, true_instant
@@ -17,7 +18,6 @@ Array = NDArray[np.float64]
 
 EPS = float(np.finfo(float).eps)
 ROUNDINGS = 8.0  # of the estimate ROUNDINGS * eps * condition * size of a model without proven bounds
-CARRIED = "wheel_centre"
 
 
 class Kept(Protocol):
@@ -79,7 +79,7 @@ def _bounds(partial: Motion | Kept, scene: Scene) -> dict[str, Array]:
     estimate = ROUNDINGS * EPS * proof.condition * size + scene.tolerance
     return {
         name: np.minimum(proof.carried_bound, estimate * proof.carried_gain) + rounding
-        if name == CARRIED
+        if name in DRAWN.carried
         else np.minimum(proof.bound, estimate) + rounding
         for name in position
     }

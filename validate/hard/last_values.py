@@ -7,14 +7,16 @@ interval is halved in fractions until it is shorter than 1e-16 of the input's ra
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 
 import numpy as np
 
+from validate.drawings import as_tuple
+from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, RIGHT, UP, WIDE_CAR, any_rotation, turned
 from validate.input_ends import Car, Linkage
-from validate.paper_car import PAPER
+from validate.paper_car import mirrored
 from validate.truth import InfeasibleError, SingularPoseError, solve_truth
 
 DIGITS = 15  # of the truth: only whether there is a pose counts, which is proven anyhow
@@ -30,13 +32,13 @@ class LastValue:
         value: rad or mm; poses exist up to here.
         reach: distance from this end to the opposite one, rad or mm.
         ahead: whether it is the upper end.
-        closure: what locks there, `arm` or `tie_rod`.
+        lock: what locks there, `arm`, `strut` or `tie_rod`.
     """
 
     value: Fraction
     reach: float
     ahead: bool
-    closure: str
+    lock: str
 
     def beyond(self, share: float) -> float:
         """An input beyond this end by a share of the reach, rad or mm."""
@@ -44,16 +46,16 @@ class LastValue:
 
 
 def car_called(name: str) -> Car:
-    """The paper's car, or `turned`: mirrored, turned about three axes and 4e6 mm from the origin."""
-    if name == "paper":
-        return Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
-    turn = np.linalg.qr(np.random.default_rng(9).normal(size=(3, 3)))[0]
-    turn *= np.sign(np.linalg.det(turn))
-    shift = np.array([3e6, -2e6, 2e6])
-    moved = {name: turn @ (np.array(place) * (1.0, -1.0, 1.0)) + shift for name, place in PAPER.items()}
-    points = {name: (float(x), float(y), float(z)) for name, (x, y, z) in moved.items()}
-    up, right = ((float(x), float(y), float(z)) for x, y, z in (turn[:, 2], turn[:, 1]))
-    return Car(points, "right", up, right)
+    """The paper's car; `beside` and `wide`, whose struts pass beside the ball joint; or `turned`.
+
+    That is `beside` mirrored, turned about three axes and 4e6 mm from the origin.
+    """
+    known = {"paper": PAPER_CAR, "beside": BESIDE_CAR, "wide": WIDE_CAR}
+    if name in known:
+        return known[name]
+    turn, shift = any_rotation(9), np.array([3e6, -2e6, 2e6])
+    there = turned(Car(mirrored(BESIDE), "right", UP, RIGHT), turn)
+    return replace(there, points={n: as_tuple(np.array(p) + shift) for n, p in there.points.items()})
 
 
 def home(car: str, level: bool = True) -> dict[str, float]:
@@ -108,6 +110,7 @@ def reachable(car: str, values: Mapping[str, Fraction | float]) -> bool:
             up=hardpoints.up,
             right=hardpoints.right,
             side=hardpoints.side,
+            closure=hardpoints.closure,
             digits=DIGITS,
         )
     except InfeasibleError:

@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.hard.cars import PAPER_CAR
 from validate.hard.case import Case, Expected
 from validate.hard.content import decades, paper_car
 from validate.hard.sides import try_on_side
-from validate.input_ends import Car, Linkage
+from validate.input_ends import Linkage
 from validate.paper_car import PAPER
 from validate.truth import solve_truth
 
@@ -33,13 +34,13 @@ SLOW = decades()[::3]  # a refusal takes half a second here
 @cache
 def drawn_angle() -> float:
     """Arm angle of the paper's drawing, rad."""
-    return Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))).drawn_angle
+    return Linkage.of(PAPER_CAR).drawn_angle
 
 
 @cache
 def assembled() -> dict[str, Array]:
     """The paper's car at its own inputs, each coordinate the nearest number to the true one, mm."""
-    instant = solve_truth(PAPER, {"arm_angle": (drawn_angle(), 0, 0)})
+    instant = solve_truth(PAPER, {"arm_angle": (drawn_angle(), 0, 0)}, closure="collinear")
     return {name: np.array(instant.position_as_float(name)) for name in PAPER}
 
 

@@ -43,11 +43,12 @@ def _share(a: Array, b: Array, c: Array) -> Array:
 def followed(tried: Tried) -> Facts:
     """For each solution its least share on the side of the drawing; negative where it is on another branch.
 
-    The tie rod's side is drawn about the knuckle's own line, which points towards the strut's top or away.
+    A collinear strut's tie rod is drawn about the knuckle's own line, which points towards the top or away.
     """
     facts: dict[str, float | str] = {}
     drawn = drawn_choices(tried.scene)
-    signs = {"arm": drawn.arm, "tie": drawn.tie * drawn.strut}
+    collinear = tried.scene.mechanism.closure == "collinear"
+    signs = {"arm": drawn.arm, "tie": drawn.tie * (drawn.strut if collinear else 1)}
     for name, solution in tried.solutions.items():
         for side, shares in sides(tried.scene, solution.position).items():
             facts[f"{side} side of {name}, least share"] = float(np.min(signs[side] * shares))

@@ -17,6 +17,7 @@ from pointcoord import AssemblyError, Scene
 from validate.formulation import FormulationError
 from validate.formulations import formulation
 from validate.hard.blocked_ways import blocked_way
+from validate.hard.cars import car_content
 from validate.hard.case import RIGHT, Answer, Case, Trial
 from validate.hard.content import Law, decades, paper_car
 from validate.hard.kept import fault_of_kept
@@ -31,8 +32,14 @@ SHARE = 1e-9  # of the range: how exactly the last value must be found
 SAMPLES = 5
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 # What is in line at each kind of end: all of the first, and one of the second.
+STRUT = {"strut_top on the strut axis"}
 TIE_ROD = ({"link tie_rod_inner - tie_rod_outer"}, {"strut_lower", "lower_ball_joint"})
 ARM = {"link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"}
+LOCKED = {
+    "arm": "ball joint, arm axis, up",
+    "strut": "nothing: the top is at a right angle beside the ball joint",
+    "tie_rod": "tie rod, steering arm",
+}
 
 
 @dataclass(frozen=True)
@@ -74,13 +81,10 @@ class Drive:
         laws[self.driven] = (start, goal - start) if self.moving else goal
         car = car_called(self.car)
         return Scene.from_mapping(
-            paper_car(
-                arm_angle=laws["arm_angle"],
-                rack=laws["rack"],
-                points=car.points,
-                side=car.side,
-                up=car.up,
-                right=car.right,
+            car_content(
+                car,
+                laws["arm_angle"],
+                laws["rack"],
                 stop=1.0 if self.moving else 0.0,
                 samples=SAMPLES if self.moving else 1,
             )
@@ -107,7 +111,7 @@ def examine(drive: Drive, overshoot: float) -> Trial:
         else:
             answers.append(_answered(name, scene))
     facts["asked for [mm or rad]"] = _asked(scene, drive)
-    facts["in line"] = "ball joint, arm axis, up" if drive.end.closure == "arm" else "tie rod, steering arm"
+    facts["in line"] = LOCKED[drive.end.lock]
     return Trial(overshoot, tuple(answers), facts)
 
 
@@ -175,7 +179,7 @@ def _faults_of_words(reason: Exception, scene: Scene, drive: Drive) -> list[str]
             faults.append(f"the message does not hold {drive.driven} = {reached[drive.driven]:.10g}")
         if reason.reduce != drive.driven:
             faults.append(f"{reason.reduce!r} is to be reduced, and {drive.driven!r} was driven")
-        if not _in_line(reason.limits[:3], drive.end.closure):
+        if not _in_line(reason.limits, drive.end.lock):
             faults.append(f"what limits it is not what lies in line: {', '.join(reason.limits[:3])}")
     return faults
 
@@ -185,10 +189,12 @@ def _shown(reason: Exception, driven: str, values: Mapping[str, float]) -> bool:
     return any(f"{driven} = {values[driven]:.{digits}g}" in str(reason) for digits in (10, 12))
 
 
-def _in_line(limits: tuple[str, ...], closure: str) -> bool:
-    if closure == "arm":
-        return set(limits) >= ARM
-    rod, ends = TIE_ROD
+def _in_line(limits: tuple[str, ...], lock: str) -> bool:
+    if lock == "arm":
+        return set(limits[:3]) >= ARM
+    if lock == "strut":
+        return set(limits) >= STRUT
+    limits, (rod, ends) = limits[:3], TIE_ROD
     steering_arm = {limit for limit in limits if "tie_rod_outer" in limit and any(e in limit for e in ends)}
     return set(limits) >= rod and bool(steering_arm)
 
@@ -218,6 +224,7 @@ ENDS = {
     ("rack", False): ("rack-least", "Tie rod and steering arm lie in line"),
     ("rack", True): ("rack-greatest", "Tie rod and steering arm lie in line"),
 }
+SLIDE = "The strut's slide has no more way"
 # Every refusal is a whole motion towards a fold, so few values must do.
 SOME, FEW, ENDS_ONLY = decades()[::4], decades()[::6], decades()[::12]
 
@@ -243,6 +250,13 @@ CASES: tuple[Case, ...] = (
             FEW,
         )
         for (driven, ahead), (name, where) in ENDS.items()
+    ),
+    _case(Drive("wide", "arm_angle", False), "reach-slide-runs-out", SLIDE, SOME),
+    _case(
+        Drive("wide", "arm_angle", False, moving=False),
+        "start-beyond-slide-runs-out",
+        f"{SLIDE}, and the first instant lies beyond",
+        FEW,
     ),
     blocked_way(GROUP, FEW),
     scene_case(

@@ -19,8 +19,8 @@ from validate.hard.trial import Measure, Tried, solved, try_scene
 from validate.true_solution import as_solution
 from validate.truth import AmbiguousAssemblyError, Choices, Instant, TruthError
 from validate.truth.branches import candidate
+from validate.truth.closures import equations_for
 from validate.truth.design import Design, Driven, exact_vector, values_only
-from validate.truth.equations import unknown_of
 from validate.truth.instant import prove_instant
 from validate.truth.solve import with_enough_digits
 from validate.truth.vectors import cross, dot, minus
@@ -39,14 +39,17 @@ def drawn_choices(scene: Scene) -> Choices:
     p = {name: exact_vector(place, name) for name, place in part.points.items()}
     ball, top = p["lower_ball_joint"], p["strut_top"]
     front, strut = p["lower_arm_front"], minus(p["strut_top"], ball)
-    knuckle = minus(p["strut_lower"], ball)
+    # The knuckle's side of the strut, the line that the tie rod turns it about, and the rod's direction.
+    drawn = part.closure == "drawn"
+    along = minus(top, p["strut_lower"]) if drawn else minus(p["strut_lower"], ball)
+    steered, slid = (strut, along) if drawn else (along, strut)
     axis, up = minus(p["lower_arm_rear"], front), exact_vector(part.up, "up")
     inner, outer = minus(p["tie_rod_inner"], ball), minus(p["tie_rod_outer"], ball)
     products = {
         "arm": dot(cross(axis, up), minus(ball, front)),
-        "strut": dot(knuckle, strut),
-        "rod": -dot(minus(p["strut_rod_end"], top), strut),
-        "tie": dot(cross(knuckle, inner), outer),
+        "strut": dot(along, strut),
+        "rod": -dot(minus(p["strut_rod_end"], top), slid),
+        "tie": dot(cross(steered, inner), outer),
     }
     for name, product in products.items():
         if product == 0:
@@ -62,7 +65,7 @@ def instant_on_side(scene: Scene, time: float) -> Instant:
         TruthError: there is no pose, or none can be proven.
     """
     part, choices = scene.mechanism, drawn_choices(scene)
-    design = Design.from_points(dict(part.points), part.up, part.right, part.side)
+    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure)
     driven = Driven.from_mapping(inputs_at(scene, time))
 
     def attempt(working: int) -> Instant:
@@ -70,7 +73,8 @@ def instant_on_side(scene: Scene, time: float) -> Instant:
         still = values_only(known)
         chosen = candidate(still, choices)
         chosen.require_feasible(float(design.unit))
-        return prove_instant(design, known, unknown_of(chosen.points, still), choices, DIGITS, working)
+        start = equations_for(part.closure).unknown_of(chosen.points, still)
+        return prove_instant(design, known, start, choices, DIGITS, working)
 
     return with_enough_digits(attempt, DIGITS)
 
