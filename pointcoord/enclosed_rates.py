@@ -44,16 +44,20 @@ class Summed:
     """How a derivative of the coordinates was summed from a series, (N, size), units per s^d.
 
     Attributes:
-        last: the magnitudes of the last two terms; what is left out is smaller still.
+        last, before: the magnitudes of the last two terms, and of the two before them.
         terms: the magnitudes of all terms. Their own rounding goes with them and with the condition number,
             also where they cancel.
     """
 
     last: Array
+    before: Array
     terms: Array
 
     def expected(self, value: Array, condition: Array, time: Array) -> Array:
-        """Error of the sum by both, beside what the rounding of its value makes, (N, size).
+        """Error of the sum by what is left out and by rounding, beside that of its value, (N, size).
+
+        Terms that go on as they did, by a factor of q every two, leave out last q / (1 - q); the last two
+        are counted with it, and q as at most 0.95.
 
         Args:
             value: the sum, per `time` s^d.
@@ -61,7 +65,10 @@ class Summed:
         terms = self.terms * time[:, None]
         cancelled = np.maximum(terms - np.abs(value), 0.0).max(axis=-1)
         rounded = EPS * (terms + (condition * cancelled)[:, None])
-        return np.asarray(self.last * time[:, None] + rounded)
+        largest = [part.max(axis=-1) for part in (self.last, self.before)]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            falling = np.clip(np.nan_to_num(largest[0] / largest[1], posinf=1.0), 0.0, 0.95)
+        return np.asarray(self.last * (time / (1.0 - falling))[:, None] + rounded)
 
 
 def enclosed_coordinates(
@@ -96,7 +103,7 @@ def enclosed_coordinates(
     lacking = lacking.copy()
     lacking[:, :n] = -certificate.step
     pose = Enclosed.of(y, lacking, proven, expected)
-    moved = np.abs(pose.low) + pose.radius[0]
+    moved = np.abs(lacking) + pose.radius[0]
     spoilt = certificate.defect + magnitude @ system.jacobian_uncertainty(moved)
     result = [pose]
     known = [_known_rate(y.shape, driven, derivative) for derivative in range(1, len(states))]

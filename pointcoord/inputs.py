@@ -228,16 +228,19 @@ class Table:
 def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
     """A law's value rounded to the nearest double: which one is certain, unless it lies next to a tie.
 
-    Where twice the working precision does not tell more than the computed value does, that is taken.
+    Next to a tie it may be either neighbour. Where twice the working precision tells less than the computed
+    value does, that is taken, and it may be a neighbour as well.
     """
-    nearest, coarse = exact.high, law.rounding(instants, derivative)
+    nearest, doubt = exact.high, exact.radius[0]
     gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
-    doubt = exact.radius[0]
     proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
     computed = factorial(derivative) * law.series(instants, derivative)[..., derivative]
-    sharp = proven <= coarse
+    coarse = law.rounding(instants, derivative)
+    neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
+    sharp = proven <= neighbours
     values = np.where(sharp, nearest, computed)
-    return Enclosed.of(values, 0.0, np.where(sharp, proven, coarse), coarse + UNIT_ROUNDOFF * np.abs(values))
+    expected = coarse + UNIT_ROUNDOFF * np.abs(values)
+    return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
 
 
 def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:

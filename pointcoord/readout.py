@@ -13,6 +13,7 @@ from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import Plan
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Channel, Samples
+from pointcoord.reported_bounds import BodyLoss, no_loss
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
@@ -31,6 +32,7 @@ class Readout:
         outboard: unit vector away from the car's middle.
         body_rates: angular velocity and acceleration of a body from its points' states; the least
             squares of `rigid` unless a variant replaces it.
+        body_loss: how many times what least squares loses `body_rates` may lose.
     """
 
     mechanism: Mechanism
@@ -38,6 +40,7 @@ class Readout:
     chassis: ChassisMotion
     outboard: Array
     body_rates: BodyRates
+    body_loss: BodyLoss = no_loss
 
     def samples(self, times: Array, states: States) -> Samples:
         """Name the states and compute the effects of the plan from them."""

@@ -19,6 +19,8 @@ from pointcoord.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 Arrays = Mapping[str, Array]
+BodyLoss = Callable[[tuple[Array, Array], tuple[Array, Array]], Array]
+"""From the first two edges of a body and their rates, (..., 3), a factor of shape (..., 1)."""
 
 RATES = ("position", "velocity", "acceleration")
 TURNS = ("angular_velocity", "angular_acceleration")
@@ -27,6 +29,11 @@ TURNS = ("angular_velocity", "angular_acceleration")
 ROUNDINGS = 3.0
 # Powers of two by which a unit of time is chosen: its square still is a number.
 LONGEST = 400
+
+
+def no_loss(edges: tuple[Array, Array], rates: tuple[Array, Array]) -> Array:
+    """Of least squares."""
+    return np.ones((*edges[0].shape[:-1], 1))
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,7 @@ class Reported:
         lines: for each wheel angle the line that leans, from point to point.
         axes: for each wheel angle the directions whose components along the line give -sine and cosine.
         summed: how the coordinates and their derivatives were summed at instants; nothing if solved for.
+        body_loss: how many times what least squares loses the formula of the bodies' rates may lose.
     """
 
     numbers: Bounds
@@ -66,6 +74,7 @@ class Reported:
     lines: Mapping[str, tuple[str, str]]
     axes: Mapping[str, tuple[Array, Array]]
     summed: Callable[[Array], Sequence[Summed]]
+    body_loss: BodyLoss
 
     def driven(self, mechanism: Mechanism, times: Array) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
         """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
@@ -84,6 +93,7 @@ class Reported:
             self.lines,
             self.axes,
             self.summed,
+            self.body_loss,
         )
 
 
@@ -128,7 +138,7 @@ def reported_bounds(mechanism: Mechanism, pose: Proven, reported: Reported) -> t
             for d, quantity in enumerate(RATES[: len(states)])
         }
         if len(states) == len(RATES):
-            found |= _of_bodies(mechanism, points, numbers, powers)
+            found |= _of_bodies(mechanism, points, numbers, powers, reported.body_loss)
         found["wheel"] = {
             name: _of_angle(points[0], reported.lines[name], reported.axes[name], angle)
             for name, angle in numbers.wheel.items()
@@ -161,19 +171,28 @@ def _of_points(
 
 
 def _of_bodies(
-    mechanism: Mechanism, points: Sequence[Points], numbers: Bounds, powers: Sequence[Array]
+    mechanism: Mechanism,
+    points: Sequence[Points],
+    numbers: Bounds,
+    powers: Sequence[Array],
+    body_loss: BodyLoss,
 ) -> dict[str, dict[str, Array]]:
     """Both bounds of the rates of bodies, (2, N, 3)."""
     found: dict[str, dict[str, Array]] = {name: {} for name in TURNS}
     for body in numbers.angular_velocity:
         names, spin = mechanism.topology.bodies[body], None
+        places, rates = (
+            (second.middle - first.middle, third.middle - first.middle)
+            for first, second, third in ([state[name] for name in names[:3]] for state in points[:2])
+        )
+        loss = body_loss(places, rates)
         for d, quantity in enumerate(TURNS, 1):
             reported = getattr(numbers, quantity)[body]
             # About a rate that is no number nothing can be proven, but what is expected can be said.
             near = np.nan_to_num(reported, posinf=0.0, neginf=0.0) * powers[d][:, None]
             off = body_rate_error(points[0], points[d], names, near, spin)
             error = np.where(np.isfinite(reported), np.abs(off.middle) + off.radius[0], np.inf)
-            found[quantity][body] = np.stack([error, off.radius[1]]) / powers[d][:, None]
+            found[quantity][body] = np.stack([error, loss * off.radius[1]]) / powers[d][:, None]
             spin = Enclosed.of(near, off.middle, *off.radius)
     return found
 

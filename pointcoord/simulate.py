@@ -29,10 +29,10 @@ from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved, solve_instants, square_velocity_term
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Motion, Prover, Samples
-from pointcoord.printed import printed_body_rates, printed_square_velocity_term
+from pointcoord.printed import printed_body_loss, printed_body_rates, printed_square_velocity_term
 from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
-from pointcoord.reported_bounds import Bounds, Reported
+from pointcoord.reported_bounds import Bounds, Reported, no_loss
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
@@ -68,6 +68,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         chassis=ChassisMotion.of(mechanism, scene.functions),
         outboard=scene.mechanism.outboard,
         body_rates=printed_body_rates if method == "printed" else least_squares_rates,
+        body_loss=printed_body_loss if method == "printed" else no_loss,
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)
@@ -221,7 +222,15 @@ def _reported(
 ) -> Reported:
     """All numbers of samples, and what went into them beside the coordinates."""
     numbers = Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)})
-    return Reported(numbers, readout.chassis, functions, readout.angle_lines, readout.angle_axes, summed)
+    return Reported(
+        numbers,
+        readout.chassis,
+        functions,
+        readout.angle_lines,
+        readout.angle_axes,
+        summed,
+        readout.body_loss,
+    )
 
 
 def _motion(

@@ -98,10 +98,17 @@ class Sampler:
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
-        last = [np.where(np.arange(len(t))[:, None] < len(t) - 2, 0.0, t) for t in terms]
         derivative = self.readout.plan.derivative
-        both = (evaluate(self.chain, columns, instants, derivative) for columns in (last, terms))
-        return [Summed(*part) for part in zip(*both, strict=True)]
+
+        def sums(first: int, last: int | None) -> Array:
+            """Of the terms from one to another, counted from the end."""
+            kept = [np.zeros_like(t) for t in terms]
+            for part, whole in zip(kept, terms, strict=True):
+                part[first:last] = whole[first:last]
+            return evaluate(self.chain, kept, instants, derivative)
+
+        parts = (sums(-2, None), sums(-4, -2), sums(0, None))
+        return [Summed(*part) for part in zip(*parts, strict=True)]
 
     @property
     def work(self) -> Work:

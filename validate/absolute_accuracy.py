@@ -69,8 +69,8 @@ def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]
         turn, size = solved.rotation_error["knuckle"], np.abs(along)
         turned = np.roll(turn, -1, axis=-1) * np.roll(size, -2, axis=-1)
         turned += np.roll(turn, -2, axis=-1) * np.roll(size, -1, axis=-1)
-        ends = np.abs(solved.position[end]) + np.abs(solved.position[start])
-        off = np.minimum(off, turned + EPS * ends)
+        rounded = EPS * np.abs(solved.position[end]) + EPS * np.abs(solved.position[start])
+        off = np.minimum(off, turned + rounded)
     right, up = np.array(part.right), np.array(part.up)
     seen = off @ np.abs(right) + off @ np.abs(up)
     with np.errstate(divide="ignore"):

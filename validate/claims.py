@@ -22,7 +22,7 @@ from validate.formulation import NUMBERS_OF, FormulationError, Solution
 from validate.formulations import NAMES, formulation
 from validate.random_cars import RandomCar, random_car
 from validate.report import table
-from validate.true_solution import DUST, as_solution
+from validate.true_solution import DUST, as_solution, scales
 from validate.truth import TruthError
 from validate.truth.exact import as_fraction
 from validate.truth.instant import Instant
@@ -73,7 +73,7 @@ def _held(
 ) -> Held:
     found: list[tuple[float, float]] = []
     # The truth's own error is that of numbers as large as the largest ones that a number is made of.
-    dust = DUST * _scale(quantity, truth)
+    dust = DUST * scales({q: getattr(truth, q) for q in NUMBERS_OF})[quantity]
     for name in getattr(truth, quantity):
         numbers = getattr(solution, quantity)[name].reshape(len(instants), -1)
         claims = getattr(solution.accuracy, quantity)[name].reshape(len(instants), -1)
@@ -83,18 +83,6 @@ def _held(
     error, claim = np.array(found).reshape(-1, 2).T
     off = error > 0.0
     return Held(car.number, car.kind, quantity, error[off], claim[off], int(np.count_nonzero(~off)))
-
-
-def _scale(quantity: str, truth: Solution) -> float:
-    corners = np.stack(list(truth.position.values()))
-    size = float((corners.max(axis=0) - corners.min(axis=0)).max())
-    speed, push = (
-        max(float(np.abs(array).max()) for array in vectors.values())
-        for vectors in (truth.velocity, truth.acceleration)
-    )
-    made = push + speed * (speed / size)
-    scales = {"position": size, "velocity": speed, "acceleration": made, "wheel": 1.0}
-    return scales.get(quantity, speed / size if quantity == "angular_velocity" else made / size)
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:

@@ -31,6 +31,7 @@ from validate.refusals import same_reason, why_refused
 from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 
 MODELS = ("pointcoord", "absolute")
+ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 
 
 @dataclass(frozen=True)
@@ -87,11 +88,14 @@ def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
     outcome = compare_solutions(car.scene, first, second, car.scene.title)
     if outcome.agreed:
         return Result("agreed", "", _shares(outcome), False)
-    worst = outcome.disagreements[0]
+    worst = (*outcome.disagreements, *outcome.undecided)[0]
     reason = (
         f"{worst.quantity} of {worst.name} differs by {worst.difference:.3g} {worst.unit}, "
         f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
     )
+    if worst.verdict != "disagrees":
+        said = f", {worst.part:.6f} of it what {worst.rests_on} claims"
+        return Result(f"{worst.verdict}: {worst.quantity}", reason + said, {}, True)
     kind = f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}"
     return Result(kind, reason, {}, True)
 
@@ -111,9 +115,15 @@ def _told(error: FormulationError) -> str:
 
 
 def _shares(outcome: Outcome) -> dict[str, float]:
+    """Largest share of each quantity, and of each wheel angle.
+
+    Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
+    """
     largest: dict[str, float] = {}
     for row in outcome.rows:
-        largest[row.quantity] = max(largest.get(row.quantity, 0.0), row.share)
+        if row.part < ALONE:
+            what = row.name if row.quantity == "wheel" else row.quantity
+            largest[what] = max(largest.get(what, 0.0), row.share)
     return largest
 
 

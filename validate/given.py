@@ -85,7 +85,8 @@ def given(solution: Solution, instants: Array) -> Given:
                 notes.append(f"{what} {array}; it is left out")
                 continue
             wrong = int(np.count_nonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=-1)))
-            if wrong:
+            said = any(note.startswith(f"{_words(quantity)} of {name} ") for note in solution.notes)
+            if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
             numbers[quantity][name] = array[places]
             claim = _shaped(claimed[name], shape) if name in claimed else "is not given"

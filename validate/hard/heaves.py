@@ -100,7 +100,7 @@ def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
 
 def _rounded(sums: Mapping[str, Array], added: Array) -> dict[str, Array]:
     """What is added is rounded once, and so is the sum; what was there is smaller than one of them."""
-    return {name: EPS * (np.abs(array) + np.abs(added)) for name, array in sums.items()}
+    return {name: EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
 def heaving(every: tuple[Tried, ...]) -> Callable[[float], Trial]:
