@@ -53,6 +53,9 @@ class Certificate:
         radius: exactly one assembly lies within it; infinite where nothing could be proven.
         unique_within: no other assembly lies within this distance.
         newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1.
+        contraction: z + omega radius >= |I - X C_u| everywhere within the radius, shape (...,); infinite
+            where nothing could be proven.
+        defect: |I - X C_u(y)| element by element, shape (..., unknowns, unknowns).
         step: e, shape (..., unknowns).
         spread: uncertainty of each component of e, |X| d, shape (..., unknowns).
         tail: what is left, for every coordinate, shape (...,); infinite where nothing could be proven.
@@ -61,6 +64,8 @@ class Certificate:
     radius: Array
     unique_within: Array
     newton_constant: Array
+    contraction: Array
+    defect: Array
     step: Array
     spread: Array
     tail: Array
@@ -108,6 +113,8 @@ def certify(
         radius=np.where(proven, radius, np.inf),
         unique_within=np.where(proven, outer, 0.0),
         newton_constant=np.where(room > 0.0, constant, np.inf),
+        contraction=np.where(proven, INFLATION * (z + omega * radius), np.inf),
+        defect=defect,
         step=step,
         spread=spread,
         tail=np.where(proven, tail, np.inf),

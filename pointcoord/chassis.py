@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.enclosure import Enclosed
 from pointcoord.errors import InputOutOfRange
 from pointcoord.inputs import TimeFunction
 from pointcoord.mechanism import Mechanism
@@ -62,6 +63,16 @@ class ChassisMotion:
             along = self.directions[name][..., None, :]
             parts = [series[..., d, None] * along for d in range(derivatives + 1)]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
+        return sums
+
+    def enclosed(self, instants: Array, origin: Array) -> list[Enclosed]:
+        """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s."""
+        still = np.zeros((len(instants), 3))
+        sums = [Enclosed.of(origin + still), Enclosed.of(still), Enclosed.of(still)]
+        for name, function in self.functions.items():
+            along = Enclosed.of(self.directions[name])
+            laws = function.enclosed(instants)
+            sums = [total + along * law.spread_out for total, law in zip(sums, laws, strict=True)]
         return sums
 
     def rounding(self, instants: Array, origin: Array) -> Array:

@@ -5,6 +5,7 @@ Values are power series of shape (..., order + 1); lengths are in units of the m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord.doubled import exact_product, exact_square
 from pointcoord.drawing import Drawing
+from pointcoord.enclosure import Enclosed, cosine_sine
 from pointcoord.errors import InputOutOfRange
 from pointcoord.inputs import cosine
 from pointcoord.quadratic import UNIT_ROUNDOFF
@@ -45,6 +47,14 @@ class Drive(Protocol):
 
         Args:
             law: how far the input's value may be off, rad or mm.
+        """
+        ...
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """Where the coordinate and its first and second derivative exactly are.
+
+        Args:
+            law: the input's value, rate and acceleration, each (N,), rad or mm per s^d.
         """
         ...
 
@@ -94,11 +104,27 @@ class ArmAngle:
         The cosine is rounded to 1 unit in the last place at worst, which is 2 u, and the product by u; its
         angle's uncertainty enters as the sine, at most 1.
         """
+        length, lacking = self._length(drawing)
+        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate) + 1.01 * length * law
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """d cos(angle), -d sin(angle) angle' and -d (sin(angle) angle'' + cos(angle) angle'^2)."""
+        angle, rate, acceleration = law
+        length, lacking = self._length(drawing)
+        # What is left of the length is of the order of u^2, and plain doubles round it once or twice.
+        arm = Enclosed.of(
+            length, length * lacking, 256 * UNIT_ROUNDOFF**2 * length, 2 * UNIT_ROUNDOFF * length
+        )
+        cosine, sine = cosine_sine(angle)
+        second = sine * acceleration + cosine * rate * rate
+        return arm * cosine, -(arm * sine * rate), -(arm * second)
+
+    def _length(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The drawn length and the part of it that it lacks."""
         length = drawing.distance(self.pivot, self.point)
         square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
         own, own_rest = exact_product(length, length)
-        lacking = ((square - own) + (rest - own_rest)) / (2.0 * length * length)
-        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate) + 1.01 * length * law
+        return length, ((square - own) + (rest - own_rest)) / (2.0 * length * length)
 
     def drawn(self, drawing: Drawing) -> Array:
         """Height of the drawn point over its pivot."""
@@ -132,6 +158,11 @@ class Travel:
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """None of its own: a quotient by a power of two."""
         return np.zeros_like(coordinate), np.broadcast_to(law / drawing.unit, coordinate.shape)
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """The input's own, in the mechanism's units."""
+        value, rate, acceleration = (part.scaled(1.0 / drawing.unit) for part in law)
+        return value, rate, acceleration
 
     def drawn(self, drawing: Drawing) -> Array:
         """The travel at which the drawn point stands: against the direction is positive (eq. 14)."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb, factorial
+from math import comb, factorial, perm
 from typing import Protocol
 
 import numpy as np
@@ -19,12 +19,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from pointcoord.doubled import exact_product, exact_sum
+from pointcoord.enclosure import Enclosed, cosine_sine
 from pointcoord.quadratic import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
 # rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
 SMALL_ANGLE = 2.0**-27
+# Two pi and what its double lacks; the rest is below the radius.
+TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
 
 class TimeFunction(Protocol):
@@ -37,8 +40,15 @@ class TimeFunction(Protocol):
         """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
         ...
 
-    def rounding(self, instants: Array) -> Array:
-        """How far the computed value may be from the law's own, rounded once, shape (N,)."""
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
+        ...
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The law's own value, rate and acceleration, each rounded once, (N,).
+
+        A series of the law does not round its value, so that is expected beside what `rounding` says.
+        """
         ...
 
     @property
@@ -70,12 +80,24 @@ class Polynomial:
                 result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
         return result
 
-    def rounding(self, instants: Array) -> Array:
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
-        count = len(self.coefficients)
+        law = np.polynomial.polynomial.polyder(np.abs(self.coefficients), derivative)
+        count = len(law)
         with np.errstate(over="ignore"):
-            terms = np.polynomial.polynomial.polyval(np.abs(instants), np.abs(self.coefficients))
+            terms = np.polynomial.polynomial.polyval(np.abs(instants), law)
         return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """Horner's rule in twice the working precision, with the bound of its rounding."""
+        t, found = Enclosed.of(instants), []
+        for derivative in range(3):
+            total = Enclosed.of(np.zeros_like(instants))
+            for j in range(len(self.coefficients) - 1, derivative - 1, -1):
+                factor = Enclosed.of(float(perm(j, derivative)))
+                total = total * t + factor * Enclosed.of(self.coefficients[j])
+            found.append(_rounded_once(self, total, instants, derivative))
+        return found
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -121,18 +143,34 @@ class Sine:
         angle, low = exact_sum(turned, np.array(self.phase))
         return angle, *(np.where(np.isfinite(part), part, 0.0) for part in (rest, low))
 
-    def rounding(self, instants: Array) -> Array:
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """Of the sine 4 u: functions right to a unit in the last place, a sum; for each further part of the
-        angle that is more than a rounding of it 6 u more, for two products more.
+        angle that is more than a rounding of it 6 u more, for two products more. A derivative's factor
+        adds 4 u: a power, two products.
 
         Next to a tie that may round the value the other way, by a unit in its last place.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             _, *rests = self._angle(np.asarray(instants, dtype=float))
             parts = sum((np.abs(low) > SMALL_ANGLE).astype(float) for low in rests)
-            swing = abs(self.amplitude) * (4.0 + 6.0 * parts)
-            turned = np.where(swing > 0.0, 2.0 * np.abs(self.series(instants, 0)[..., 0]), 0.0)
+            count = (8.0 if derivative else 4.0) + 6.0 * parts
+            swing = abs(self.amplitude) * np.abs(np.float64(self.angular_frequency)) ** derivative * count
+            computed = factorial(derivative) * self.series(instants, derivative)[..., derivative]
+            turned = np.where(swing > 0.0, 2.0 * np.abs(computed), 0.0)
         return np.asarray(UNIT_ROUNDOFF * (swing + turned))
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
+        speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
+        angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
+        turns = np.rint(angle.high / TURN.high)
+        cosine, sine = cosine_sine(angle - Enclosed.of(turns) * TURN)
+        values = (
+            Enclosed.of(self.offset) + swing * sine,
+            swing * speed * cosine,
+            -(swing * speed * speed * sine),
+        )
+        return [_rounded_once(self, value, instants, d) for d, value in enumerate(values)]
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -159,9 +197,14 @@ class Table:
             result[..., k] = self._spline(t, nu=k) / factorial(k)
         return result
 
-    def rounding(self, instants: Array) -> Array:
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """None: the computed spline is the law."""
         return np.zeros_like(instants)
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The computed spline, which is the law."""
+        values = (self._spline(instants, nu=derivative) for derivative in range(3))
+        return [Enclosed.of(value, 0.0, 0.0, UNIT_ROUNDOFF * np.abs(value)) for value in values]
 
     @property
     def finite(self) -> bool:
@@ -180,6 +223,24 @@ class Table:
     def breaks(self) -> tuple[float, ...]:
         """The inner times of the table."""
         return self.times[1:-1]
+
+
+def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
+    """A law's value rounded to the nearest double: which one is certain, unless it lies next to a tie.
+
+    Next to a tie it may be either neighbour. Where twice the working precision tells less than the computed
+    value does, that is taken, and it may be a neighbour as well.
+    """
+    nearest, doubt = exact.high, exact.radius[0]
+    gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
+    proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
+    computed = factorial(derivative) * law.series(instants, derivative)[..., derivative]
+    coarse = law.rounding(instants, derivative)
+    neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
+    sharp = proven <= neighbours
+    values = np.where(sharp, nearest, computed)
+    expected = coarse + UNIT_ROUNDOFF * np.abs(values)
+    return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
 
 
 def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:

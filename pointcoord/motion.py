@@ -99,7 +99,7 @@ class Samples:
         return ", ".join(c.quantity for c in channels if isinstance(c, Channel) and c.computed)
 
 
-Prover = Callable[[Samples], Proof]
+Prover = Callable[[Samples, bool], Proof]
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,9 +132,14 @@ class Motion(Samples):
     def __repr__(self) -> str:
         return f"<Motion by {self.method}: {self._span}; {self._quantities}>"
 
-    def proof(self) -> Proof:
-        """Proven error bound, condition number and sensitivity of the pose at each of the times."""
-        return self.prover(self)
+    def proof(self, rates: bool = False) -> Proof:
+        """Proven error bound, condition number and sensitivity of the pose at each of the times.
+
+        Args:
+            rates: prove every reported number by itself, rates and angles too (`Proof.proven`), and say what
+                the method loses at most where nothing is wrong (`Proof.expected`); takes some times as long.
+        """
+        return self.prover(self, rates)
 
     def term_sizes(self) -> tuple[float, ...]:
         """Of each derivative solved for the largest sum of magnitudes of the terms that give it, mm/s**d.

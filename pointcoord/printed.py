@@ -21,6 +21,9 @@ from pointcoord.suspensions.macpherson import PRINTED
 
 Array = NDArray[np.float64]
 
+# A quotient that loses more than two digits is at fault itself, and not its rounding.
+MOST_LOST = 100.0
+
 _PARALLEL = [i for i, label in enumerate(PRINTED.labels) if "parallel" in label]
 
 
@@ -50,6 +53,20 @@ def printed_body_rates(
             for a, r in zip(_from_first(acceleration), (r_65, r_75), strict=True)
         )
         return omega, _quotient(hat_65, hat_75, r_75)
+
+
+def printed_body_loss(edges: tuple[Array, Array], rates: tuple[Array, Array]) -> Array:
+    """How many times what least squares loses the quotient may lose, shape (..., 1), at most MOST_LOST.
+
+    A product of vectors a x b or a . r is off by about |a| |b| times their relative error, so the quotient
+    loses |a| |b| / |a x b| and |a| |r| / |a . r| times as much as its factors are off.
+    """
+    a, b, r = *rates, edges[1]
+    length = np.linalg.norm(a, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        above = length * np.linalg.norm(b, axis=-1) / np.linalg.norm(np.cross(a, b), axis=-1)
+        below = length * np.linalg.norm(r, axis=-1) / np.abs(np.sum(a * r, axis=-1))
+        return np.asarray(np.fmin(above + 2.0 * below, MOST_LOST)[..., None])
 
 
 def _from_first(states: Mapping[str, Array]) -> tuple[Array, Array]:

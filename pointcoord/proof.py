@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 from pointcoord.carried import Pair, apart, carried_errors
 from pointcoord.certificate import INFLATION, Certificate, certify
 from pointcoord.doubled import exact_sum
+from pointcoord.enclosure import Enclosed
 from pointcoord.linear import EPS, Factors, factorise
 from pointcoord.mechanism import Mechanism
+from pointcoord.quadratic import UNIT_ROUNDOFF
+from pointcoord.reported_bounds import Bounds, Proven, Reported, joined, reported_bounds
 
 Array = NDArray[np.float64]
 
@@ -38,6 +41,8 @@ class Proof:
             zero where no velocity was solved for.
         acceleration_sensitivity: the same of an acceleration, at given velocities, (N,), 1/s^2.
         residual: largest row of C(y), (N,), in the mechanism's units.
+        proven: the error of every reported number, rates and angles too, at most; only if asked for.
+        expected: the error that the method makes of each at most where nothing is wrong; only if asked for.
     """
 
     times: Array
@@ -49,6 +54,8 @@ class Proof:
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
     residual: Array
+    proven: Bounds = field(default_factory=Bounds)
+    expected: Bounds = field(default_factory=Bounds)
 
 
 def prove(
@@ -59,6 +66,7 @@ def prove(
     offset: Array,
     rounding: Array,
     laws: Mapping[str, Array],
+    everything: Reported | None = None,
 ) -> Proof:
     """Prove poses in blocks.
 
@@ -74,10 +82,12 @@ def prove(
         offset: what was added to every point to report it, (N, 3), mm.
         rounding: of the offset itself, at most, (N, 3), mm.
         laws: how far the value of each driving input may be off, (N,), rad or mm.
+        everything: all that was reported, to bound each number of it as well.
     """
-    parts = []
+    parts, bounds = [], []
     for low in range(0, len(times), BLOCK):
-        y, *rates = states(times[low : low + BLOCK])
+        here = times[low : low + BLOCK]
+        y, *rates = states(here)
         factors = factorise(mechanism.map.jacobian(y))
         residual = np.abs(mechanism.map.residual(y)).max(axis=-1)
         first, second = (
@@ -86,6 +96,11 @@ def prove(
         )
         off = {name: doubt[low : low + BLOCK] for name, doubt in laws.items()}
         lacking, uncertainty = mechanism.known_data(y, off)
+        expected = uncertainty + np.abs(lacking)
+        driven = {} if everything is None else everything.driven(mechanism, here)
+        lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
+        for place, (value, _, _) in driven.items():
+            expected[:, place] = value.radius[1]
         certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
         local = {
             name: _local(mechanism, place[low : low + BLOCK], offset[low : low + BLOCK])
@@ -95,9 +110,26 @@ def prove(
         bound = mechanism.unit * _reported_bound(mechanism, y, local, certificate, doubt)
         carried, gain = carried_errors(mechanism, y, local, certificate, doubt)
         own = mechanism.unit * certificate.coordinates[..., : 3 * len(mechanism.topology.moving)].max(axis=-1)
+        if everything is not None:
+            pose = Proven(factors, certificate, here, (y, *rates), (lacking, uncertainty, expected), driven)
+            bounds.append(reported_bounds(mechanism, pose, everything.part(low, low + BLOCK)))
         parts.append((own, bound, mechanism.unit * carried, gain, factors.condition, first, second, residual))
-    columns = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Proof(times, *columns)
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    own, bound, carried, gain, condition, first, second, residual = columns
+    each = (joined([part[place] for part in bounds]) for place in (0, 1))
+    return Proof(times, own, bound, carried, gain, condition, first, second, residual, *each)
+
+
+def _sharpened(
+    y: Array, driven: Mapping[int, Sequence[Enclosed]], lacking: Array, uncertainty: Array
+) -> tuple[Array, Array]:
+    """What the known coordinates lack, and their uncertainty, with the driven ones in twice the precision."""
+    lacking, uncertainty = lacking.copy(), uncertainty.copy()
+    for place, (value, _, _) in driven.items():
+        lacking[:, place] = (value.high - y[:, place]) + value.low
+        rounded = np.abs(lacking[:, place]) + np.abs(value.low)
+        uncertainty[:, place] = value.radius[0] + 2.0 * UNIT_ROUNDOFF * rounded
+    return lacking, uncertainty
 
 
 def _local(mechanism: Mechanism, reported: Array, offset: Array) -> Pair:

@@ -13,6 +13,7 @@ from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import Plan
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Channel, Samples
+from pointcoord.reported_bounds import BodyLoss, no_loss
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
@@ -31,6 +32,7 @@ class Readout:
         outboard: unit vector away from the car's middle.
         body_rates: angular velocity and acceleration of a body from its points' states; the least
             squares of `rigid` unless a variant replaces it.
+        body_loss: how many times what least squares loses `body_rates` may lose.
     """
 
     mechanism: Mechanism
@@ -38,6 +40,7 @@ class Readout:
     chassis: ChassisMotion
     outboard: Array
     body_rates: BodyRates
+    body_loss: BodyLoss = no_loss
 
     def samples(self, times: Array, states: States) -> Samples:
         """Name the states and compute the effects of the plan from them."""
@@ -78,6 +81,18 @@ class Readout:
         if not shift:
             return origin if origin.any() else None
         return origin + shift[0]
+
+    @property
+    def angle_lines(self) -> dict[str, tuple[str, str]]:
+        """The line that each wheel angle is of, from point to point."""
+        topology = self.mechanism.topology
+        return {"camber": topology.wheel_axis, "kingpin": topology.steering_axis}
+
+    @property
+    def angle_axes(self) -> dict[str, tuple[Array, Array]]:
+        """Directions whose components along the lines give minus the sine and the cosine of the angles."""
+        up = self.mechanism.drawing.vectors["up"]
+        return {"camber": (up, self.outboard), "kingpin": (self.outboard, up)}
 
 
 def wheel_angles(mechanism: Mechanism, position: Mapping[str, Array], outboard: Array) -> dict[str, Array]:

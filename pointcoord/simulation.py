@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 import numpy as np
@@ -14,6 +14,7 @@ from pointcoord.chain import COARSEST, FINEST, Chain, Settings, build_chain
 from pointcoord.chassis import ChassisMotion
 from pointcoord.closing import ALLOWED, Closing, closing
 from pointcoord.effects import plan_effects
+from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import (
     AssemblyError,
     InputNotKnown,
@@ -29,9 +30,10 @@ from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved, solve_instants, square_velocity_term
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Motion, Prover, Samples
-from pointcoord.printed import printed_body_rates, printed_square_velocity_term
+from pointcoord.printed import printed_body_loss, printed_body_rates, printed_square_velocity_term
 from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
+from pointcoord.reported_bounds import Bounds, Reported, no_loss
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
@@ -70,6 +72,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         chassis=ChassisMotion.of(mechanism, scene.functions),
         outboard=scene.mechanism.outboard,
         body_rates=printed_body_rates if method == "printed" else least_squares_rates,
+        body_loss=printed_body_loss if method == "printed" else no_loss,
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)
@@ -145,7 +148,7 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        prover = SceneProver(readout, functions, sampler.coordinates)
+        prover = SceneProver(readout, functions, sampler.coordinates, sampler.summed)
         samples = sampler(instants)
         _require_known(prover, samples, scene.tolerance)
         solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes)
@@ -188,7 +191,7 @@ def _by_newton(
         width = sum(3 * len(state) for state in states)
         work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
         samples = readout.samples(solved.times, states)
-        prover = SceneProver(readout, functions, solved.coordinates)
+        prover = SceneProver(readout, functions, solved.coordinates, _nothing_summed)
         _require_known(prover, samples, scene.tolerance)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
@@ -204,6 +207,11 @@ def _by_newton(
     return motion(solved)
 
 
+def _nothing_summed(instants: Array) -> tuple[Summed, ...]:
+    """Newton's poses are reported as they were solved."""
+    return ()
+
+
 @dataclass(frozen=True)
 class SceneProver:
     """Proves samples of a scene's motion.
@@ -211,27 +219,30 @@ class SceneProver:
     Attributes:
         functions: the laws of the inputs that drive the mechanism.
         coordinates: gives y and the derivatives that were solved for at some of the instants.
+        summed: gives what the reported numbers were summed from there.
     """
 
     readout: Readout
     functions: Mapping[str, TimeFunction]
     coordinates: Callable[[Array], list[Array]]
+    summed: Callable[[Array], Sequence[Summed]]
 
-    def __call__(self, samples: Samples) -> Proof:
+    def __call__(self, samples: Samples, everything: bool = False) -> Proof:
         """What is proven at each of the samples' times."""
-        return self.with_doubts(samples, self.doubts(samples.times))
+        return self.with_doubts(samples, self.doubts(samples.times), everything)
 
     def doubts(self, times: Array) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
         return {name: function.rounding(times) for name, function in self.functions.items()}
 
-    def with_doubts(self, samples: Samples, laws: Mapping[str, Array]) -> Proof:
+    def with_doubts(self, samples: Samples, laws: Mapping[str, Array], everything: bool = False) -> Proof:
         """What would be proven if the laws' values were off by so much."""
         mechanism, times = self.readout.mechanism, samples.times
         added = self.readout.offset(times)
         offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
         rounding = self.readout.chassis.rounding(times, mechanism.origin)
-        return prove(mechanism, times, self.coordinates, samples.position, offset, rounding, laws)
+        asked = _reported(self.readout, self.functions, samples, self.summed) if everything else None
+        return prove(mechanism, times, self.coordinates, samples.position, offset, rounding, laws, asked)
 
 
 def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> None:
@@ -252,6 +263,25 @@ def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> N
         function, instant = prover.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
         raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
+
+
+def _reported(
+    readout: Readout,
+    functions: Mapping[str, TimeFunction],
+    samples: Samples,
+    summed: Callable[[Array], Sequence[Summed]],
+) -> Reported:
+    """All numbers of samples, and what went into them beside the coordinates."""
+    numbers = Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)})
+    return Reported(
+        numbers,
+        readout.chassis,
+        functions,
+        readout.angle_lines,
+        readout.angle_axes,
+        summed,
+        readout.body_loss,
+    )
 
 
 def _motion(

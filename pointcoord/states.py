@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord.chain import Chain
 from pointcoord.effects import Plan
+from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved
@@ -93,6 +94,21 @@ class Sampler:
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
         y[..., mechanism.map.unknowns :] = known[..., 0, :]
         return [y, *rates]
+
+    def summed(self, instants: Array) -> list[Summed]:
+        """How `coordinates` sums each derivative at instants."""
+        terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
+        derivative = self.readout.plan.derivative
+
+        def sums(first: int, last: int | None) -> Array:
+            """Of the terms from one to another, counted from the end."""
+            kept = [np.zeros_like(t) for t in terms]
+            for part, whole in zip(kept, terms, strict=True):
+                part[first:last] = whole[first:last]
+            return evaluate(self.chain, kept, instants, derivative)
+
+        parts = (sums(-2, None), sums(-4, -2), sums(0, None))
+        return [Summed(*part) for part in zip(*parts, strict=True)]
 
     @property
     def work(self) -> Work:

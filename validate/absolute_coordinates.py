@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.scene import MechanismPart, Scene
+from validate.absolute_accuracy import claims
 from validate.extras import MissingPackage
-from validate.formulation import Accuracy, FormulationError, Solution
+from validate.formulation import AccuracyError, FormulationError, Solution
 from validate.inputs import rates
 
 try:
@@ -20,10 +21,6 @@ except ModuleNotFoundError as error:
 
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(float).eps)
-# A row of the model (a rotation applied to a body point, twice, and a difference) takes some 16
-# roundings of eps / 2 on numbers as large as the mechanism.
-ROUNDINGS = 8.0
 LARGEST = 1e300  # mm: four times that, and sums of ten coordinates, stay finite
 
 
@@ -33,10 +30,10 @@ class AbsoluteCoordinates:
     name = "absolute"
 
     def solve(self, scene: Scene) -> Solution:
-        """Solve a scene; the pose error is the estimate ROUNDINGS * eps * condition * size.
+        """Solve a scene; what it claims of its accuracy is the model's own estimate (`absolute_accuracy`).
 
         Raises:
-            FormulationError: the model refuses the scene.
+            FormulationError: the model refuses the scene, or does not know the error of a number.
         """
         part, times, wanted = scene.mechanism, scene.instants, scene.effects
         inputs = {name: rates(law, times) for name, law in scene.inputs.items()}
@@ -48,16 +45,18 @@ class AbsoluteCoordinates:
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
             model = absolute.macpherson(near, up=part.up, right=part.right, closure=closure_of(part))
-            solved = absolute.solve(model, inputs, chassis=chassis, rates=needs_rates, conditions=True)
+            solved = absolute.solve(
+                model, inputs, chassis=chassis, rates=needs_rates, conditions=True, errors=True
+            )
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
                 error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
             raise FormulationError(self.name, error) from error
-        condition = np.ones(len(times)) if solved.condition is None else solved.condition
         position = _moved(solved.position, origin)
-        # Whatever is added to a position rounds it, also where the sum is small again.
-        moved = 0.0 if heave is None else float(np.abs(heave[:, 0]).max())
-        distance = float(np.abs(np.stack(list(position.values()))).max())
+        try:
+            accuracy = claims(part, solved, position, chassis, angle_lines(part, solved.position))
+        except AccuracyError as error:
+            raise FormulationError(self.name, error) from error
         return Solution(
             formulation=self.name,
             times=times,
@@ -67,15 +66,7 @@ class AbsoluteCoordinates:
             angular_velocity=_knuckle(solved.angular_velocity, wanted),
             angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
             wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
-            accuracy=Accuracy(
-                pose_error=ROUNDINGS * EPS * condition * extent(part),
-                stored=np.full(len(times), EPS * distance + 2.0 * EPS * moved),
-                carried_gain=np.ones(len(times)),  # every point rides on its body alike
-                proven=False,
-                condition=condition,
-                velocity_sensitivity=np.zeros(len(times)),
-                acceleration_sensitivity=np.zeros(len(times)),
-            ),
+            accuracy=accuracy,
         )
 
 
@@ -119,12 +110,18 @@ def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str
     """
     right, up = np.array(part.right), np.array(part.up)
     side = 1.0 if part.side == "left" else -1.0
-    upper = "strut_top" if closure_of(part) == "drawn" else "strut_lower"
-    hub = "wheel_axis_inner" if "wheel_axis_inner" in position else "strut_lower"
-    names = ("lower_ball_joint", upper, hub, "wheel_centre")
+    lines = angle_lines(part, position)
+    names = (*lines["kingpin"], *lines["camber"])
     low, high, inner, outer = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
     # pi/2 - arg z, between -pi and pi.
     return {"kingpin": np.angle(1j * np.conj(high - low)), "camber": np.angle(inner - outer)}
+
+
+def angle_lines(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, tuple[str, str]]:
+    """The lines that the wheel angles are of, from point to point."""
+    upper = "strut_top" if closure_of(part) == "drawn" else "strut_lower"
+    hub = "wheel_axis_inner" if "wheel_axis_inner" in position else "strut_lower"
+    return {"camber": (hub, "wheel_centre"), "kingpin": ("lower_ball_joint", upper)}
 
 
 def closure_of(part: MechanismPart) -> str:

@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord.suspensions.macpherson import DRAWN
 from validate.closed_form import Closure
 from validate.inputs import rates
 from validate.singular import NearPose, near_pose
-from validate.tolerance import CARRIED
 from validate.truth import InfeasibleError, Instant, TruthError, solve_truth
 from validate.truth.exact import as_fraction
 
@@ -162,14 +162,14 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
             f"truth: {truth if isinstance(truth, str) else 'answers'}",
         )
     samples = motion.at(np.array([instant]))
-    proof = motion.prover(samples)
+    proof = motion.prover(samples, False)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, pose.car.closure, distance, "pointcoord: no finite bound")
     error = carried_error = math.inf  # where the truth has no such assembly
     if isinstance(truth, Instant):
         each = {name: _error(truth, name, place[0]) for name, place in samples.position.items()}
-        carried_error = max(each.pop(name) for name in CARRIED if name in each)
+        carried_error = max(each.pop(name) for name in DRAWN.carried if name in each)
         error = max(each.values())
     return Check(
         number=pose.number,

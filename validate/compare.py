@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,23 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.scene import Scene
-from validate.formulation import Formulation, Solution
+from validate.formulation import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations import formulation
-from validate.tolerance import (
-    CARRIED,
-    KNUCKLE,
-    Factors,
-    angle_tolerance,
-    body_tolerances,
-    carried_tolerances,
-    factors,
-    point_tolerances,
-)
+from validate.given import Given, given
+from validate.tolerance import level, tolerance, untested
 
 Array = NDArray[np.float64]
 # Numbers below the smallest normal one lose digits, and so do tolerances made of them.
 SMALLEST = float(np.finfo(float).tiny)
-Verdict = Literal["agrees", "disagrees"]
+Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
 UNITS = {
     "position": "mm",
@@ -35,6 +28,14 @@ UNITS = {
     "angular_velocity": "rad/s",
     "angular_acceleration": "rad/s^2",
     "wheel": "rad",
+}
+# Which effect of a scene asks for a quantity; positions are always asked for.
+EFFECT_OF = {
+    "velocity": "velocity",
+    "acceleration": "acceleration",
+    "angular_velocity": "knuckle_rates",
+    "angular_acceleration": "knuckle_rates",
+    "wheel": "wheel_angles",
 }
 
 
@@ -45,7 +46,10 @@ class Comparison:
     Attributes:
         difference: largest difference of any component, and the `instant` (s) where it is.
         tolerance: what it was held to at that instant.
-        share: largest difference / tolerance over all instants; it agrees up to 1.
+        share: largest difference / tolerance over all instants and components; it agrees up to 1.
+        verdict: `not tested` where the tolerance rests on what one formulation claims of itself (see
+            `tolerance`); `not given` where one of them gives no such numbers, and all numbers here are NaN.
+        rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
     """
 
     scene: str
@@ -59,22 +63,26 @@ class Comparison:
     share: float
     instant: float
     verdict: Verdict
+    rests_on: str
+    part: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Outcome:
-    """All comparisons of one scene and pair, with the factors of their tolerances.
+    """All comparisons of one scene and pair.
 
     Attributes:
         solutions: both solved scenes, for whoever wants to look further.
-        notes: what the formulations said themselves of numbers without meaning.
+        notes: what the formulations said themselves of numbers without meaning, and what is wrong with
+            what they gave.
+        missing: what one formulation does not give, a line each.
     """
 
     scene: str
     rows: tuple[Comparison, ...]
-    factors: Factors
     solutions: tuple[Solution, Solution]
     notes: tuple[str, ...]
+    missing: tuple[str, ...]
 
     @property
     def agreed(self) -> bool:
@@ -86,6 +94,20 @@ class Outcome:
         """The rows that do not."""
         return tuple(row for row in self.rows if row.verdict == "disagrees")
 
+    @property
+    def undecided(self) -> tuple[Comparison, ...]:
+        """The rows of which nothing can be said: not tested, or not given."""
+        return tuple(row for row in self.rows if row.verdict in ("not tested", "not given"))
+
+    def __repr__(self) -> str:
+        first, second = (solution.formulation for solution in self.solutions)
+        counts = (f"{sum(row.verdict == v for row in self.rows)} {v}" for v in _verdicts(self.rows))
+        return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
+
+
+def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:
+    return list(dict.fromkeys(row.verdict for row in rows))
+
 
 def compare(
     scene: Scene, first: str | Formulation, second: str | Formulation, name: str | None = None
@@ -96,100 +118,105 @@ def compare(
         first, second: names of formulations, or formulations themselves.
         name: what to call the scene in the rows; its title if not given.
     Raises:
-        FormulationError: one of them refuses the scene.
+        FormulationError: one of them refuses the scene, or gives what is no solution.
         SceneError: the scene's own hardpoints make no mechanism.
     """
-    one, two = (formulation(f) if isinstance(f, str) else f for f in (first, second))
-    widened = _with_basis(scene)
-    return compare_solutions(scene, one.solve(widened), two.solve(widened), name or scene.title or "scene")
+    one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
+    return compare_solutions(scene, one, two, name or scene.title or "scene")
 
 
-def _with_basis(scene: Scene) -> Scene:
-    """The scene with the rates that the tolerances of its effects are derived from."""
-    needs = {"acceleration", "knuckle_rates"}.intersection(scene.effects)
-    extra = [e for e in ("velocity", "acceleration") if needs and e not in scene.effects]
-    return scene.model_copy(update={"effects": (*scene.effects, *extra)})
+def _solved(solver: Formulation, scene: Scene) -> Solution:
+    try:
+        solution = solver.solve(scene)
+    except AccuracyError as error:
+        raise FormulationError(solver.name, error) from error
+    if not isinstance(solution, Solution):
+        problem = TypeError(f"it gives a {type(solution).__name__}; needed: a Solution")
+        raise FormulationError(solver.name, problem)
+    return solution
 
 
 def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> Outcome:
-    """Compare two solved scenes."""
-    f = factors(one, two)
-    rows = []
-    for quantity, part, first, second, tolerance in _pairs(scene, one, two, f):
-        gap = np.abs(first - second)
-        if quantity == "wheel":
-            # Whole turns apart is the same angle.
-            gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
-        gap = gap.max(axis=-1) if gap.ndim > 1 else gap
-        # A NaN is a disagreement, and the worst one.
-        gap = np.where(np.isfinite(gap), gap, np.inf)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares = np.where(gap == 0.0, 0.0, gap / (tolerance + SMALLEST))
-        # A tolerance that is not finite would let everything pass.
-        shares = np.where(np.isfinite(tolerance), shares, np.inf)
-        worst = int(np.argmax(gap))
-        share = float(np.max(shares))
-        rows.append(
-            Comparison(
-                scene=name,
-                first=one.formulation,
-                second=two.formulation,
-                quantity=quantity,
-                name=part,
-                unit=UNITS[quantity],
-                difference=float(gap[worst]),
-                tolerance=float(tolerance[worst]),
-                share=share,
-                instant=float(one.times[worst]),
-                verdict="agrees" if share <= 1.0 else "disagrees",
-            )
-        )
-    return Outcome(name, tuple(rows), f, (one, two), (*one.notes, *two.notes))
+    """Compare two solved scenes.
+
+    Raises:
+        FormulationError: one of them does not say at which instants its numbers are.
+    """
+    instants = scene.instants
+    first, second = given(one, instants), given(two, instants)
+    both = first.found & second.found
+    notes = (*one.notes, *two.notes, *first.notes, *second.notes)
+    first, second = first.at(both), second.at(both)
+    rows: list[Comparison] = []
+    missing: list[str] = []
+    for quantity in ("position", *(q for q, effect in EFFECT_OF.items() if effect in scene.effects)):
+        missing += _missing(quantity, first, second)
+        for part in _parts(quantity, first, second):
+            rows.append(_row(name, quantity, part, first, second, instants[both]))
+    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
 
 
-def _pairs(
-    scene: Scene, one: Solution, two: Solution, f: Factors
-) -> Iterator[tuple[str, str, Array, Array, Array]]:
-    """Quantity, name, both arrays and the tolerance of everything that the scene asks for."""
-    tolerances, carried = point_tolerances(f), carried_tolerances(f)
-    quantities = ["position", *(e for e in ("velocity", "acceleration") if e in scene.effects)]
-    for quantity in quantities:
-        mine, other = _same_names(quantity, getattr(one, quantity), getattr(two, quantity))
-        for point in mine:
-            held_to = (carried if point in CARRIED else tolerances)[quantity]
-            yield quantity, point, mine[point], other[point], held_to
-    if "knuckle_rates" in scene.effects:
-        spin, spin_rate = (
-            min(_largest(s[quantity]) for s in (_rates(one), _rates(two)))
-            for quantity in ("angular_velocity", "angular_acceleration")
-        )
-        body = body_tolerances({p: one.position[p] for p in KNUCKLE}, tolerances, spin, spin_rate)
-        for quantity in ("angular_velocity", "angular_acceleration"):
-            mine, other = _same_names(quantity, _rates(one)[quantity], _rates(two)[quantity])
-            for name in mine:
-                yield quantity, name, mine[name], other[name], body[quantity]
-    if "wheel_angles" in scene.effects:
-        mine, other = _same_names("wheel", one.wheel, two.wheel)
-        for name in mine:
-            yield "wheel", name, mine[name], other[name], angle_tolerance(name, one.position, f)
+def _parts(quantity: str, one: Given, two: Given) -> list[str]:
+    """Every point, body or angle that one of them gives; one without a name if there is none."""
+    return list(dict.fromkeys((*one.numbers[quantity], *two.numbers[quantity]))) or [""]
 
 
-def _rates(solution: Solution) -> dict[str, Mapping[str, Array]]:
-    return {
-        "angular_velocity": solution.angular_velocity,
-        "angular_acceleration": solution.angular_acceleration,
-    }
+def _missing(quantity: str, one: Given, two: Given) -> Iterator[str]:
+    words = "wheel angle" if quantity == "wheel" else quantity.replace("_", " ")
+    for side in (one, two):
+        lacking = [part for part in _parts(quantity, one, two) if part not in side.numbers[quantity]]
+        if lacking and not side.numbers[quantity]:
+            yield f"{side.formulation} gives no {words}"
+        elif lacking:
+            yield f"{side.formulation} gives no {words} of {', '.join(lacking)}"
 
 
-def _largest(rates: Mapping[str, Array]) -> float:
-    norms = [np.linalg.norm(rate, axis=-1) for rate in rates.values()]
-    return max((float(np.max(n[np.isfinite(n)], initial=0.0)) for n in norms), default=0.0)
-
-
-def _same_names(
-    quantity: str, one: Mapping[str, Array], two: Mapping[str, Array]
-) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
-    """Both mappings, after a check that a missing name cannot pass for agreement."""
-    if set(one) != set(two) or not one:
-        raise ValueError(f"{quantity}: one formulation gives {sorted(one)}, the other {sorted(two)}")
-    return one, two
+def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Array) -> Comparison:
+    unit, nan = UNITS[quantity], math.nan
+    known = [part in side.numbers[quantity] for side in (one, two)]
+    if not all(known) or not len(times):
+        ends = (scene, one.formulation, two.formulation, quantity, part, unit)
+        return Comparison(*ends, nan, nan, nan, nan, "not given", "", nan)
+    mine, other = one.numbers[quantity][part], two.numbers[quantity][part]
+    gap = np.abs(mine - other)
+    if quantity == "wheel":
+        # Whole turns apart is the same angle.
+        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
+    # A NaN is a disagreement, and the worst one.
+    gap = np.where(np.isfinite(gap), gap, np.inf)
+    claims = [side.claims[quantity].get(part) for side in (one, two)]
+    held = [np.zeros_like(gap) if claim is None else claim for claim in claims]
+    allowed = tolerance(*held)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
+    levels = [
+        level(side.claims[quantity].values(), side.numbers[quantity].values(), side.condition)
+        for side in (one, two)
+    ]
+    apart = gap.reshape(len(gap), -1).max(axis=-1) > 0.0
+    loose = untested(*held, *levels) & apart
+    verdict: Verdict = "agrees"
+    if any(claim is None for claim in claims):
+        verdict = "not tested"
+    elif float(np.max(shares)) > 1.0:
+        verdict = "disagrees"
+    elif loose.any():
+        verdict = "not tested"
+    worst = np.unravel_index(int(np.argmax(gap)), gap.shape)
+    widest = np.unravel_index(int(np.argmax(allowed)), allowed.shape)
+    larger = int(held[1][widest] > held[0][widest])
+    return Comparison(
+        scene=scene,
+        first=one.formulation,
+        second=two.formulation,
+        quantity=quantity,
+        name=part,
+        unit=unit,
+        difference=float(gap[worst]),
+        tolerance=float(allowed[worst]),
+        share=float(np.max(shares)),
+        instant=float(times[worst[0]]),
+        verdict=verdict,
+        rests_on=(one, two)[larger].formulation,
+        part=float(held[larger][widest] / (allowed[widest] + SMALLEST)),
+    )

@@ -43,6 +43,7 @@ FAULTY = (
     "agreed, the truth: no such pose",
     "answer wrong",
 )
+ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 
 
 @dataclass(frozen=True)
@@ -104,11 +105,14 @@ def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
         right = verdict == NEITHER_WRONG
         name = "agreed, and with the truth" if right else f"agreed, the truth: {verdict}"
         return Result(name, "", _shares(outcome), not right)
-    worst = outcome.disagreements[0]
+    worst = (*outcome.disagreements, *outcome.undecided)[0]
     reason = (
         f"{worst.quantity} of {worst.name} differs by {worst.difference:.3g} {worst.unit}, "
         f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
     )
+    if worst.verdict != "disagrees":
+        said = f", {worst.part:.6f} of it what {worst.rests_on} claims"
+        return Result(f"{worst.verdict}: {worst.quantity}", reason + said, {}, True)
     kind = f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}"
     return Result(kind, reason, {}, True)
 
@@ -128,9 +132,15 @@ def _told(error: FormulationError) -> str:
 
 
 def _shares(outcome: Outcome) -> dict[str, float]:
+    """Largest share of each quantity, and of each wheel angle.
+
+    Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
+    """
     largest: dict[str, float] = {}
     for row in outcome.rows:
-        largest[row.quantity] = max(largest.get(row.quantity, 0.0), row.share)
+        if row.part < ALONE:
+            what = row.name if row.quantity == "wheel" else row.quantity
+            largest[what] = max(largest.get(what, 0.0), row.share)
     return largest
 
 

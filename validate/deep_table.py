@@ -39,5 +39,5 @@ def _outcomes(record: Record, closure: str, kinds: Sequence[str]) -> str:
 
 
 def _order(outcome: str) -> tuple[int, str]:
-    places = ("agreed", "both refuse", "only", "disagreed")
+    places = ("agreed", "not", "both refuse", "only", "disagreed")
     return next((i for i, head in enumerate(places) if outcome.startswith(head)), len(places)), outcome

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -14,35 +14,77 @@ from pointcoord.scene import Scene
 Array = NDArray[np.float64]
 
 
+NUMBERS_OF = {
+    "position": 3,
+    "velocity": 3,
+    "acceleration": 3,
+    "angular_velocity": 3,
+    "angular_acceleration": 3,
+    "wheel": 1,
+}
+"""The quantities of a solution, and how many numbers each has at an instant."""
+
+
+class AccuracyError(ValueError):
+    """What a formulation claims of its accuracy is no bound of an error."""
+
+    def __init__(self, claim: str, problem: str, allowed: str) -> None:
+        self.claim = claim
+        self.problem = problem
+        self.allowed = allowed
+        super().__init__(f"the accuracy of {claim} {problem}; allowed: {allowed}")
+
+
 @dataclass(frozen=True)
 class Accuracy:
-    """What a formulation says of its own accuracy; `tolerance` makes tolerances of it.
+    """What a formulation says of its own accuracy: how far each of its numbers may be off, at most.
+
+    A comparison holds two formulations to the sum of what they claim (see `tolerance`), so a claim must hold
+    for whatever the formulation rounds and leaves out, and a formulation that claims too much is found out
+    by the other: what its method should reach counts, not how far off its numbers happen to be.
 
     Attributes:
-        pose_error: error of each coordinate of each point in the frame where it is solved, at most, (N,), mm.
-        carried_gain: how many times as large it is for a point that rides on a body, shape (N,).
-        proven: whether `pose_error` is a proven bound or an estimate.
         condition: condition number of the matrix that gives the rates, shape (N,).
-        velocity_sensitivity: change of a velocity per displacement of the pose, shape (N,), 1/s.
-        acceleration_sensitivity: the same of an acceleration, shape (N,), 1/s^2. Both are zero if the
-            formulation does not know them.
-        truncation: relative error of the rates that the method leaves on purpose.
-        speed_terms, acceleration_terms: largest sum of magnitudes of the terms that a velocity or an
-            acceleration of the motion was summed from, mm/s and mm/s^2; zero if it was not summed.
-        stored: what a reported coordinate is rounded besides, shape (N,), mm: far from the origin, say. No
-            rate sees it.
+        position, velocity, acceleration: by point, (N, 3), mm and s.
+        angular_velocity, angular_acceleration: by body, (N, 3), rad/s and rad/s^2.
+        wheel: by angle, (N,), rad.
+        proven: whether the claims are proven bounds or estimates.
+    Raises:
+        AccuracyError: a claim is not a finite number from 0 up, or has not the shape of its numbers.
     """
 
-    pose_error: Array
-    carried_gain: Array
-    proven: bool
     condition: Array
-    velocity_sensitivity: Array
-    acceleration_sensitivity: Array
-    truncation: float = 0.0
-    speed_terms: float = 0.0
-    acceleration_terms: float = 0.0
-    stored: Array | float = 0.0
+    position: Mapping[str, Array] = field(default_factory=dict)
+    velocity: Mapping[str, Array] = field(default_factory=dict)
+    acceleration: Mapping[str, Array] = field(default_factory=dict)
+    angular_velocity: Mapping[str, Array] = field(default_factory=dict)
+    angular_acceleration: Mapping[str, Array] = field(default_factory=dict)
+    wheel: Mapping[str, Array] = field(default_factory=dict)
+    proven: bool = False
+
+    def __post_init__(self) -> None:
+        if np.ndim(self.condition) != 1:
+            raise AccuracyError("condition", f"has the shape {np.shape(self.condition)}", "one per instant")
+        count = len(self.condition)
+        _check_claim("condition", self.condition, (count,))
+        for quantity, width in NUMBERS_OF.items():
+            for name, claim in getattr(self, quantity).items():
+                shape = (count, width) if width > 1 else (count,)
+                _check_claim(f"{quantity} of {name}", claim, shape)
+
+
+def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:
+    array = np.asarray(claim)
+    if array.dtype.kind != "f":
+        raise AccuracyError(what, f"is of type {array.dtype}", "floating point numbers")
+    if array.shape != shape:
+        raise AccuracyError(what, f"has the shape {array.shape}", f"{shape}, as many as instants")
+    wrong = ~(np.isfinite(array) & (array >= 0.0))
+    if wrong.any():
+        where = tuple(int(i) for i in np.argwhere(wrong)[0])
+        raise AccuracyError(
+            what, f"is {array[where]:.6g} at instant number {where[0]}", "finite numbers from 0 up"
+        )
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import PointcoordError, Scene, SceneError, SingularConfiguration, simulate
-from pointcoord.chain import COARSEST, FINEST
-from pointcoord.simulation import TRUNCATION_SHARE, Method
-from validate.formulation import Accuracy, FormulationError, Solution
+from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
+from pointcoord.proof import Proof
+from pointcoord.simulation import Method
+from validate.formulation import NUMBERS_OF, Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
 
@@ -23,10 +23,10 @@ class PointCoordinates:
     method: Method
 
     def solve(self, scene: Scene) -> Solution:
-        """Solve a scene; the pose error is pointcoord's proven bound at each instant.
+        """Solve a scene; what it claims of its accuracy is proven, number by number (see `_claims`).
 
         Raises:
-            FormulationError: pointcoord refuses the scene, or cannot bound the error of a pose; but a fault
+            FormulationError: pointcoord refuses the scene, or cannot bound the error of a number; but a fault
                 of the scene file itself is raised as it is.
         """
         try:
@@ -35,18 +35,9 @@ class PointCoordinates:
             raise
         except PointcoordError as error:
             raise FormulationError(self.name, error) from error
-        proof = motion.proof()
+        proof = motion.proof(rates=True)
         # Numbers that nothing is known of would agree with anything: they are no answer here.
-        unproven = ~np.isfinite(proof.bound + proof.carried_bound)
-        if unproven.any():
-            first = int(np.argmax(unproven))
-            reason = SingularConfiguration(
-                "no error bound of the pose can be proven",
-                float(proof.condition[first]),
-                f"at t = {motion.times[first]:.10g} s",
-            )
-            raise FormulationError(self.name, reason)
-        sizes = (*motion.term_sizes(), 0.0, 0.0, 0.0)
+        _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
         return Solution(
             formulation=self.name,
             times=motion.times,
@@ -57,21 +48,33 @@ class PointCoordinates:
             angular_acceleration=motion.angular_acceleration,
             wheel=motion.wheel,
             accuracy=Accuracy(
-                pose_error=proof.pose_bound,
-                stored=np.maximum(proof.bound - proof.pose_bound, 0.0),
-                carried_gain=proof.carried_gain,
-                proven=True,
                 condition=proof.condition,
-                velocity_sensitivity=proof.velocity_sensitivity,
-                acceleration_sensitivity=proof.acceleration_sensitivity,
-                speed_terms=sizes[1],
-                acceleration_terms=sizes[2],
-                truncation=truncation(scene.tolerance / motion.unit) if self.method == "series" else 0.0,
+                proven=True,
+                **{quantity: self._claims(motion, proof, quantity) for quantity in NUMBERS_OF},
             ),
             notes=motion.notes,
         )
 
+    def _claims(self, motion: Motion, proof: Proof, quantity: str) -> dict[str, Array]:
+        """The proven error of each number, or the expected one where that is less.
 
-def truncation(tolerance: float) -> float:
-    """Relative truncation of a motion for a tolerance in units of its size, within the chain's limits."""
-    return float(np.clip(tolerance, FINEST / TRUNCATION_SHARE, COARSEST / TRUNCATION_SHARE))
+        The proof sees how far off a number is, whatever the reason: a fault of the method would widen its
+        own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong.
+        """
+        claims, expected = {}, getattr(proof.expected, quantity)
+        for name, proven in getattr(proof.proven, quantity).items():
+            # What is not a number has no error; the comparison finds it.
+            number = np.isfinite(getattr(motion, quantity)[name])
+            bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
+            _refuse_unproven(self.name, motion, proof, f"{quantity.replace('_', ' ')} of {name}", bound)
+            claims[name] = np.where(number, np.minimum(proven, expected[name]), 0.0)
+        return claims
+
+
+def _refuse_unproven(who: str, motion: Motion, proof: Proof, what: str, bound: Array) -> None:
+    unproven = ~np.isfinite(bound)
+    if unproven.any():
+        first = int(np.argmax(unproven))
+        condition, when = float(proof.condition[first]), f"at t = {motion.times[first]:.10g} s"
+        reason = SingularConfiguration(f"no error bound of the {what} can be proven", condition, when)
+        raise FormulationError(who, reason)

@@ -11,10 +11,18 @@ from validate.compare import Comparison, Outcome
 from validate.errata import Finding
 from validate.examined import Examined
 from validate.paper import WHY_NOT_EQUAL, PaperRow, root_mean_square
-from validate.tolerance import EPS, ROUNDINGS
 
 # Columns of words, which read better from the left.
-LEFT = ("formulation", "outcome", "worst at", "wrong quantity", "erratum", "slip of print", "verdict")
+LEFT = (
+    "formulation",
+    "outcome",
+    "worst at",
+    "wrong quantity",
+    "erratum",
+    "slip of print",
+    "verdict",
+    "resting on",
+)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -43,13 +51,18 @@ def worst_rows(outcome: Outcome) -> list[Comparison]:
     for row in outcome.rows:
         # The two wheel angles are quantities of their own.
         key = row.name if row.quantity == "wheel" else row.quantity
-        if key not in worst or row.share > worst[key].share:
+        if key not in worst or _severity(row) > _severity(worst[key]):
             worst[key] = row
     return list(worst.values())
 
 
+def _severity(row: Comparison) -> tuple[int, float]:
+    order = ("agrees", "not tested", "not given", "disagrees")
+    return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
+
+
 def outcome_text(outcome: Outcome) -> str:
-    """The agreement table of one scene and pair, and the factors of its tolerances."""
+    """The agreement table of one scene and pair, and what its tolerances rest on."""
     first, second = (s.formulation for s in outcome.solutions)
     rows = [
         (
@@ -58,20 +71,17 @@ def outcome_text(outcome: Outcome) -> str:
             _with_unit(row.difference, row.unit),
             _with_unit(row.tolerance, row.unit),
             f"{row.instant:.4g} s",
-            row.verdict if row.share <= 1.0 else f"DISAGREES, {row.share:.1e} times",
+            row.rests_on,
+            f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
         )
         for row in worst_rows(outcome)
     ]
-    f = outcome.factors
     lines = [
         f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants",
-        table(("quantity", "worst at", "largest difference", "held to", "at", "verdict"), rows),
-        f"  tolerances from C = {ROUNDINGS:g}, eps = {EPS:.2g}, cond <= {f.condition.max():.3g} (both), "
-        f"pose error <= {f.pose.max():.2g} mm (both), s1 <= {f.velocity_sensitivity.max():.2g} /s, "
-        f"s2 <= {f.acceleration_sensitivity.max():.2g} /s^2, "
-        f"speed {f.speed:.3g} mm/s, acceleration {f.acceleration:.3g} mm/s^2",
+        table(("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows),
     ]
-    return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])
+    told = (*outcome.missing, *outcome.notes)
+    return "\n".join([*lines, *(f"  note: {note}" for note in told)])
 
 
 def agreement_line(outcome: Outcome) -> str:
@@ -156,25 +166,14 @@ def examined_data(examined: Examined) -> dict[str, Any]:
 
 
 def outcome_data(outcome: Outcome) -> dict[str, Any]:
-    """One comparison as plain data: every row, and the factors of the tolerances."""
-    f = outcome.factors
+    """One comparison as plain data."""
     return {
         "scene": outcome.scene,
         "formulations": [s.formulation for s in outcome.solutions],
         "instants": len(outcome.solutions[0].times),
         "agreed": outcome.agreed,
         "rows": [asdict(row) for row in outcome.rows],
-        "factors": {
-            "C": ROUNDINGS,
-            "eps": EPS,
-            "condition": float(f.condition.max()),
-            "pose_error_mm": float(f.pose.max()),
-            "velocity_sensitivity_per_s": float(f.velocity_sensitivity.max()),
-            "acceleration_sensitivity_per_s2": float(f.acceleration_sensitivity.max()),
-            "truncation": f.truncation,
-            "speed_mm_per_s": f.speed,
-            "acceleration_mm_per_s2": f.acceleration,
-        },
+        "missing": list(outcome.missing),
         "notes": list(outcome.notes),
     }
 

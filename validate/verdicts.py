@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.compare import compare_solutions
-from validate.formulation import Accuracy, Solution
+from validate.formulation import Solution
 from validate.inputs import rates
+from validate.true_solution import as_solution
 from validate.truth import InfeasibleError, TruthError, solve_truth
 from validate.truth.instant import Instant
 
-Array = NDArray[np.float64]
-
-EPS = float(np.finfo(float).eps)
 NO_OBSTACLE = "no obstacle found"
 NEITHER_WRONG = "neither wrong by its own tolerance"
 BETWEEN = 24  # instants between the first and the last at which a pose is looked for
@@ -26,11 +22,11 @@ BETWEEN = 24  # instants between the first and the last at which a pose is looke
 def judged(scene: Scene, one: Solution, two: Solution) -> str:
     """Which of two disagreeing solutions is not the truth, or why that cannot be said."""
     try:
-        truth = true_solution(scene, one.accuracy.velocity_sensitivity, one.accuracy.acceleration_sensitivity)
+        truth = true_solution(scene)
     except TruthError as error:
         return _unproven(error)
     scene = _without_missing_angles(scene, truth)
-    wrong = [s.formulation for s in (one, two) if not compare_solutions(scene, s, truth, "judged").agreed]
+    wrong = [s.formulation for s in (one, two) if compare_solutions(scene, s, truth, "judged").disagreements]
     return f"{' and '.join(wrong)} wrong" if wrong else NEITHER_WRONG
 
 
@@ -38,11 +34,11 @@ def judged_alone(scene: Scene, answer: Solution) -> str:
     """Whether the positions of a solution that stands alone are the truth."""
     scene = scene.model_copy(update={"effects": ()})
     try:
-        truth = true_solution(scene, np.zeros(len(answer.times)), np.zeros(len(answer.times)))
+        truth = true_solution(scene)
     except TruthError as error:
         return _unproven(error)
-    right = compare_solutions(scene, answer, truth, "judged").agreed
-    return "answer right" if right else "answer wrong"
+    wrong = compare_solutions(scene, answer, truth, "judged").disagreements
+    return "answer wrong" if wrong else "answer right"
 
 
 def unanswered(scene: Scene) -> str:
@@ -115,43 +111,15 @@ def true_instant(scene: Scene, inputs: Mapping[str, tuple[float, ...]]) -> Insta
     )
 
 
-def true_solution(scene: Scene, velocity_sensitivity: Array, acceleration_sensitivity: Array) -> Solution:
+def true_solution(scene: Scene) -> Solution:
     """The truth at a scene's instants, rounded, in the form that `compare_solutions` takes.
-
-    Its own error is the rounding of a coordinate. The sensitivities are those of the pose, which the
-    tolerances of a rate need; a model that does not know them is held to these.
 
     Raises:
         TruthError: an instant has no pose, or none can be proven.
     """
-    instants = [true_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
-    first, count = instants[0], len(instants)
-    position = {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position}
-    farthest = max(float(np.abs(place).max()) for place in position.values())
-    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
-    return Solution(
-        formulation="truth",
-        times=scene.instants,
-        position=position,
-        velocity=_rounded([i.velocity for i in instants], first.velocity),
-        acceleration=_rounded([i.acceleration for i in instants], first.acceleration),
-        angular_velocity=_rounded([i.angular_velocity for i in instants], ("knuckle",)),
-        angular_acceleration=_rounded([i.angular_acceleration for i in instants], ("knuckle",)),
-        wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
-        accuracy=Accuracy(
-            pose_error=np.zeros(count),
-            stored=np.full(count, EPS * farthest),
-            carried_gain=np.ones(count),
-            proven=True,
-            condition=np.zeros(count),
-            velocity_sensitivity=velocity_sensitivity,
-            acceleration_sensitivity=acceleration_sensitivity,
-        ),
+    return as_solution(
+        scene.instants, [true_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
     )
-
-
-def _rounded(rows: list[Any], names: Any) -> dict[str, Array]:
-    return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
 
 
 def _without_missing_angles(scene: Scene, truth: Solution) -> Scene:

@@ -113,8 +113,7 @@ def test_an_answer_that_stands_alone_is_held_to_the_truth() -> None:
     assert judged_alone(scene, answer) == "answer right"
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
     assert judged_alone(scene, replace(answer, position=moved)) == "answer wrong"
-    zeros = np.zeros(3)
-    truth: Solution = true_solution(scene, zeros, zeros)
+    truth: Solution = true_solution(scene)
     assert truth.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
 

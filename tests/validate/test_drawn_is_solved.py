@@ -64,8 +64,7 @@ def solved(name: str, scene: Scene) -> Solution:
 
 def allowed(solution: Solution) -> float:
     """What a model says that its points may be off by, mm, carried ones too."""
-    accuracy = solution.accuracy
-    return float((accuracy.pose_error * np.maximum(accuracy.carried_gain, 1.0) + accuracy.stored).max())
+    return max(float(claim.max()) for claim in solution.accuracy.position.values())
 
 
 def true_places(scene: Scene) -> Places:

@@ -81,7 +81,9 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
             name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
             arrays[name] = arrays[name] + lost
             # It knows that digits are lost, and says so, so that its own bounds hold.
-            accuracy = replace(solution.accuracy, pose_error=solution.accuracy.pose_error + 1e3 * lost)
+            claims = getattr(solution.accuracy, quantity)
+            wider = {quantity: {n: claim + 1e3 * lost for n, claim in claims.items()}}
+            accuracy = replace(solution.accuracy, **wider)
             changes: dict[str, Any] = {"accuracy": accuracy, quantity: arrays}
             return replace(solution, **changes)
 

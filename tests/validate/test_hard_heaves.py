@@ -34,8 +34,7 @@ def test_every_number_of_every_law_is_tried() -> None:
 def test_the_displaced_truth_is_the_truth_where_that_can_be_proven() -> None:
     law = heaves.law("polynomial", 0, 1e6)
     scene, plain = (Scene.from_mapping(heaves.content(heave)) for heave in (law, None))
-    still = np.zeros(2)
-    truth, home = true_solution(scene, still, still), true_solution(plain, still, still)
+    truth, home = true_solution(scene), true_solution(plain)
     found = heaves.added(home, rates(scene.inputs["heave"], scene.instants), scene.mechanism.up)
     for quantity in ("position", "velocity", "acceleration"):
         for name, array in getattr(truth, quantity).items():

@@ -75,8 +75,7 @@ def test_exact_signs_are_those_of_the_truth_where_the_truth_can_tell() -> None:
         expected = true_instant(scene, inputs_at(scene, 0.0))
         assert drawn_choices(scene) == expected.choices
         assert instant_on_side(scene, 0.0).position == expected.position
-    still = np.zeros(3)
-    mine, theirs = solution_on_side(scene), true_solution(scene, still, still)
+    mine, theirs = solution_on_side(scene), true_solution(scene)
     for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
         for name, array in getattr(theirs, quantity).items():
             assert np.array_equal(getattr(mine, quantity)[name], array)

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from pointcoord.suspensions.macpherson import KNUCKLE
 from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
 from validate.hard.case import FAILS, RIGHT, Case
 from validate.hard.content import SQUARE, paper_car
 from validate.hard.trial import Facts, Tried, decades, scene_case
-from validate.tolerance import KNUCKLE
 from validate.truth import solve_truth
 
 GROUP = "4. Body rates"

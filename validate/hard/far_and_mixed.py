@@ -18,14 +18,13 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from validate.closed_form import Closure
 from validate.drawings import as_tuple
-from validate.formulation import Solution
+from validate.formulation import Accuracy, Solution
 from validate.hard.cars import BESIDE, car_content
 from validate.hard.case import RIGHT, Answer, Case, Expected, Trial
 from validate.hard.content import decades, paper_car
 from validate.hard.judged import judged_answer
 from validate.hard.last_values import car_called
 from validate.hard.near_points import assembled, drawn_angle, nearer
-from validate.hard.sensitivity import with_sensitivities
 from validate.hard.sides import try_on_side
 from validate.hard.trial import Tried, solved, try_scene
 from validate.paper_car import PAPER
@@ -39,6 +38,8 @@ AWAY = (1.0, -1.0, 3.0)
 # A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
 # own coordinates are up to 8 sizes instead of 1, and rounded so much more coarsely.
 PLACED = 8.0
+# A car at home may happen to be off by less than another by this factor: errors of a few roundings each.
+LUCKY = 16.0
 EPS = float(np.finfo(float).eps)
 RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
 # A thousand times the rest of the car is as mixed as parts of one machine are.
@@ -62,8 +63,7 @@ def at_home(name: str, car: str = "paper") -> tuple[Solution, Mapping[str, float
     scene = Scene.from_mapping(moved_car(0.0, car))
     solution = solved(name, scene)
     assert isinstance(solution, Solution)  # nothing about it is hard
-    still = np.zeros(len(scene.instants))
-    return solution, errors(solution, true_solution(scene, still, still))
+    return solution, errors(solution, true_solution(scene))
 
 
 def errors(solution: Solution, truth: Solution) -> dict[str, float]:
@@ -114,21 +114,25 @@ def _as_at_home(answer: Answer, tried: Tried, car: str) -> Answer:
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
     for away, position in ((farthest, places), (nearest, tried.truth.position)):
-        held_to = replace(
-            home.accuracy,
-            pose_error=PLACED * home.accuracy.pose_error,
-            condition=PLACED * home.accuracy.condition,
-            stored=PLACED * home.accuracy.stored + EPS * away,
-        )
-        strict = replace(solution, position=position, accuracy=held_to)
-        truth = with_sensitivities(tried.scene, tried.truth, strict, tried.solutions)
-        truth = replace(truth, accuracy=replace(truth.accuracy, stored=np.full(len(truth.times), EPS * away)))
-        judged = judged_answer(tried.scene, strict, truth)
+        strict = replace(solution, position=position, accuracy=_held_to(home.accuracy, EPS * away))
+        judged = judged_answer(tried.scene, strict, tried.truth)
         if judged.outcome != "right":
             return replace(
                 answer, outcome="wrong", reason=f"by the bounds of the car at home: {judged.reason}"
             )
     return answer
+
+
+def _held_to(home: Accuracy, rounding: float) -> Accuracy:
+    """What a car may be off by that is off by as much at home, with a rounding of its positions."""
+
+    def widened(quantity: str, more: float) -> dict[str, Array]:
+        claims = getattr(home, quantity)
+        largest = max(float(np.max(claim)) for claim in claims.values())
+        return {name: np.full_like(claim, PLACED * LUCKY * largest + more) for name, claim in claims.items()}
+
+    rates = {quantity: widened(quantity, 0.0) for quantity in RATES}
+    return Accuracy(home.condition, widened("position", rounding), **rates, proven=home.proven)
 
 
 def scaled_car(scale: float, car: str = "paper") -> dict[str, Any]:

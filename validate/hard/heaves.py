@@ -10,7 +10,7 @@ with the law's value, rate and acceleration added along up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import replace
 from typing import Any
@@ -22,9 +22,8 @@ from pointcoord import Scene
 from validate.formulation import Solution
 from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
 from validate.hard.content import SQUARE, paper_car
-from validate.hard.judged import judged_answer, without_dust
+from validate.hard.judged import judged_answer
 from validate.hard.links import GROUP
-from validate.hard.sensitivity import with_sensitivities
 from validate.hard.trial import solved, try_scene
 from validate.inputs import rates
 from validate.verdicts import true_solution
@@ -75,10 +74,8 @@ def displaced(trial: Trial, heave: dict[str, Any]) -> Trial:
     if all(answer.outcome != "unjudged" for answer in trial.answers):
         return trial
     scene, plain = Scene.from_mapping(content(heave)), Scene.from_mapping(content(None))
-    still = np.zeros(len(scene.instants))
-    home = without_dust(true_solution(plain, still, still))
-    known = with_sensitivities(plain, home, home, {})
-    truth = added(known, rates(scene.inputs["heave"], scene.instants), scene.mechanism.up)
+    law = rates(scene.inputs["heave"], scene.instants)
+    truth = added(true_solution(plain), law, scene.mechanism.up)
     answers = []
     for answer in trial.answers:
         one = solved(answer.formulation, scene) if answer.outcome == "unjudged" else answer
@@ -88,17 +85,22 @@ def displaced(trial: Trial, heave: dict[str, Any]) -> Trial:
 
 def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
     """A solution displaced along up by a law's value, rate and acceleration, shape (N, 3)."""
-    value, rate, acceleration = (heave[:, k, None] * np.array(up) for k in range(3))
+    value, rate, push = (heave[:, k, None] * np.array(up) for k in range(3))
     position = {name: place + value for name, place in home.position.items()}
-    # A place and its sum with the heave are rounded by half a unit each.
-    farthest = max(float(np.abs(place).max()) for place in position.values())
-    return replace(
-        home,
-        position=position,
-        velocity={name: v + rate for name, v in home.velocity.items()},
-        acceleration={name: a + acceleration for name, a in home.acceleration.items()},
-        accuracy=replace(home.accuracy, stored=np.full(len(heave), EPS * farthest)),
+    velocity = {name: v + rate for name, v in home.velocity.items()}
+    acceleration = {name: a + push for name, a in home.acceleration.items()}
+    accuracy = replace(
+        home.accuracy,
+        position=_rounded(position, value),
+        velocity=_rounded(velocity, rate),
+        acceleration=_rounded(acceleration, push),
     )
+    return replace(home, position=position, velocity=velocity, acceleration=acceleration, accuracy=accuracy)
+
+
+def _rounded(sums: Mapping[str, Array], added: Array) -> dict[str, Array]:
+    """What is added is rounded once, and so is the sum; what was there is smaller than one of them."""
+    return {name: EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
 def heaving(every: tuple[Tried, ...]) -> Callable[[float], Trial]:

@@ -8,88 +8,49 @@ once more.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.compare import Comparison, compare_solutions
-from validate.formulation import Accuracy, Solution
+from validate.formulation import Solution
 from validate.hard.case import Answer, Outcome
 
 Array = NDArray[np.float64]
 
 
-# The truth is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest" means.
-DUST = 1e-50
-
-
-def without_dust(truth: Solution) -> Solution:
-    """The truth with zeros where it is zero up to its own proven error.
-
-    Its numbers are the middles of intervals about 0 there, some 1e-170 large, and a rate that is exactly zero
-    is held to exactly zero. Of an acceleration the parts that cancel count: speed squared over size.
-    """
-    corners = np.stack(list(truth.position.values()))
-    size = float((corners.max(axis=0) - corners.min(axis=0)).max())
-    fastest, hardest = _largest(truth.velocity), _largest(truth.acceleration)
-    push = hardest + fastest * (fastest / size)
-    return replace(
-        truth,
-        velocity=_swept(truth.velocity, fastest),
-        acceleration=_swept(truth.acceleration, push),
-        angular_velocity=_swept(truth.angular_velocity, fastest / size),
-        angular_acceleration=_swept(truth.angular_acceleration, push / size),
-    )
-
-
-def _swept(vectors: Mapping[str, Array], scale: float) -> dict[str, Array]:
-    return {name: np.where(np.abs(array) > DUST * scale, array, 0.0) for name, array in vectors.items()}
-
-
-def _largest(vectors: Mapping[str, Array]) -> float:
-    return max(float(np.abs(array).max()) for array in vectors.values())
-
-
 def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
-    """Hold all numbers of a solution to the truth, which knows the sensitivities that tolerances need."""
+    """Hold all numbers of a solution to the truth, each to what the solution itself claims of it."""
     rows = compare_solutions(scene, answer, truth, "hard").rows
     outcome = _outcome(scene, answer, truth, rows)
-    worst = max(rows, key=lambda row: row.share if np.isfinite(row.share) else np.inf)
-    accuracy = answer.accuracy
-    bound = accuracy.pose_error * np.maximum(accuracy.carried_gain, 1.0) + accuracy.stored
+    worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
+    bound = max(float(np.max(claim)) for claim in answer.accuracy.position.values())
     return Answer(
         formulation=answer.formulation,
         outcome=outcome,
         reason=_reason(worst, answer, outcome),
         error=_finite(_error(answer, truth)),
-        bound=_finite(float(np.max(bound))),
+        bound=_finite(bound),
         share=_finite(worst.share),
-        condition=_finite(float(np.max(accuracy.condition))),
+        condition=_finite(float(np.max(answer.accuracy.condition))),
     )
 
 
 def _outcome(scene: Scene, answer: Solution, truth: Solution, rows: tuple[Comparison, ...]) -> Outcome:
-    if all(row.verdict == "agrees" for row in rows):
+    if not _wrong(rows):
         return "right"
-    if not _bounded(answer.accuracy) and _finite_throughout(answer):
-        # Any number lies within an infinite bound: a formulation that gives one says that it knows nothing.
-        return "noted"
     rest = compare_solutions(scene, _without_noted(answer, truth), truth, "hard").rows
-    return "noted" if all(row.verdict == "agrees" for row in rest) else "wrong"
+    return "wrong" if _wrong(rest) else "noted"
 
 
-def _bounded(accuracy: Accuracy) -> bool:
-    """Whether a solution says of every instant how accurate it is."""
-    factors = (getattr(accuracy, field.name) for field in fields(accuracy))
-    return all(bool(np.isfinite(factor).all()) for factor in factors)
+def _wrong(rows: tuple[Comparison, ...]) -> bool:
+    """Whether a number is further off than the solution claims, or not given at all.
 
-
-def _finite_throughout(answer: Solution) -> bool:
-    channels = (answer.position, answer.velocity, answer.acceleration, answer.angular_velocity)
-    every = (*channels, answer.angular_acceleration, answer.wheel)
-    return all(bool(np.isfinite(array).all()) for channel in every for array in channel.values())
+    However much it claims: the truth tells what a partner with a wide tolerance could not.
+    """
+    return any(row.verdict in ("disagrees", "not given") for row in rows)
 
 
 def _without_noted(answer: Solution, truth: Solution) -> Solution:
@@ -122,8 +83,6 @@ def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:
     where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
     if outcome == "right":
         return where
-    if outcome == "noted" and not _bounded(answer.accuracy):
-        return f"{where}: no finite bound is given"
     if np.isfinite(worst.difference):
         off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
     else:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
+from pointcoord.suspensions.macpherson import DRAWN
 from validate.inputs import rates
-from validate.tolerance import CARRIED
 from validate.truth import TruthError
 from validate.verdicts import inputs_at, true_instant
 
@@ -79,7 +79,7 @@ def _bounds(partial: Motion | Kept, scene: Scene) -> dict[str, Array]:
     estimate = ROUNDINGS * EPS * proof.condition * size + scene.tolerance
     return {
         name: np.minimum(proof.carried_bound, estimate * proof.carried_gain) + rounding
-        if name in CARRIED
+        if name in DRAWN.carried
         else np.minimum(proof.bound, estimate) + rounding
         for name in position
     }

@@ -11,14 +11,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from pointcoord import Scene
-from validate.formulation import Accuracy, Solution
+from validate.formulation import Solution
 from validate.hard.case import Answer, Trial
-from validate.hard.judged import judged_answer, without_dust
-from validate.hard.sensitivity import with_sensitivities
+from validate.hard.judged import judged_answer
 from validate.hard.trial import Measure, Tried, solved, try_scene
+from validate.true_solution import as_solution
 from validate.truth import AmbiguousAssemblyError, Choices, Instant, TruthError
 from validate.truth.branches import candidate
 from validate.truth.closures import equations_for
@@ -29,7 +27,6 @@ from validate.truth.vectors import cross, dot, minus
 from validate.verdicts import inputs_at
 
 DIGITS = 60
-EPS = float(np.finfo(float).eps)
 
 
 def drawn_choices(scene: Scene) -> Choices:
@@ -88,40 +85,7 @@ def solution_on_side(scene: Scene) -> Solution:
     Raises:
         TruthError: an instant has no pose, or none can be proven.
     """
-    instants = [instant_on_side(scene, t) for t in scene.instants.tolist()]
-    still = np.zeros(len(instants))
-    position = {n: np.array([i.position_as_float(n) for i in instants]) for n in instants[0].position}
-    farthest = max(float(np.abs(place).max()) for place in position.values())
-    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
-    return Solution(
-        formulation="truth",
-        times=scene.instants,
-        position=position,
-        velocity=_rates(instants, "velocity"),
-        acceleration=_rates(instants, "acceleration"),
-        angular_velocity=_rates(instants, "angular_velocity", ("knuckle",)),
-        angular_acceleration=_rates(instants, "angular_acceleration", ("knuckle",)),
-        wheel={n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
-        accuracy=Accuracy(
-            pose_error=still,
-            stored=np.full(len(still), EPS * farthest),
-            carried_gain=np.ones(len(still)),
-            proven=True,
-            condition=still,
-            velocity_sensitivity=still,
-            acceleration_sensitivity=still,
-        ),
-    )
-
-
-def _rates(
-    instants: Sequence[Instant], quantity: str, names: tuple[str, ...] | None = None
-) -> dict[str, np.ndarray]:
-    """One rate of all points, or of some bodies, rounded."""
-    each = [getattr(instant, quantity) for instant in instants]
-    return {
-        name: np.array([[float(x) for x in rate[name]] for rate in each]) for name in names or tuple(each[0])
-    }
+    return as_solution(scene.instants, [instant_on_side(scene, t) for t in scene.instants.tolist()])
 
 
 def try_on_side(
@@ -133,16 +97,13 @@ def try_on_side(
         return trial
     scene = Scene.from_mapping(content)
     try:
-        truth = without_dust(solution_on_side(scene))
+        truth = solution_on_side(scene)
     except TruthError as error:
         return replace(trial, facts={**trial.facts, "truth": f"{type(error).__name__}: {error}"})
     tried = {name: solved(name, scene) for name in formulations}
     solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
     answers = tuple(
-        one
-        if isinstance(one, Answer)
-        else judged_answer(scene, one, with_sensitivities(scene, truth, one, solutions))
-        for one in tried.values()
+        one if isinstance(one, Answer) else judged_answer(scene, one, truth) for one in tried.values()
     )
     facts = {**trial.facts, "truth": "on the side of the exact sign of the drawing"}
     if measure is not None:

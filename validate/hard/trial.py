@@ -20,8 +20,7 @@ from validate.formulations import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
 from validate.hard.content import decades as decades
 from validate.hard.content import paper_car as paper_car
-from validate.hard.judged import judged_answer, without_dust
-from validate.hard.sensitivity import with_sensitivities
+from validate.hard.judged import judged_answer
 from validate.truth import InfeasibleError, TruthError
 from validate.verdicts import true_solution
 
@@ -96,7 +95,7 @@ def try_scene(
         elif isinstance(truth, Exception):
             answers.append(Answer(name, "unjudged", _told(truth)))
         else:
-            answers.append(_judged(scene, one, with_sensitivities(scene, truth, one, solutions)))
+            answers.append(_judged(scene, one, truth))
     facts: dict[str, float | str] = {"truth": _told(truth) if isinstance(truth, Exception) else "answers"}
     if measure is not None:
         known = None if isinstance(truth, Exception) else truth
@@ -129,9 +128,8 @@ def solved(name: str, scene: Scene) -> Solution | Answer:
 
 def _truth(scene: Scene) -> Solution | Exception:
     """The truth, or why there is none."""
-    still = np.zeros(len(scene.instants))
     try:
-        return without_dust(true_solution(scene, still, still))
+        return true_solution(scene)
     except TruthError as error:
         return error
     except (ValueError, ArithmeticError) as error:

@@ -1,0 +1,78 @@
+r"""What the absolute model claims of its accuracy: its own estimates, and what reporting rounds.
+
+The model estimates the error of every point's and body's motion from what its equations are rounded from,
+and measures lengths from a place near the car. To this come the sum with that place, rounded by u of the
+result, and the chassis' displacement along `up`, u of it. An angle of a line a, seen along
+z = a . right + i a . up, is off by
+
+    |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
+
+where d a is at most the sum of its ends' errors and, of a line of one body, also at most the error of its
+rotation times a, with the rounding of the ends; the smaller of the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+import absolute
+from pointcoord.scene import MechanismPart
+from validate.formulation import Accuracy
+
+Array = NDArray[np.float64]
+Arrays = Mapping[str, Array]
+
+EPS = float(np.finfo(float).eps)
+KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower", "wheel_centre", "wheel_axis_inner")
+
+
+def claims(
+    part: MechanismPart,
+    solved: absolute.Solution,
+    position: Arrays,
+    chassis: Array | None,
+    lines: Mapping[str, tuple[str, str]],
+) -> Accuracy:
+    """The claims for a solution.
+
+    Args:
+        position: as reported, from the user's origin, (N, 3), mm.
+        chassis: displacement, velocity and acceleration of the chassis, (N, 3, 3), mm and s; None at rest.
+        lines: for each wheel angle its line, from point to point.
+    Raises:
+        AccuracyError: the model does not know the error of a number.
+    """
+    count = len(next(iter(position.values())))
+    moved = np.zeros((3, count, 3)) if chassis is None else EPS * np.abs(np.moveaxis(chassis, 1, 0))
+    return Accuracy(
+        condition=np.ones(count) if solved.condition is None else solved.condition,
+        position={
+            name: error + moved[0] + EPS * np.abs(position[name])
+            for name, error in solved.position_error.items()
+        },
+        velocity={name: error + moved[1] for name, error in solved.velocity_error.items()},
+        acceleration={name: error + moved[2] for name, error in solved.acceleration_error.items()},
+        angular_velocity=solved.angular_velocity_error,
+        angular_acceleration=solved.angular_acceleration_error,
+        wheel={name: _angle(part, solved, line) for name, line in lines.items()},
+    )
+
+
+def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]) -> Array:
+    start, end = line
+    along = solved.position[end] - solved.position[start]
+    off = solved.position_error[start] + solved.position_error[end]
+    if start in KNUCKLE and end in KNUCKLE:
+        turn, size = solved.rotation_error["knuckle"], np.abs(along)
+        turned = np.roll(turn, -1, axis=-1) * np.roll(size, -2, axis=-1)
+        turned += np.roll(turn, -2, axis=-1) * np.roll(size, -1, axis=-1)
+        rounded = EPS * np.abs(solved.position[end]) + EPS * np.abs(solved.position[start])
+        off = np.minimum(off, turned + rounded)
+    right, up = np.array(part.right), np.array(part.up)
+    seen = off @ np.abs(right) + off @ np.abs(up)
+    with np.errstate(divide="ignore"):
+        # No angle is off by more than half a turn.
+        return np.asarray(np.minimum(seen / np.hypot(along @ right, along @ up), np.pi) + 4.0 * EPS)
