@@ -54,6 +54,11 @@ class Normal(Constraint):
         """The normal."""
         return (self.normal,)
 
+    @property
+    def holds_a_body(self) -> bool:
+        """It does."""
+        return True
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the two edges."""
         n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
@@ -99,6 +104,11 @@ class AxisInBody(Constraint):
         """Its place in the body: a, b and c."""
         body = self.normal
         return tuple(f"{self.axis} along {part}" for part in (body.first, body.second, body.normal))
+
+    @property
+    def holds_a_body(self) -> bool:
+        """It does."""
+        return True
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the constants and the edges."""

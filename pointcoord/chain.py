@@ -127,6 +127,10 @@ def build_chain(
             series_orders=settings.order,
             rate_solves=settings.order * members,
         )
+        finite = np.asarray(np.isfinite(series).all(axis=(-2, -1)))
+        if not finite.all():
+            partial = Chain(tuple(segments), work) if segments else None
+            raise _cannot_pass(mechanism, functions, y, factors, ~finite, instant, stop, partial, False)
         if limit == instant:
             segments.append(Segment(instant, stop, scale, series))
             break
@@ -179,7 +183,9 @@ def _expand(
         with np.errstate(over="ignore"):
             fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
         scale = min(scale, _power_of_two(min(fastest, scale)))
-    return expand(mechanism.map, factors, y, known * (scale**orders)[:, None]), scale
+    # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
+    with np.errstate(over="ignore", invalid="ignore"):
+        return expand(mechanism.map, factors, y, known * (scale**orders)[:, None]), scale
 
 
 def _end(

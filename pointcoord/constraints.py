@@ -66,6 +66,11 @@ class Constraint(ABC):
         return ()
 
     @property
+    def holds_a_body(self) -> bool:
+        """Whether it only says how a body is made, and joins it to nothing."""
+        return False
+
+    @property
     def is_length(self) -> bool:
         """Whether its rows at the drawing are the components of a distance that the drawing misses."""
         return False

@@ -89,6 +89,15 @@ class MechanismPart(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _spin_axis(self) -> Self:
+        if self.points.get("wheel_axis_inner") == self.points["wheel_centre"]:
+            raise ValueError(
+                "wheel_axis_inner and wheel_centre are at the same place, so that the wheel's spin axis has "
+                "no direction; allowed: two points of the axis apart from each other"
+            )
+        return self
+
     @property
     def topology(self) -> Topology:
         """The linkage that its points are put on."""
@@ -206,6 +215,16 @@ class Scene(Part):
             if name not in EFFECTS:
                 raise ValueError(f"no effect is called {shown(name)}; allowed: {', '.join(EFFECTS)}")
         return effects
+
+    @model_validator(mode="after")
+    def _spin_axis_known(self) -> Self:
+        inner, centre = (self.mechanism.points[name] for name in self.mechanism.topology.wheel_axis)
+        if "wheel_angles" in self.effects and inner == centre:
+            raise ValueError(
+                "strut_lower and wheel_centre are at the same place, so that the wheel's spin axis has no "
+                "direction; give the axis a point of its own, wheel_axis_inner, or leave 'wheel_angles' out"
+            )
+        return self
 
     @model_validator(mode="after")
     def _inputs_fit(self) -> Self:

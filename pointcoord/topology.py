@@ -82,7 +82,10 @@ class Topology:
         return tuple(label for constraint in self.constraints for label in constraint.labels)
 
     def strongest(self, forces: Array) -> tuple[str, ...]:
-        """Names of the constraints that take part in a balance of forces, links first.
+        """Names of the constraints that take part in a balance of forces.
+
+        Links between bodies come first, then slides and drives; what only holds one body together, such as
+        two sides of the knuckle's triangle, carries forces in every pose and comes last.
 
         Args:
             forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
@@ -90,12 +93,21 @@ class Topology:
         """
         first = 0
         sizes: dict[str, float] = {}
+        ranks: dict[str, int] = {}
         for constraint in self.constraints:
             last = first + len(constraint.labels)
-            sizes[constraint.labels[0].removesuffix(" (x)")] = float(np.abs(forces[first:last]).max())
+            name = constraint.labels[0].removesuffix(" (x)")
+            sizes[name] = float(np.abs(forces[first:last]).max())
+            ranks[name] = self._rank(constraint)
             first = last
         acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
-        return tuple(sorted(acting, key=lambda name: (not name.startswith("link"), -sizes[name])))
+        return tuple(sorted(acting, key=lambda name: (ranks[name], -sizes[name])))
+
+    def _rank(self, constraint: Constraint) -> int:
+        ends = {end for link in constraint.squared_lengths for end in link}
+        if constraint.holds_a_body or (ends and any(ends <= set(body) for body in self.bodies.values())):
+            return 2
+        return 0 if ends else 1
 
     @cached_property
     def layout(self) -> Layout:

@@ -275,3 +275,28 @@ def _ball_joint(front: Array, rear: Array, drawn: Array, angle: float) -> Array:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if turned(middle)[2] < rise else (low, middle)
     return front + turned(0.5 * (low + high))
+
+
+def test_what_holds_the_knuckle_together_is_named_after_what_holds_it_to_the_car() -> None:
+    named = DRAWN.strongest(np.ones(len(DRAWN.labels)))
+    knuckle = set(DRAWN.bodies["knuckle"])
+    inside = {
+        name
+        for name in named
+        if name in ("normal of the knuckle", "strut axis")
+        or set(name.removeprefix("link ").split(" - ")) <= knuckle
+    }
+    assert len(inside) == 5
+    assert set(named[-5:]) == inside
+    assert all(name.startswith("link ") for name in named[:3])  # two of the arm and the tie rod
+
+
+@pytest.mark.parametrize("inner", ["wheel_axis_inner", "strut_lower"])
+def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Scene], inner: str) -> None:
+    car = {**CAR, inner: CAR["wheel_centre"]}
+    if inner == "strut_lower":
+        del car["wheel_axis_inner"]
+        # Where no scene asks for camber, nothing needs the axis.
+        assert make_scene(points=car, closure="drawn", effects=("velocity",))
+    with pytest.raises(SceneError, match=f"{inner} and wheel_centre are at the same place"):
+        make_scene(points=car, closure="drawn")
