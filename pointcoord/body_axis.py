@@ -187,6 +187,11 @@ class OnAxis(Constraint):
         """From the origin of the axis to the point."""
         return ((self.origin, self.point),)
 
+    @property
+    def may_lock(self) -> bool:
+        """Where what it holds lies square to the axis."""
+        return True
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the place and the direction."""
         p, o, d = (layout.vector(name) for name in (self.point, self.origin, self.axis))

@@ -66,6 +66,11 @@ class Constraint(ABC):
         return ()
 
     @property
+    def may_lock(self) -> bool:
+        """Whether it can be what a motion ends at."""
+        return False
+
+    @property
     def holds_a_body(self) -> bool:
         """Whether it only says how a body is made, and joins it to nothing."""
         return False
@@ -105,6 +110,11 @@ class Link(Constraint):
     def segments(self) -> tuple[tuple[str, str], ...]:
         """The link."""
         return ((self.start, self.end),)
+
+    @property
+    def may_lock(self) -> bool:
+        """Where it lies in line with another."""
+        return True
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Quadratic in the difference of the ends."""

@@ -84,8 +84,7 @@ class Topology:
     def strongest(self, forces: Array) -> tuple[str, ...]:
         """Names of the constraints that take part in a balance of forces.
 
-        Links between bodies come first, then slides and drives; what only holds one body together, such as
-        two sides of the knuckle's triangle, carries forces in every pose and comes last.
+        What can lock, links and the strut's slide, comes first; what only says how a body is made, last.
 
         Args:
             forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
@@ -98,16 +97,10 @@ class Topology:
             last = first + len(constraint.labels)
             name = constraint.labels[0].removesuffix(" (x)")
             sizes[name] = float(np.abs(forces[first:last]).max())
-            ranks[name] = self._rank(constraint)
+            ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
             first = last
         acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
         return tuple(sorted(acting, key=lambda name: (ranks[name], -sizes[name])))
-
-    def _rank(self, constraint: Constraint) -> int:
-        ends = {end for link in constraint.squared_lengths for end in link}
-        if constraint.holds_a_body or (ends and any(ends <= set(body) for body in self.bodies.values())):
-            return 2
-        return 0 if ends else 1
 
     @cached_property
     def layout(self) -> Layout:
