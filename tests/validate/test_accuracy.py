@@ -146,7 +146,7 @@ def test_instants_that_both_give_are_compared() -> None:
     ],
 )
 def test_what_is_no_solution_is_a_refusal(change: Callable[[Solution], object]) -> None:
-    with pytest.raises(FormulationError, match="^changed: "):
+    with pytest.raises(FormulationError, match=r"^changed: "):
         compared(change)
 
 
