@@ -1,6 +1,5 @@
 """Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
-from absolute.backend import MissingPinocchioError
 from absolute.closing import ClosedDrawing, close_drawing
 from absolute.description import Axis, Carried, Input, Joint, Model, Side
 from absolute.errors import (
@@ -9,6 +8,7 @@ from absolute.errors import (
     BranchError,
     DescriptionError,
     InputError,
+    MissingPinocchioError,
     PoseError,
     SingularError,
     UnreachableError,

@@ -119,27 +119,19 @@ class Mechanism:
             targets[:, :, row] = f, f1 * speed, f2 * speed * speed + f1 * second
         return targets
 
-    def target_doubt(self, series: Array, doubts: Array) -> Array:
-        """(3, N, rows): how far targets and their rates may be off for inputs off by `doubts`, both
-        (N, 3, inputs): to first order, with the worst signs."""
-        off = np.zeros((3, len(series), self.stack.count))
-        for row, (drive, (law, factor), column, doubt) in enumerate(
-            zip(
-                self.model.inputs.values(),
-                self._laws,
-                series.transpose(2, 1, 0),
-                doubts.transpose(2, 1, 0),
-                strict=True,
-            ),
-            self.joint_rows,
+    def target_slopes(self, series: Array) -> Array:
+        """(3, 3, N, inputs): how the targets of the inputs' rows, and their first and second rates, change
+        with value, rate and acceleration of the input, (N, 3, inputs): slopes[of the input, of the target].
+        """
+        slopes = np.zeros((3, 3, len(series), series.shape[-1]))
+        for place, (drive, (law, factor), column) in enumerate(
+            zip(self.model.inputs.values(), self._laws, series.transpose(2, 1, 0), strict=True)
         ):
             third = LAWS[drive.law].third
             terms = [(*law(value)[1:], third(value)) for value in column[0].tolist()]
-            f1, f2, f3 = np.abs(factor * np.array(terms).reshape(-1, 3).T)
-            _, speed, second = np.abs(column)
-            value, of_speed, of_second = doubt
-            off[0, :, row] = f1 * value
-            off[1, :, row] = f2 * speed * value + f1 * of_speed
-            off[2, :, row] = (f3 * speed * speed + f2 * second) * value
-            off[2, :, row] += 2.0 * f2 * speed * of_speed + f1 * of_second
-        return off
+            f1, f2, f3 = factor * np.array(terms).reshape(-1, 3).T
+            _, speed, second = column
+            slopes[0, :, :, place] = f1, f2 * speed, f3 * speed * speed + f2 * second
+            slopes[1, 1:, :, place] = f1, 2.0 * f2 * speed
+            slopes[2, 2, :, place] = f1
+        return slopes

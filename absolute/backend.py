@@ -1,9 +1,6 @@
 """Pinocchio and its linear algebra, or one line that says how to get them; all modules get them here."""
 
-
-class MissingPinocchioError(ImportError):
-    """Pinocchio or eigenpy cannot be imported; they come with an extra of the package."""
-
+from absolute.errors import MissingPinocchioError
 
 try:
     import eigenpy
@@ -13,4 +10,4 @@ except ImportError as error:
         f"the absolute model needs Pinocchio ({error}): pip install 'pointcoord[validate]'"
     ) from None
 
-__all__ = ["MissingPinocchioError", "eigenpy", "pin"]
+__all__ = ["eigenpy", "pin"]

@@ -34,7 +34,8 @@ def close_drawing(model: Model) -> ClosedDrawing:
         DescriptionError, AssemblyError, BranchError, SingularError: as `solve`.
     """
     mechanism = Mechanism(model)
-    values = mechanism.named(mechanism.drawn_inputs.tolist())
+    # A drawn rack at its centre is at 0, not at -0.
+    values = mechanism.named((mechanism.drawn_inputs + 0.0).tolist())
     still = {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}
     position = {name: place[0] for name, place in solve(model, still, rates=False).position.items()}
     return ClosedDrawing(

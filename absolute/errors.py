@@ -119,3 +119,7 @@ class UnreachableError(PoseError):
 
 class SingularError(PoseError):
     """The inputs do not fix the pose: the Jacobian has lost rank to working accuracy."""
+
+
+class MissingPinocchioError(ImportError):
+    """Pinocchio or eigenpy cannot be imported; they come with an extra of the package."""

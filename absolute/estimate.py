@@ -3,8 +3,8 @@ r"""How far each returned quantity may be from the exact one, point by point and
 With K = J^-1, the doubts p, t, s of the three equations (see `rounding`) and changes of first order,
     dq = K p,    dv = K (t - H dq),    da = K (s - D dq - G dv),
 H = d(J v)/dq, D = d(J a + drift)/dq, G = d(drift)/dv. Every error of a point or a body is a linear function
-of p, t and s; its estimate is the sum of the magnitudes of its coefficients times the doubts, so that
-no component answers for the sensitivity of another. Near a dead point more than the first order counts:
+of p, t and s, and its estimate a sum of the magnitudes of its coefficients times the doubts, so that no
+component answers for the sensitivity of another. Near a dead point more than the first order counts:
 see `fold`.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from absolute.assembly import Mechanism
 from absolute.newton import EPS
-from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.solution import Array
 from absolute.stack import Placed
@@ -63,7 +63,8 @@ class Answers(NamedTuple):
     Attributes:
         direct: K, (N, rows, bodies, 2, 3): pose to p, velocity to t, acceleration to s.
         speed, second: -K H K: velocity to p; acceleration to p. bent: acceleration to t.
-        pose, rate, rest: the doubts p, t, s themselves, (N, rows).
+        pose, rate, rest: the doubts p, t, s themselves.
+        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs.
         grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
     """
 
@@ -71,9 +72,11 @@ class Answers(NamedTuple):
     speed: Array
     second: Array
     bent: Array
-    pose: Array
-    rate: Array
-    rest: Array
+    pose: Doubt
+    rate: Doubt
+    rest: Doubt
+    slopes: Array
+    inputs: Array
     grown: tuple[Array, Array, Array]
 
 
@@ -138,7 +141,7 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
 def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array) -> Answers:
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
-    targets, off = mechanism.target_series(series), mechanism.target_doubt(series, doubts)
+    targets = mechanism.target_series(series)
     jacobian = stack.jacobian(placed)
     inverse = np.asarray(np.linalg.inv(jacobian), dtype=float)
     moving, bending = (row_motion(stack, placed, rates) for rates in (motion.velocity, motion.acceleration))
@@ -146,14 +149,21 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
         rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
     )
     drift = stack.drift(placed, motion.velocity[:, :, 0], motion.velocity[:, :, 1])
-    pose = pose_doubt(mechanism, placed, targets[0]) + off[0]
-    rate = rate_doubt(moving, jacobian, speeds, targets[1]) + off[1]
-    rest = second_doubt(moving, bending, jacobian, seconds, drift, targets[2]) + off[2]
+    pose = pose_doubt(mechanism, placed, targets[0])
+    slopes = mechanism.target_slopes(series)
+    everything = pose.known + pose.rounded
+    everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
     by_velocity = drift_by_velocity(stack, moving)
     by_pose = rate_by_pose(stack, bending) + drift_by_pose(stack, moving)
     speed = -inverse @ rate_by_pose(stack, moving) @ inverse
     second = -inverse @ (by_pose @ inverse + by_velocity @ speed)
     bent = -inverse @ by_velocity @ inverse
+    rate = rate_doubt(moving, jacobian, speeds, targets[1])
+    grown = fold(mechanism, placed, inverse, everything)
+    # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
+    off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
+    fastest = np.abs(speeds).max(axis=1)
+    share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
     return Answers(
         _by_row(inverse),
         _by_row(speed),
@@ -161,8 +171,10 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
         _by_row(bent),
         pose,
         rate,
-        rest,
-        fold(mechanism, placed, inverse, pose),
+        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
+        slopes,
+        doubts,
+        (grown[0], grown[1], grown[2] * (1.0 + share)),
     )
 
 
@@ -217,14 +229,28 @@ def _totals(
         _summed(speed, p) + _summed(direct, t),
         _summed(second, p) + _summed(bent, t) + _summed(direct, s),
     )
-    # Nothing stays nothing, however near the fold.
+    # An input's row answers to all three equations at once where its value is off.
+    driven = slice(direct.shape[1] - answers.inputs.shape[-1], None)
+    d, v, a, b = (answer[:, driven] for answer in (direct, speed, second, bent))
+    for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
+        to_pose, to_rate, to_rest = slopes[..., None]
+        changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
+        for total, change in zip(totals, changes, strict=True):
+            total += np.einsum("nic,ni->nc", np.abs(change), off)
     position, velocity, acceleration = (
-        np.multiply(total, grown[:, None], out=np.zeros_like(total), where=total > 0)
-        for total, grown in zip(totals, answers.grown, strict=True)
+        total + _further(total, grown) for total, grown in zip(totals, answers.grown, strict=True)
     )
     return position, velocity, acceleration
 
 
-def _summed(answer: Array, doubt: Array) -> Array:
-    total: Array = np.einsum("nrc,nr->nc", np.abs(answer), doubt)
+def _further(total: Array, grown: Array) -> Array:
+    # Higher orders lead anywhere, not where the first leads. Nothing stays nothing, however near the fold.
+    largest = total.max(axis=1, keepdims=True)
+    further: Array = np.multiply(largest, grown[:, None] - 1.0, out=np.zeros_like(largest), where=largest > 0)
+    return further
+
+
+def _summed(answer: Array, doubt: Doubt) -> Array:
+    known = np.einsum("nrc,nr->nc", np.abs(answer), doubt.known)
+    total: Array = known + np.sqrt(np.einsum("nrc,nr->nc", answer * answer, doubt.rounded * doubt.rounded))
     return total

@@ -123,8 +123,14 @@ class Record:
     def _errors(self, count: int) -> Errors:
         """Errors of the first `count` instants; nothing where none were asked for."""
         doubts, whole = self._asked.doubts, Errors({}, {}, {}, {}, {}, {})
+        model = self._mechanism.model
         if doubts is None:
             return whole
+        if not count:
+            points, bodies = (
+                {name: np.zeros((0, 3)) for name in names} for names in (model.points, model.moving)
+            )
+            return Errors(points, points, points, bodies, bodies, bodies)
         for start in range(0, max(count, 1), ERROR_BATCH):
             part = slice(start, min(start + ERROR_BATCH, count))
             origin = self._origin[part]

@@ -1,8 +1,10 @@
 """What the rows of a solved pose are rounded from, and how far their equations may be off for it.
 
-Independent roundings of eps / 2, n of them, have a standard deviation of sqrt(n / 3) eps / 2. Taken three
-times, n roundings of terms whose magnitudes add up to M leave `spread(n)` M. They are not added up like
-this from row to row: there, the worst signs are assumed.
+A rounding is even between -eps / 2 and eps / 2 of the power of two below a number x, so its mean square is
+eps^2 / 12 times the mean of (2^k / x)^2, which is 1 / 2 for even x: a standard deviation of eps / 2 / sqrt(6)
+of x. It is made in one component of a vector, with a mean square of a third. Of n independent ones made
+in vectors whose lengths add up to M, four standard deviations are  spread(n) M,  and from row to row they
+add up in squares again. What is left of an equation as computed is known, and adds up as it is.
 """
 
 import math
@@ -18,8 +20,8 @@ from absolute.stack import Placed
 
 
 def spread(roundings: int) -> float:
-    """Three standard deviations of so many independent roundings."""
-    return 3.0 * math.sqrt(roundings / 3.0) * EPS / 2.0
+    """Four standard deviations of so many independent roundings in vectors."""
+    return 4.0 * math.sqrt(roundings / 18.0) * EPS / 2.0
 
 
 # A length from the drawing: a difference and a quotient. A rotation from a quaternion: four from the
@@ -36,47 +38,45 @@ PLACE = EPS / 2.0
 RATE = spread(22 + 13 + 3 + 12)
 # Two products with an angular velocity more, and the sum of three kinds of terms.
 DRIFT = spread(22 + 13 + 2 * 3 + 12 + 3)
-# An input's law, its factor, the size, their products.
-TARGET = spread(6)
+# An input's law, its factor (three), the size, their product: at worst.
+TARGET = 6 * EPS / 2.0
 
 
 class Doubt(NamedTuple):
-    """How far the equations of N poses may be off, each (N, rows), in units of size and s.
+    """How far each row of an equation may be off, (N, rows) each, in units of size and s.
 
     Attributes:
-        pose: of  rows = target. rate: of  J v = rate. second: of  J a = second - drift.
+        known: what is left of it as computed. rounded: four standard deviations of its rounding.
     """
 
-    pose: Array
-    rate: Array
-    second: Array
+    known: Array
+    rounded: Array
 
 
-def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Array:
-    """(N, rows): what is left of each row, and what the row is rounded from."""
+def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Doubt:
+    """Of  rows = target."""
     stack = mechanism.stack
     offsets = stack.offset_rows
-    doubt: Array = np.abs(target - placed.values) + REACH * length(placed.reach) + TARGET * np.abs(target)
+    rounded: Array = REACH * length(placed.reach) + TARGET * np.abs(target)
     # The partner of a right angle is another direction; points have arms, and are somewhere.
-    doubt[:, : offsets.start] += DIRECTION
+    rounded[:, : offsets.start] += DIRECTION
     second, first = placed.parts[:, 1, offsets], placed.parts[:, 2, offsets]
-    doubt[:, offsets] += PLACE * (length(first) + length(second))
+    rounded[:, offsets] += PLACE * (length(first) + length(second))
     r1 = placed.parts[:, 3, offsets] - placed.reach[:, offsets]
-    doubt[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
-    return doubt
+    rounded[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
+    return Doubt(np.abs(target - placed.values), rounded)
 
 
-def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Array:
-    """(N, rows): what is left of  J v = target,  and what its terms are rounded from."""
+def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Doubt:
+    """Of  J v = target."""
     left = target - np.einsum("nij,nj->ni", jacobian, rates)
-    doubt: Array = np.abs(left) + RATE * pushes(motion) + TARGET * np.abs(target)
-    return doubt
+    return Doubt(np.abs(left), RATE * pushes(motion) + TARGET * np.abs(target))
 
 
 def second_doubt(
     motion: RowMotion, bending: RowMotion, jacobian: Array, seconds: Array, drift: Array, target: Array
-) -> Array:
-    """(N, rows): what is left of  J a = target - drift,  and what its terms are rounded from.
+) -> Doubt:
+    """Of  J a = target - drift.
 
     Args:
         motion, bending: rows at the velocities and at the accelerations of the bodies.
@@ -86,8 +86,7 @@ def second_doubt(
     e, r1, r2 = length(motion.e), length(motion.r1), length(motion.r2)
     speeds = length(motion.s1) + length(motion.s2) + w1 * r1 + w2 * r2
     terms = w1 * w1 * (e + r1) + w2 * w2 * r2 + 2.0 * w1 * speeds
-    doubt: Array = np.abs(left) + RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target)
-    return doubt
+    return Doubt(np.abs(left), RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target))
 
 
 def pushes(motion: RowMotion) -> Array:

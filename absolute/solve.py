@@ -35,7 +35,7 @@ def solve(
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         errors: also an estimate of the error of each quantity at each instant (see `estimate`); it
-            costs about three times the solution itself.
+            costs about twice as much as the solution itself, of which nothing changes.
         input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
             where it is not given. What the chassis motion is off comes on top of every point alike.
     Returns:

@@ -95,6 +95,7 @@ class RowStack:
             if row >= angles:
                 source[row, of.second, 0] = 1 + 3 * (row - angles) + axis
                 source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
+        self._none = np.zeros(1)
         # Column by column, the order in which a factorisation reads without a copy.
         self._source = source[:, 1:].reshape(count, -1).T.copy()
         # Numbers in the flat parts from which a x (r1 + e) and r2 x a are multiplied out.
@@ -130,7 +131,8 @@ class RowStack:
         Returns:
             (..., rows, 6 * moving bodies).
         """
-        entries = np.concatenate((np.zeros((*along.shape[:-1], 1)), along, -along, turning), -1)
+        none = self._none if along.ndim == 1 else np.zeros((*along.shape[:-1], 1))
+        entries = np.concatenate((none, along, -along, turning), -1)
         matrix: Array = entries.take(self._source, -1)
         return matrix.swapaxes(-1, -2)
 

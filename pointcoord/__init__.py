@@ -3,28 +3,37 @@
 from pointcoord import Scene, simulate
 motion = simulate(Scene.load("bounce"))
 motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
+
+Names are imported when they are first used: the program starts before its libraries, so that it can answer
+for itself while they load.
 """
 
-from pointcoord.errors import (
-    AssemblyError,
-    InputOutOfRange,
-    MechanismError,
-    MotionTooLong,
-    MotionTooRough,
-    NotComputed,
-    OutsideMotion,
-    PointcoordError,
-    SceneError,
-    SingularConfiguration,
-    UnknownName,
-)
-from pointcoord.motion import Motion, Samples
-from pointcoord.scene import Scene, built_in_scenes
-from pointcoord.simulate import simulate
-from pointcoord.standing import Standing, standing
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pointcoord.drawing_stands import Standing, standing
+    from pointcoord.errors import (
+        AssemblyError,
+        InputNotKnown,
+        InputOutOfRange,
+        MechanismError,
+        MotionTooLong,
+        MotionTooRough,
+        NotComputed,
+        OutsideMotion,
+        PointcoordError,
+        SceneError,
+        SingularConfiguration,
+        UnknownName,
+    )
+    from pointcoord.motion import Motion, Samples
+    from pointcoord.scene import Scene, built_in_scenes
+    from pointcoord.simulation import simulate
 
 __all__ = [
     "AssemblyError",
+    "InputNotKnown",
     "InputOutOfRange",
     "MechanismError",
     "Motion",
@@ -43,3 +52,26 @@ __all__ = [
     "simulate",
     "standing",
 ]
+
+# Where names are that are no errors.
+_MODULES = {
+    "Motion": "motion",
+    "Samples": "motion",
+    "Scene": "scene",
+    "Standing": "drawing_stands",
+    "built_in_scenes": "scene",
+    "simulate": "simulation",
+    "standing": "drawing_stands",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_MODULES.get(name, 'errors')}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -149,7 +149,8 @@ def build_chain(
             length = 0.5 * (end - instant)
         else:
             partial = Chain(tuple(segments), work) if segments else None
-            raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial)
+            coarsest = settings.tolerance >= COARSEST
+            raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial, coarsest)
         segments.append(Segment(instant, end, scale, series))
         instant, y, factors = end, reached.y, ahead
         scale = _power_of_two(length)
@@ -249,6 +250,7 @@ def _cannot_pass(
     instant: float,
     stop: float,
     partial: Chain | None,
+    coarsest: bool,
 ) -> AssemblyError | MotionTooRough:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
@@ -261,4 +263,6 @@ def _cannot_pass(
     error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, np.asarray(change))
     error.partial = partial
     # Near a lock the condition number has grown as the inverse root of the shortest step.
-    return error if error.condition > REGULAR else MotionTooRough(error.reduce, instant, partial)
+    if error.condition > REGULAR:
+        return error
+    return MotionTooRough(error.reduce, instant, partial, coarsest=coarsest)

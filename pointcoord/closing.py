@@ -36,6 +36,14 @@ class Closing:
     misses: Mapping[str, float]
     size: float
 
+    def __post_init__(self) -> None:
+        for name in ("movements", "misses"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __reduce__(self) -> tuple[type[Closing], tuple[dict[str, float], dict[str, float], float]]:
+        # A read-only view of a dictionary does not pickle.
+        return type(self), (dict(self.movements), dict(self.misses), self.size)
+
     @property
     def point(self) -> str:
         """The point that moves most."""
@@ -89,4 +97,4 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
             misses[constraint.labels[0].removesuffix(" (x)")] = unit * miss
         first = last
     size = unit * float(np.max(np.ptp(stack, axis=0)))
-    return Closing(MappingProxyType(movements), MappingProxyType(misses), size)
+    return Closing(movements, misses, size)

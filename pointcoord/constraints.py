@@ -11,12 +11,21 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pointcoord.doubled import exact_square
 from pointcoord.drawing import Drawing, Placed
 from pointcoord.errors import MechanismError
 from pointcoord.layout import Layout, Triple
 from pointcoord.quadratic import UNIT_ROUNDOFF, Product, Row
+
+Array = NDArray[np.float64]
+
+# How many lengths of its line a point may stand along it. With R of them, p_end turns by 1 / R of what the
+# point goes, and R itself takes up the rest: X = C_u^-1 grows as R^2, X C_u bends as R^3 and the tangent as
+# R, so that a proven step, 1 / sqrt(2 omega q) of `assembly`, shrinks as 1 / R^2. A turn of the paper's arm
+# by 1 rad takes 0.036 R^2 steps; that is all of the 2000 that a path may have at R = 235.
+FARTHEST = 235.0
 
 
 class Constraint(ABC):
@@ -167,7 +176,23 @@ class OnLine(Constraint):
         square = np.sum(line * line, axis=-1)
         if not (square > 0.0).all():
             raise no_length(self.start, self.end)
-        return (Placed((layout.scalar(self.ratio),), (reach / square)[..., None]),)
+        ratio = reach / square
+        if (np.abs(ratio) > FARTHEST).any():
+            raise self._ill_drawn(drawing, ratio)
+        return (Placed((layout.scalar(self.ratio),), ratio[..., None]),)
+
+    def _ill_drawn(self, drawing: Drawing, ratio: Array) -> MechanismError:
+        """The error for a line whose two points are too close together for where the third one is."""
+        far = int(np.argmax(np.abs(ratio)))
+        apart = float((drawing.distance(self.start, self.end) * drawing.unit).flat[far])
+        times = abs(float(ratio.flat[far]))
+        return MechanismError(
+            f"{self.start} and {self.end} are {apart:.3g} mm apart, and {self.point} is "
+            f"{apart * times:.3g} mm along the line through them, {times:.3g} times as far, so that they do "
+            f"not tell its direction well enough; allowed: at most {FARTHEST:g} times; draw {self.end} at "
+            f"least {apart * times / FARTHEST:.2g} mm from {self.start}",
+            [self.start, self.end, self.point],
+        )
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,33 @@ Every message says what is wrong, where, the value, what is allowed and what to 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
+
+from pointcoord.visible import visible
 
 
 class PointcoordError(Exception):
-    """Base of every error that pointcoord raises on purpose."""
+    """Base of every error that pointcoord raises on purpose.
+
+    Its message is one line of characters that print, whatever a scene or a file is called. It can be
+    pickled, with its data, so that it comes back from another process.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(visible(message))
+
+    def __reduce__(
+        self,
+    ) -> tuple[Callable[..., PointcoordError], tuple[type[PointcoordError], str, Mapping[str, object]]]:
+        return _again, (type(self), str(self), self.__dict__)
+
+
+def _again(kind: type[PointcoordError], message: str, data: Mapping[str, object]) -> PointcoordError:
+    """An error with a message and data at hand; its own `__init__` makes the one from the other."""
+    error = kind.__new__(kind, message)
+    error.__dict__.update(data)
+    return error
 
 
 class SceneError(PointcoordError):
@@ -45,12 +66,19 @@ class UnknownName(PointcoordError, LookupError):
 
 
 class NotComputed(PointcoordError, LookupError):
-    """A result that the scene did not ask for."""
+    """A result that the scene, or the method of its solution, does not give.
 
-    def __init__(self, quantity: str, effect: str) -> None:
+    Args:
+        quantity: what is asked for.
+        effect: the effect that gives it; empty if a method does.
+        advice: what to try; adds the effect to the scene unless given.
+    """
+
+    def __init__(self, quantity: str, effect: str, advice: str = "") -> None:
         self.quantity = quantity
         self.effect = effect
-        super().__init__(f"{quantity} was not computed; add {effect!r} to the scene's effects")
+        self.advice = advice or f"add {effect!r} to the scene's effects"
+        super().__init__(f"{quantity} was not computed; {self.advice}")
 
 
 class MechanismError(PointcoordError):
@@ -77,6 +105,27 @@ class InputOutOfRange(PointcoordError):
         self.instant = instant
         when = "" if instant is None else f" at t = {instant:.6g} s"
         super().__init__(f"input {name!r} is {value:.10g}{when}; allowed: {allowed}")
+
+
+class InputNotKnown(PointcoordError):
+    """The terms of an input's law cancel so far that what is left is not known well enough.
+
+    Args:
+        name: the input. law: its kind. value: of the input as summed, rad or mm.
+        doubt: how far the value may be off, rad or mm. instant: s.
+    """
+
+    def __init__(self, name: str, law: str, value: float, doubt: float, instant: float) -> None:
+        self.name = name
+        self.law = law
+        self.value = value
+        self.doubt = doubt
+        self.instant = instant
+        super().__init__(
+            f"input {name!r} is not known at t = {instant:.10g} s: the terms of its {law} cancel to "
+            f"{value:.3g}, which may be off by {doubt:.2g}, and no pose can be proven from that; give a law "
+            "of smaller terms, such as a table of values, or the same motion in a time that starts near zero"
+        )
 
 
 class AssemblyError(PointcoordError):
@@ -155,16 +204,18 @@ class MotionTooRough(PointcoordError):
     Args:
         name: the input. instant: how far the motion came, s.
         partial: the motion up to the instant, if any.
+        coarsest: whether no larger tolerance is left to try.
     """
 
-    def __init__(self, name: str, instant: float, partial: object) -> None:
+    def __init__(self, name: str, instant: float, partial: object, *, coarsest: bool = False) -> None:
         self.name = name
         self.instant = instant
         self.partial = partial
+        looser = "" if coarsest else "allow a larger tolerance, "
         super().__init__(
             f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that time "
-            "can tell apart follows it to the tolerance, though the mechanism could; smooth it there, allow "
-            "a larger tolerance, or use the method 'newton', which solves at the scene's instants only"
+            "can tell apart follows it to the tolerance, though the mechanism could; smooth it there, "
+            f"{looser}or use the method 'newton', which solves at the scene's instants only"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
@@ -33,3 +34,18 @@ def shown(value: object) -> str:
         # Whole numbers of thousands of digits, and lists in lists hundreds deep, have no text in Python.
         return f"something too long to show ({type(value).__name__})"
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def shown_key(key: int | str) -> str:
+    """A key or a place in a list, in at most 60 characters."""
+    text = str(key)
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def plain_number(value: object) -> object:
+    """A scalar of numpy as one of Python's own; anything else as it is."""
+    if isinstance(value, np.bool_):
+        return bool(value)  # which is no number, whereas numpy's passes for one
+    if isinstance(value, np.integer):
+        return int(value)
+    return float(value) if isinstance(value, np.floating) else value

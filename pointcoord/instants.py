@@ -34,6 +34,11 @@ class Solved:
     states: tuple[Array, ...]
     work: Work
 
+    def coordinates(self, instants: Array) -> list[Array]:
+        """The states at some of the times, each of shape (..., size)."""
+        places = np.searchsorted(self.times, instants)
+        return [state[places] for state in self.states]
+
 
 def square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:
     """(C_q q')_q q' = 2 B(y', y'), the paper's eq. (23) as it should be, shape (..., rows)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,8 +51,12 @@ class Channel(Mapping[str, Array]):
     def __repr__(self) -> str:
         return f"<{self.quantity}: {', '.join(self) if self.computed else 'not computed'}>"
 
+    def __reduce__(self) -> tuple[type[Channel], tuple[str, str, Mapping[str, Array] | None]]:
+        # Arrays come back from a pickle as arrays that can be written.
+        return type(self), (self.quantity, self.effect, self._arrays)
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Samples:
     """What a scene asked for, at some instants.
 
@@ -71,20 +75,44 @@ class Samples:
     angular_acceleration: Channel
     wheel: Channel
 
+    def __post_init__(self) -> None:
+        self.times.setflags(write=False)
+
+    def __reduce__(self) -> tuple[type[Samples], tuple[object, ...]]:
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
+
+    def __repr__(self) -> str:
+        return f"<Samples: {self._span}; {self._quantities}>"
+
+    @property
+    def _span(self) -> str:
+        if not self.times.size:
+            return "no instants"
+        if self.times.ndim == 0:
+            return f"at {self.times:.6g} s"
+        count = "1 instant" if self.times.size == 1 else f"{self.times.size} instants"
+        return f"{count} from {self.times.min():.6g} to {self.times.max():.6g} s"
+
+    @property
+    def _quantities(self) -> str:
+        channels = (getattr(self, field.name) for field in fields(self))
+        return ", ".join(c.quantity for c in channels if isinstance(c, Channel) and c.computed)
+
 
 Prover = Callable[[Samples, bool], Proof]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Motion(Samples):
-    """A solved scene.
+    """A solved scene; it can be pickled, with all that it can still be asked for.
 
     Attributes:
         method: how it was solved: series, newton or printed.
         start: the assembled pose at the first instant, with its condition number and proven bound.
         closing: how far the drawing's points moved to close.
         work: what it cost.
-        notes: numbers that have no meaning, and why; empty if there are none.
+        notes: numbers that have no meaning, and why, and where it was not solved as the scene asks; empty
+            if there is nothing to note.
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
         resample: evaluates the motion at other instants, if the method allows it.
         prover: proves samples of the motion; called by `proof`.
@@ -100,6 +128,9 @@ class Motion(Samples):
     resample: Callable[[Array], Samples] | None
     prover: Prover
     sizer: Callable[[], tuple[float, ...]]
+
+    def __repr__(self) -> str:
+        return f"<Motion by {self.method}: {self._span}; {self._quantities}>"
 
     def proof(self, rates: bool = False) -> Proof:
         """Proven error bound, condition number and sensitivity of the pose at each of the times.
@@ -129,7 +160,11 @@ class Motion(Samples):
             NotComputed: the method knows the motion at the scene's instants only.
         """
         if self.resample is None:
-            raise NotComputed(f"a motion between instants (method {self.method!r})", "method 'series'")
+            raise NotComputed(
+                f"a motion between its instants, by the method {self.method!r},",
+                "",
+                "solve the scene by the method 'series'",
+            )
         asked = np.asarray(instants, dtype=float)
         samples = self.resample(asked.ravel())
         return samples if asked.ndim == 1 else _reshaped(samples, asked.shape)

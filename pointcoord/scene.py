@@ -5,26 +5,27 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
-import sys
-import tomllib
 from collections.abc import Mapping
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import IO, Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from pointcoord.effects import EFFECTS
-from pointcoord.errors import PointcoordError, SceneError
-from pointcoord.faults import problem_of
+from pointcoord.even_instants import even_instants
+from pointcoord.faults import plain_number, shown
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
+from pointcoord.scene_part import Part
+from pointcoord.scene_text import parsed, read_file, read_stream
 from pointcoord.suspensions import TOPOLOGIES
 from pointcoord.topology import Topology
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Plain = BeforeValidator(plain_number)
+Number = Annotated[float, Plain, Field(strict=True, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
 
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
@@ -34,11 +35,7 @@ FARTHEST = 1e15
 MOST_SAMPLES = 10_000_000
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class MechanismPart(_Part):
+class MechanismPart(Part):
     """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes.
 
     `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, `collinear`
@@ -60,7 +57,7 @@ class MechanismPart(_Part):
         extra = [name for name in points if name not in topology.points]
         missing = [name for name in topology.required_points if name not in points]
         if extra:
-            raise ValueError(f"no point is called {extra[0]!r}; allowed: {', '.join(topology.points)}")
+            raise ValueError(f"no point is called {shown(extra[0])}; allowed: {', '.join(topology.points)}")
         if missing:
             needed = ", ".join(topology.required_points)
             raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
@@ -98,12 +95,19 @@ class MechanismPart(_Part):
         return TOPOLOGIES[self.type][self.closure].given(self.points)
 
     @property
+    def defaults_taken(self) -> tuple[str, ...]:
+        """What the scene leaves to us and what is seen in the results, in words."""
+        if "wheel_axis_inner" in self.points:
+            return ()
+        return ("wheel_axis_inner is not given: the wheel's spin axis starts at strut_lower",)
+
+    @property
     def outboard(self) -> NDArray[np.float64]:
         """Unit vector away from the car's middle."""
         return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
 
 
-class SinePart(_Part):
+class SinePart(Part):
     """offset + amplitude sin(angular_frequency t + phase)."""
 
     amplitude: Number
@@ -112,7 +116,7 @@ class SinePart(_Part):
     offset: Number = 0.0
 
 
-class TablePart(_Part):
+class TablePart(Part):
     """A cubic spline through values at increasing times."""
 
     times: tuple[Number, ...] = Field(min_length=4)
@@ -131,7 +135,7 @@ class TablePart(_Part):
         return self
 
 
-class InputPart(_Part):
+class InputPart(Part):
     """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
 
     constant: Number | None = None
@@ -164,12 +168,12 @@ class InputPart(_Part):
         return Table(self.table.times, self.table.values)
 
 
-class TimePart(_Part):
+class TimePart(Part):
     """The instants: `samples` of them evenly from start to stop, both included; s."""
 
     start: Number
     stop: Number
-    samples: Annotated[int, Field(strict=True, ge=1, le=MOST_SAMPLES)]
+    samples: Annotated[int, Plain, Field(strict=True, ge=1, le=MOST_SAMPLES)]
 
     @model_validator(mode="after")
     def _forwards(self) -> Self:
@@ -185,12 +189,12 @@ class TimePart(_Part):
         return self
 
 
-class Scene(_Part):
+class Scene(Part):
     """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`."""
 
     title: str = ""
     effects: tuple[str, ...] = ()
-    tolerance: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] = 1e-9
+    tolerance: Annotated[float, Plain, Field(strict=True, gt=0.0, allow_inf_nan=False)] = 1e-9
     mechanism: MechanismPart
     inputs: dict[str, InputPart]
     time: TimePart
@@ -200,7 +204,7 @@ class Scene(_Part):
     def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
         for name in effects:
             if name not in EFFECTS:
-                raise ValueError(f"no effect is called {name!r}; allowed: {', '.join(EFFECTS)}")
+                raise ValueError(f"no effect is called {shown(name)}; allowed: {', '.join(EFFECTS)}")
         return effects
 
     @model_validator(mode="after")
@@ -208,7 +212,7 @@ class Scene(_Part):
         topology = self.mechanism.topology
         for name in self.inputs:
             if name not in topology.inputs:
-                raise ValueError(f"no input is called {name!r}; allowed: {', '.join(topology.inputs)}")
+                raise ValueError(f"no input is called {shown(name)}; allowed: {', '.join(topology.inputs)}")
         for name in topology.required_inputs:
             if name not in self.inputs:
                 raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")
@@ -226,9 +230,7 @@ class Scene(_Part):
     @property
     def instants(self) -> NDArray[np.float64]:
         """The instants of the scene, shape (samples,), s."""
-        even = np.linspace(self.time.start, self.time.stop, self.time.samples)
-        # Steps below the smallest normal number are rounded so coarsely that they add up to more than all.
-        return np.minimum(even, self.time.stop)
+        return even_instants(self.time.start, self.time.stop, self.time.samples)
 
     @property
     def functions(self) -> dict[str, TimeFunction]:
@@ -242,70 +244,33 @@ class Scene(_Part):
         Raises:
             SceneError: the first fault, with its key; further ones are counted.
         """
-        try:
-            return cls.model_validate(content)
-        except ValidationError as error:
-            raise _scene_error(source, error) from None
+        return cls.checked(content, source)
 
     @classmethod
     def load(cls, name: str | Path) -> Scene:
         """Read a built-in scene by name, or a scene file by path.
 
         Raises:
-            SceneError: there is no such scene, or it is not written as it must be.
+            SceneError: there is no such scene, it is not written as it must be, or it is no regular file of
+                at most 64 MB.
         """
         if str(name) in built_in_scenes():
             text = resources.files("pointcoord").joinpath("scenes", f"{name}.toml").read_bytes()
         else:
-            try:
-                text = Path(name).read_bytes()
-            except (OSError, ValueError) as error:
-                reason = getattr(error, "strerror", None) or str(error)
-                raise SceneError(
-                    str(name),
-                    "",
-                    f"cannot be read ({reason})",
-                    f"a path, or one of {', '.join(built_in_scenes())}",
-                ) from None
-        try:
-            content = tomllib.loads(text.decode("utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-            raise SceneError(str(name), "", f"is not TOML: {error}", "TOML 1.0 in UTF-8") from None
-        except ValueError:
-            # Python's own limit, which `tomllib` passes on.
-            digits = sys.get_int_max_str_digits()
-            raise SceneError(
-                str(name), "", "a whole number has too many digits", f"at most {digits} digits"
-            ) from None
-        return cls.from_mapping(content, str(name))
+            text = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
+        return cls.from_mapping(parsed(text, str(name)), str(name))
+
+    @classmethod
+    def read(cls, stream: IO[bytes], source: str = "standard input") -> Scene:
+        """Read a scene from an open binary stream, such as `sys.stdin.buffer`.
+
+        Raises:
+            SceneError: it is not written as it must be, or has no end within 64 MB.
+        """
+        return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
 def built_in_scenes() -> tuple[str, ...]:
     """Names of the scenes that come with the package."""
     folder = resources.files("pointcoord").joinpath("scenes")
     return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
-
-
-def _scene_error(source: str, error: ValidationError) -> PointcoordError:
-    faults = error.errors(include_url=False)
-    first = faults[0]
-    key = ".".join(str(part) for part in first["loc"])
-    problem, allowed = problem_of(first), ""
-    if first["type"] == "extra_forbidden":
-        problem, allowed = "there is no such key", ", ".join(_keys_at(first["loc"][:-1]))
-    if len(faults) > 1:
-        problem += f" (and {len(faults) - 1} more)"
-    return SceneError(source, key, problem, allowed)
-
-
-def _keys_at(place: tuple[int | str, ...]) -> tuple[str, ...]:
-    """The keys that a scene may have at a place, for the parts that have fixed keys."""
-    parts: dict[str, type[BaseModel]] = {
-        "mechanism": MechanismPart,
-        "time": TimePart,
-        "sine": SinePart,
-        "table": TablePart,
-    }
-    if not place:
-        return tuple(Scene.model_fields)
-    return tuple(parts.get(str(place[-1]), InputPart).model_fields)

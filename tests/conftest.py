@@ -2,10 +2,22 @@
 
 import os
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.filter_too_much]}
 
-settings.register_profile("ci", derandomize=True, max_examples=100, **COMMON)
-settings.register_profile("deep", max_examples=2000, **COMMON)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+EXAMPLES = {"ci": 100, "deep": 2000}
+PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "ci")
+
+settings.register_profile("ci", derandomize=True, max_examples=EXAMPLES["ci"], **COMMON)
+settings.register_profile("deep", max_examples=EXAMPLES["deep"], **COMMON)
+settings.load_profile(PROFILE)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """A search of twenty times as many examples may take twenty times as long."""
+    longer = EXAMPLES[PROFILE] / EXAMPLES["ci"]
+    if longer > 1.0:
+        for item in items:
+            item.add_marker(pytest.mark.timeout(longer * float(config.getini("timeout"))))

@@ -1,8 +1,10 @@
 """How each error class can be met: what raises it, parts of its message, and the data it carries."""
 
+import importlib
 import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import comb
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,6 +13,7 @@ import pytest
 from flint import arb, ctx
 
 import absolute
+import absolute.backend
 import pointcoord
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
@@ -22,7 +25,7 @@ from validate import cli, compare
 from validate.deep_store import Store
 from validate.formulations import formulation
 from validate.hard.catalogue import chosen
-from validate.output import write_motion
+from validate.motion_tables import write_motion
 from validate.truth import solve_truth
 from validate.truth.branches import candidate, choices_of_table
 from validate.truth.certificate import certify, refine
@@ -62,13 +65,26 @@ def jumping() -> pointcoord.Scene:
     return changed(inputs={"arm_angle": arm}, time={"start": 0.5 - 2e-8, "stop": 0.5 + 2e-9})
 
 
+def cancelling(power_of_two: int) -> pointcoord.Scene:
+    """The rack goes 16 (t - start)^6 mm, multiplied out: terms of up to 20 start^6 each cancel to that."""
+    start = 2.0**power_of_two
+    terms = [16.0 * comb(6, k) * (-start) ** (6 - k) for k in range(7)]
+    laws = {"rack": {"polynomial": terms}, "arm_angle": {"constant": 1.6}}
+    return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
+
+
 def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
-    return absolute.solve(absolute.macpherson({**TABLE, **points}), inputs)
+    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+
+
+def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
+    patch.setitem(sys.modules, "pinocchio", None)
+    return importlib.reload(absolute.backend)
 
 
 def blocked() -> object:
     """A path along which the rack goes half a metre."""
-    mechanism = Mechanism(absolute.macpherson(TABLE))
+    mechanism = Mechanism(absolute.macpherson(TABLE, closure="collinear"))
     begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
 
     def path(share: float) -> Any:
@@ -81,9 +97,9 @@ def blocked() -> object:
 def uncertified() -> object:
     """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
     with ctx.workprec(bits(60)):
-        design = Design.from_points(TABLE, *UPRIGHT.values(), "left")
+        design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
         known = values_only(design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)})))
-        drawn = candidate(known, choices_of_table(design.table, design.up))
+        drawn = candidate(known, choices_of_table(design.table, design.up, "collinear"))
         assembled = refine(unknown_of(drawn.points, known), known)
         assembled[0] = (assembled[0] + arb("1e-59")).mid()
         return certify(assembled, known, Fraction(1, 10**60))
@@ -114,6 +130,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: pointcoord.simulate(changed(inputs={"arm_angle": {"constant": 3.5}})),
         ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
         {"name": "arm_angle", "value": 3.5, "instant": 0.0, "allowed": bool},
+    ),
+    "pointcoord.errors.InputNotKnown": Recipe(
+        lambda *_: pointcoord.simulate(cancelling(15)),
+        ("input 'rack' is not known at t = 32768 s", "its polynomial cancel to 0", "off by 3.1", "a table"),
+        {"name": "rack", "law": "polynomial", "value": 0.0, "doubt": lambda doubt: 3.0 < doubt < 3.2},
     ),
     "pointcoord.errors.AssemblyError": Recipe(
         lambda *_: pointcoord.simulate(
@@ -175,6 +196,11 @@ RECIPES: dict[str, Recipe] = {
         ("the drawing cannot be assembled", "mm", "draw the points closer"),
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
     ),
+    "absolute.errors.MissingPinocchioError": Recipe(
+        lambda _, patch: without_pinocchio(patch),
+        ("Pinocchio", "pip install 'pointcoord[validate]'"),
+        {},
+    ),
     "absolute.errors.BranchError": Recipe(
         lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
         ("no branch", "tie rod beside the kingpin"),
@@ -198,8 +224,9 @@ RECIPES: dict[str, Recipe] = {
         ("singular", "condition number", "can be solved", "Look for points on one line"),
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
     ),
-    "validate.cli.UsageError": Recipe(
-        lambda *_: cli._parser().parse_args(["simulat", "bounce"]),
+    "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
+    "validate.commands.usage.UsageError": Recipe(
+        lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
     "validate.deep_store.StoreError": Recipe(
@@ -213,16 +240,21 @@ RECIPES: dict[str, Recipe] = {
     "validate.formulations.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
     ),
-    "validate.formulations.MissingPackage": Recipe(
+    "validate.extras.MissingPackage": Recipe(
         lambda _, pretend: (
             pretend.delitem(sys.modules, "validate.absolute_coordinates", raising=False),
             pretend.setitem(sys.modules, "absolute", None),
             formulation("absolute"),
         ),
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
-        {"formulation": "absolute", "package": "absolute"},
+        {"part": "absolute", "package": "absolute"},
     ),
-    "validate.output.OutputError": Recipe(
+    "validate.files.OutputError": Recipe(
+        lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
+        ("x.csv: cannot be written", "there is no folder"),
+        {"target": lambda name: name.endswith("x.csv"), "problem": bool},
+    ),
+    "validate.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},

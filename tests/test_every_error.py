@@ -5,6 +5,7 @@ A class without a recipe fails the first test here: whoever adds an error shows 
 
 import importlib
 import inspect
+import pickle
 import pkgutil
 from pathlib import Path
 
@@ -48,6 +49,22 @@ def test_error_can_be_met_speaks_clearly_and_carries_its_data(
     for attribute, expected in recipe.data.items():
         value = getattr(error, attribute)
         assert expected(value) if callable(expected) else value == expected, (attribute, value)
+
+
+@pytest.mark.parametrize("name", [name for name in RECIPES if name.startswith("pointcoord.")])
+def test_error_comes_back_from_another_process_with_its_data(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(CLASSES[name]) as caught:
+        RECIPES[name].cook(tmp_path, monkeypatch)
+    error = caught.value
+    again = pickle.loads(pickle.dumps(error))
+    assert type(again) is type(error)
+    assert (str(again), again.args) == (str(error), error.args)
+    assert again.__dict__.keys() == error.__dict__.keys()
+    for attribute, value in error.__dict__.items():
+        # A motion is another object with the same arrays.
+        assert repr(getattr(again, attribute)) == repr(value), attribute
 
 
 @pytest.mark.parametrize("name", sorted(BASES))

@@ -57,6 +57,34 @@ def test_modules_of_a_package_form_layers(package: str) -> None:
             del below[name]
 
 
+def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
+    for name in ("pointcoord/__main__.py", "validate/exit_status.py"):
+        for node in ast.walk(ast.parse((ROOT / name).read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                roots = {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                roots = {(node.module or "").split(".")[0]}
+            else:
+                continue
+            assert roots <= set(sys.stdlib_module_names), name
+    program = "import pointcoord, sys; raise SystemExit('numpy' in sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
+
+
+def test_every_name_of_pointcoord_is_what_it_says_whatever_was_imported_first() -> None:
+    program = (
+        "import pkgutil, importlib, pointcoord\n"
+        "for found in pkgutil.walk_packages(pointcoord.__path__, 'pointcoord.'):\n"
+        "    importlib.import_module(found.name)\n"
+        "for name in pointcoord.__all__:\n"
+        "    assert getattr(pointcoord, name).__name__ == name, name\n"
+        "    assert callable(getattr(pointcoord, name)), name\n"
+        "assert set(pointcoord.__all__) <= set(dir(pointcoord))\n"
+        "assert not hasattr(pointcoord, 'simulates')\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
+
+
 def test_pointcoord_works_without_pinocchio() -> None:
     program = (
         "import sys; sys.modules['pinocchio'] = None; sys.modules['absolute'] = None\n"

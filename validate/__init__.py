@@ -6,5 +6,10 @@ outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
 
 from validate.compare import Comparison, Outcome, compare
 from validate.formulation import Accuracy, Formulation, FormulationError, Solution
+from validate.running import check_what_is_run
 
 __all__ = ["Accuracy", "Comparison", "Formulation", "FormulationError", "Outcome", "Solution", "compare"]
+
+DISTRIBUTION = "pointcoord"  # tells this package from others of its name
+
+check_what_is_run()

@@ -8,11 +8,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-import absolute
 from pointcoord.scene import MechanismPart, Scene
-from validate.absolute_accuracy import claims
+from validate.extras import MissingPackage
 from validate.formulation import AccuracyError, FormulationError, Solution
 from validate.inputs import rates
+
+try:
+    import absolute
+    from validate.absolute_accuracy import claims
+except ModuleNotFoundError as error:
+    raise MissingPackage("absolute", error) from None
 
 Array = NDArray[np.float64]
 

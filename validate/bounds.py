@@ -9,11 +9,16 @@ an input, and motions that run towards such an end, at random instants inside th
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 
 from validate.bound_checks import BoundStudy, Check, Refusal, held_pose, moving_instants
 from validate.bounds_report import bounds_data, bounds_text
-from validate.output import write_json
+from validate.document import Head, write_json
+from validate.door import guarded
+from validate.exit_status import ExitStatus
+from validate.files import require_writable
+from validate.output import Console
 from validate.singular import near_pose
 
 
@@ -43,12 +48,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", metavar="FILE", help="- for standard output, which is then all of it")
     options = parser.parse_args(arguments)
+    return guarded(lambda console: _run(options, console), "validate.bounds")
+
+
+def _run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    if options.json not in (None, "-"):
+        require_writable(options.json)
+    head = Head.of("bounds", ("python", "-m", "validate.bounds", *sys.argv[1:]))
     done = study(options.poses, options.seed, options.motions)
+    status = ExitStatus.DISAGREE if done.broken else ExitStatus.AGREE
     if options.json:
-        write_json(options.json, bounds_data(done))
-    if options.json != "-":
-        print(bounds_text(done))
-    return 1 if done.broken else 0
+        write_json(options.json, head.document(bounds_data(done), status, True), console)
+    console.mute = options.json == "-"
+    console.say(bounds_text(done))
+    return status
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from validate.extras import MissingPackage
 from validate.formulation import Formulation
 from validate.point_coordinates import PointCoordinates
 
@@ -12,18 +13,6 @@ class UnknownFormulation(Exception):
     def __init__(self, name: str) -> None:
         self.name = name
         super().__init__(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
-
-
-class MissingPackage(Exception):
-    """A formulation needs a package that is not installed."""
-
-    def __init__(self, formulation: str, package: str) -> None:
-        self.formulation = formulation
-        self.package = package
-        super().__init__(
-            f"the formulation {formulation!r} needs the package {package!r}, which is not installed; "
-            "try: pip install 'pointcoord[validate]'"
-        )
 
 
 _POINT_COORDINATES: dict[str, Formulation] = {
@@ -43,7 +32,7 @@ def formulation(name: str) -> Formulation:
 
     Raises:
         UnknownFormulation: no formulation has this name.
-        MissingPackage: Pinocchio is not installed.
+        MissingPackage: Pinocchio is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
@@ -51,6 +40,8 @@ def formulation(name: str) -> Formulation:
         raise UnknownFormulation(name)
     try:
         from validate.absolute_coordinates import AbsoluteCoordinates
-    except ModuleNotFoundError as error:
-        raise MissingPackage(name, error.name or "pin") from error
+    except MissingPackage:
+        raise
+    except ImportError as error:
+        raise MissingPackage(name, error) from error
     return AbsoluteCoordinates()

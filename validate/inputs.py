@@ -8,12 +8,17 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import mpmath
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from pointcoord.scene import InputPart, SinePart
+from validate.extras import MissingPackage
+
+try:
+    import mpmath
+except ModuleNotFoundError as error:
+    raise MissingPackage("validate.inputs", error) from None
 
 Array = NDArray[np.float64]
 

@@ -1,91 +1,122 @@
-"""Writing results: JSON, CSV and NPZ, to a file or to standard output."""
+"""What a run says: results on standard output, everything else in single lines on standard error."""
 
 from __future__ import annotations
 
-import csv
-import json
+import os
 import sys
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any, TextIO
+from contextlib import suppress
 
-import numpy as np
-from numpy.typing import NDArray
+from validate.files import OutputError, unwritable
 
-from pointcoord import Motion
-
-Array = NDArray[np.float64]
+STANDARD_OUTPUT = "standard output"
 
 
-class OutputError(Exception):
-    """A result cannot be written where it was asked for."""
-
-    def __init__(self, target: str, problem: str) -> None:
-        self.target = target
-        super().__init__(f"{target}: {problem}")
+def shown(text: str) -> str:
+    """Text on one line in which nothing acts on a terminal: control characters are shown as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
-def write_json(target: str, data: Any) -> None:
-    """Write JSON to a file, or to standard output for `-`.
+def one_line(message: str) -> str:
+    """A message without its line breaks."""
+    return shown(" ".join(message.split()))
 
-    Raises:
-        OutputError: the file cannot be written.
+
+class Console:
+    """Standard output and standard error of one run.
+
+    Attributes:
+        quiet: whether only results that were asked for and errors are said.
+        mute: whether standard output belongs to a result, so that nothing else is said there.
+        written: the files that the run has written, in words, for the one who interrupts it.
     """
-    text = json.dumps(data, indent=1, allow_nan=False) + "\n"
-    if target == "-":
-        sys.stdout.write(text)
-        return
-    try:
-        Path(target).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(target, f"cannot be written ({error.strerror})") from None
 
+    def __init__(self, program: str = "pointcoord") -> None:
+        self.program = program
+        self.quiet = False
+        self.mute = False
+        self.written: list[str] = []
+        self._reader_gone = False
 
-def columns(motion: Motion) -> Iterator[tuple[str, Array]]:
-    """Every computed number of a motion as a named column with its unit."""
-    yield "time [s]", motion.times
-    vectors = (
-        (motion.position, "position", "mm"),
-        (motion.velocity, "velocity", "mm/s"),
-        (motion.acceleration, "acceleration", "mm/s^2"),
-        (motion.angular_velocity, "angular_velocity", "rad/s"),
-        (motion.angular_acceleration, "angular_acceleration", "rad/s^2"),
-    )
-    for channel, quantity, unit in vectors:
-        for name in channel:
-            for i, axis in enumerate("xyz"):
-                yield f"{quantity}.{name}.{axis} [{unit}]", channel[name][:, i]
-    for name in motion.wheel:
-        yield f"wheel.{name} [deg]", np.degrees(motion.wheel[name])
+    def require(self, what_else: str) -> None:
+        """Find a closed standard output before anything is solved.
 
+        Raises:
+            OutputError: it is closed; the message says what else can be done.
+        """
+        if sys.stdout is None:
+            raise OutputError(STANDARD_OUTPUT, f"is closed; {what_else}")
 
-def write_motion(target: str | None, motion: Motion) -> None:
-    """Write a motion as .csv or .npz by the ending of the target, or as CSV to standard output for None.
+    def say(self, text: str) -> None:
+        """Lines for people; nothing if the run is quiet or mute.
 
-    Numbers are written so that reading them gives the same bits.
+        Raises:
+            OutputError: standard output does not take them.
+        """
+        if not self.quiet and not self.mute:
+            self.write(text + "\n")
+            self.flush()
 
-    Raises:
-        OutputError: the ending is another one, or the file cannot be written.
-    """
-    if target is None:
-        _write_csv(sys.stdout, motion)
-        return
-    try:
-        if target.endswith(".npz"):
-            with open(target, "wb") as binary:
-                arrays: dict[str, Any] = dict(columns(motion))
-                np.savez(binary, **arrays)
-        elif target.endswith(".csv"):
-            with open(target, "w", newline="", encoding="utf-8") as stream:
-                _write_csv(stream, motion)
-        else:
-            raise OutputError(target, "has no known ending; allowed: .csv, .npz")
-    except OSError as error:
-        raise OutputError(target, f"cannot be written ({error.strerror})") from None
+    def write(self, text: str) -> int:
+        """Text on standard output, as it is; characters that it has no code for are shown as escapes.
 
+        Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
+        are wanted all the same.
 
-def _write_csv(stream: TextIO, motion: Motion) -> None:
-    named = dict(columns(motion))
-    writer = csv.writer(stream)
-    writer.writerow(named)
-    writer.writerows(zip(*(map(repr, column.tolist()) for column in named.values()), strict=True))
+        Raises:
+            OutputError: standard output does not take it.
+        """
+        if not self._reader_gone:
+            try:
+                code = getattr(sys.stdout, "encoding", None) or "utf-8"
+                sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
+            except BrokenPipeError:
+                self._leave_standard_output()
+            except (OSError, ValueError, AttributeError) as error:
+                raise self._lost(error) from None
+        return len(text)
+
+    def flush(self) -> None:
+        """Bring what was written to its reader.
+
+        Raises:
+            OutputError: standard output does not take it.
+        """
+        if self._reader_gone or sys.stdout is None:
+            return
+        try:
+            sys.stdout.flush()
+        except BrokenPipeError:
+            self._leave_standard_output()
+        except (OSError, ValueError) as error:
+            raise self._lost(error) from None
+
+    def _lost(self, error: Exception) -> OutputError:
+        self._leave_standard_output()
+        if isinstance(error, OSError):
+            return unwritable(STANDARD_OUTPUT, error)
+        return OutputError(STANDARD_OUTPUT, "is closed")
+
+    def _leave_standard_output(self) -> None:
+        """Point it to nowhere, so that what is left in its buffer cannot fail again at the end."""
+        self._reader_gone = True
+        with suppress(OSError, ValueError, AttributeError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+
+    def complain(self, message: str) -> None:
+        """One line on standard error."""
+        # Without a standard error `print` would take standard output.
+        if sys.stderr is not None:
+            with suppress(OSError, ValueError):
+                print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
+
+    def note(self, message: str) -> None:
+        """One line on standard error of what was taken for granted; nothing if the run is quiet."""
+        if not self.quiet:
+            self.complain(f"note: {message}")
+
+    def warn(self, message: str) -> None:
+        """One line on standard error that does not change the status; nothing if the run is quiet."""
+        if not self.quiet:
+            self.complain(f"warning: {message}")

@@ -18,7 +18,7 @@ from pointcoord import AssemblyError, Scene
 from pointcoord.assembly import close_drawing
 from pointcoord.closing import Closing, closing
 from pointcoord.mechanism import Mechanism
-from pointcoord.simulate import scene_mechanism
+from pointcoord.simulation import scene_mechanism
 from pointcoord.topology import Topology
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
 from pointcoord.proof import Proof
-from pointcoord.simulate import Method
+from pointcoord.simulation import Method
 from validate.formulation import NUMBERS_OF, Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]

@@ -9,6 +9,7 @@ from typing import Any
 
 from validate.compare import Comparison, Outcome
 from validate.errata import Finding
+from validate.examined import Examined
 from validate.paper import WHY_NOT_EQUAL, PaperRow, root_mean_square
 
 # Columns of words, which read better from the left.
@@ -83,6 +84,17 @@ def outcome_text(outcome: Outcome) -> str:
     return "\n".join([*lines, *(f"  note: {note}" for note in told)])
 
 
+def agreement_line(outcome: Outcome) -> str:
+    """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
+    first, second = (s.formulation for s in outcome.solutions)
+    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
+    where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
+    return (
+        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} quantities; the largest "
+        f"difference uses {worst.share:.1e} of its tolerance ({where})"
+    )
+
+
 def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
     """What the printed formulas get wrong, each beside its erratum."""
     if not findings:
@@ -134,6 +146,25 @@ def _vector(vector: Sequence[float], form: str) -> str:
     return "(" + ", ".join(form.format(component) for component in vector) + ")"
 
 
+def examined_data(examined: Examined) -> dict[str, Any]:
+    """One scene as plain data: its verdict, every comparison, and every reason why there is none."""
+    return {
+        "scene": examined.name,
+        "title": examined.title,
+        "exit_status": examined.status.value,
+        "verdict": examined.status.verdict,
+        "problem": examined.problem,
+        "warnings": list(examined.warnings),
+        "closing": examined.closing,
+        "defaults": list(examined.defaults),
+        "solved_by": list(examined.solved),
+        "comparisons": [outcome_data(outcome) for outcome in examined.outcomes],
+        "refusals": [asdict(refusal) for refusal in examined.refusals],
+        "failures": [asdict(failure) for failure in examined.failures],
+        "refusal_of_printed_formulas": None if examined.unprinted is None else asdict(examined.unprinted),
+    }
+
+
 def outcome_data(outcome: Outcome) -> dict[str, Any]:
     """One comparison as plain data."""
     return {
@@ -141,7 +172,7 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
         "formulations": [s.formulation for s in outcome.solutions],
         "instants": len(outcome.solutions[0].times),
         "agreed": outcome.agreed,
-        "rows": [_finite(asdict(row)) for row in outcome.rows],
+        "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),
     }
@@ -152,7 +183,7 @@ def finding_data(finding: Finding) -> dict[str, Any]:
     return {
         "scene": finding.scene,
         "quantity": finding.quantity,
-        "worst": _finite(asdict(finding.worst)),
+        "worst": asdict(finding.worst),
         "erratum": finding.erratum,
     }
 
@@ -164,8 +195,3 @@ def paper_data(rows: Sequence[PaperRow]) -> dict[str, Any]:
         "wheel_centre_rms_mm": root_mean_square(rows),
         "rows": [asdict(row) for row in rows],
     }
-
-
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    """JSON has no infinity: a number that does not exist is null."""
-    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}

@@ -15,6 +15,7 @@ from validate.truth import InfeasibleError, TruthError, solve_truth
 from validate.truth.instant import Instant
 
 NO_OBSTACLE = "no obstacle found"
+NEITHER_WRONG = "neither wrong by its own tolerance"
 BETWEEN = 24  # instants between the first and the last at which a pose is looked for
 
 
@@ -26,7 +27,7 @@ def judged(scene: Scene, one: Solution, two: Solution) -> str:
         return _unproven(error)
     scene = _without_missing_angles(scene, truth)
     wrong = [s.formulation for s in (one, two) if compare_solutions(scene, s, truth, "judged").disagreements]
-    return f"{' and '.join(wrong)} wrong" if wrong else "neither wrong by its own tolerance"
+    return f"{' and '.join(wrong)} wrong" if wrong else NEITHER_WRONG
 
 
 def judged_alone(scene: Scene, answer: Solution) -> str:

@@ -156,10 +156,16 @@ def test_cars_with_points_near_each_other_stand_where_exact_circles_and_spheres_
         expected = exact.exact_form(car, *goal)
         assert expected is not None
         motion = absolute.solve(
-            absolute.macpherson(car, closure="collinear"), held(*goal), rates=False, conditions=True
+            absolute.macpherson(car, closure="collinear"),
+            held(*goal),
+            rates=False,
+            conditions=True,
+            errors=True,
         )
         assert motion.condition is not None
         # Size below 500 mm; rounding of the rows, magnified by the condition number.
         tolerance = 2 * EPS * 500 * motion.condition[0]
         for name, place in expected[0].items():
             assert exact.distance(place, motion.position[name][0]) <= tolerance, name
+            told = float(np.linalg.norm(motion.position_error[name][0]))
+            assert exact.distance(place, motion.position[name][0]) <= told, name

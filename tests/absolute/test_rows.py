@@ -5,12 +5,14 @@ import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mpmath import matrix, mp, mpf
 
 import absolute
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
 from absolute.drawing import Drawing
 from absolute.newton import accelerations
+from absolute.rounding import second_doubt
 from absolute.rows import joint_frames
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.travel import travel
@@ -200,3 +202,29 @@ def test_sensitivities_are_the_derivatives_of_rates_and_drift(strut: absolute.Mo
     assert np.abs((drift - drift_back) / (2 * h) - drift_by_pose(stack, motion) @ way).max() < tolerance
     faster = (at(0.0, h)[1] - at(0.0, -h)[1]) / (2 * h)
     assert np.abs(faster - drift_by_velocity(stack, motion) @ push).max() < tolerance
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_drift_is_rounded_no_more_than_its_terms_say(strut: absolute.Model, seed: int) -> None:
+    # Bodies that turn evenly: nothing but the drift is in the equation of the accelerations.
+    mechanism = Mechanism(strut)
+    stack = mechanism.stack
+    placed = stack.place(*(part[None] for part in mechanism.poses(configuration(mechanism, seed, 0.5))))
+    rates = np.random.default_rng(seed).normal(size=(1, len(mechanism.drawing.bodies), 2, 3))
+    rates[:, 0] = 0.0
+    moving, still = row_motion(stack, placed, rates), row_motion(stack, placed, np.zeros_like(rates))
+    drift = stack.drift(placed, rates[:, :, 0], rates[:, :, 1])
+    jacobian = stack.jacobian(placed)
+    doubt = second_doubt(moving, still, jacobian, np.zeros((1, stack.count)), drift, drift)
+    assert (doubt.known == 0.0).all()
+    with mp.workdps(40):
+        for row in range(stack.count):
+            a, e, r1, r2, w1, w2, s1, s2 = (matrix(part[0, row].tolist()) for part in moving[:8])
+            a1, e1 = times(w1, a), s2 + times(w2, r2) - s1 - times(w1, r1)
+            e2 = times(w2, times(w2, r2)) - times(w1, times(w1, r1))
+            exact = (times(w1, a1).T * e + 2 * a1.T * e1 + a.T * e2)[0]
+            assert abs(exact - mpf(float(drift[0, row]))) <= doubt.rounded[0, row]
+
+
+def times(a: matrix, b: matrix) -> matrix:
+    return matrix([a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)])

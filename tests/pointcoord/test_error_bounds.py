@@ -16,7 +16,7 @@ from pointcoord.certificate import certify
 from pointcoord.linear import factorise
 from pointcoord.mechanism import Mechanism
 from pointcoord.newton import polish
-from pointcoord.simulate import scene_mechanism
+from pointcoord.simulation import scene_mechanism
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]

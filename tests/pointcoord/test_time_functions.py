@@ -204,3 +204,38 @@ def test_a_large_phase_swallows_no_digit_of_time(phase: float) -> None:
             spare = 4 * EPS + (EPS * frequency * t if abs(phase) > 1e16 else 0.0)
             assert abs(value - 2 * mpmath.sin(angle)) <= spare * 2.0
             assert abs(rate - 2 * frequency * mpmath.cos(angle)) <= (spare + 2 * EPS) * 2.0 * frequency
+
+
+def sine_error(law: Sine, instants: Array) -> list[float]:
+    """Errors of the law's values, in shares of what may be lost: a unit in the last place of the sine, and
+    the rounding of the value itself.
+
+    The frequency is a power of two and the phase zero, so that the angle is a number without rounding.
+    """
+    assert np.frexp(law.angular_frequency)[0] == 0.5
+    assert law.phase == 0.0
+    errors = []
+    with mpmath.workdps(60):
+        for t, value in zip(instants.tolist(), law.series(instants, 0)[:, 0].tolist(), strict=True):
+            sine = mpmath.sin(mpmath.mpf(law.angular_frequency) * mpmath.mpf(t))
+            exact = mpmath.mpf(law.amplitude) * sine + mpmath.mpf(law.offset)
+            lost = abs(law.amplitude) * np.spacing(abs(float(sine))) + EPS / 2 * abs(value)
+            assert lost <= EPS / 2 * (3 * abs(law.amplitude) + abs(value))
+            errors.append(float(abs(mpmath.mpf(value) - exact) / lost))
+    return errors
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_an_offset_that_nearly_cancels_a_sine_costs_no_digit(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    amplitude, instants = rng.uniform(0.5, 500.0), rng.uniform(0.7, 2.4, size=40)
+    # The swing at one instant or near it, rounded or not, so that next to nothing is left.
+    for t in instants[:10]:
+        near = -amplitude * np.sin(2.0 * t) * (1.0 + rng.choice([0.0, 1e-15, 1e-9]))
+        assert max(sine_error(Sine(amplitude, 2.0, 0.0, float(near)), np.array([t]))) <= 1.0
+
+
+@pytest.mark.parametrize("offset", [1.0, -3e2, 7.7e5])
+def test_an_offset_far_above_a_sine_is_rounded_once(offset: float) -> None:
+    instants = np.linspace(0.1, 3.0, 200)
+    assert max(sine_error(Sine(1e-3, 2.0, 0.0, offset), instants)) <= 1.0

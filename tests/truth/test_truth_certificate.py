@@ -25,7 +25,7 @@ BOX = Fraction(1, 10**60)
 
 def posed(table: Table, theta: object) -> tuple[Known, list[arb]]:
     """The given quantities and a refined solution at the present precision, local."""
-    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left")
+    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left", "collinear")
     known = values_only(design.known(Driven.from_mapping({"arm_angle": (theta, 0, 0)})))
     return known, refine(unknown_of(candidate(known, DESIGN_CHOICES).points, known), known)
 
@@ -70,7 +70,7 @@ def test_a_box_that_holds_two_assemblies_is_rejected(table: Table) -> None:
 
 
 def test_an_assembly_other_than_the_expected_one_is_rejected(table: Table) -> None:
-    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left")
+    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left", "collinear")
     known = design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)}))
     solution = posed(table, 1.5)[1]
     assert prove_instant(design, known, solution, DESIGN_CHOICES, 60, 60).choices == DESIGN_CHOICES
@@ -90,7 +90,7 @@ def test_a_knuckle_all_but_on_one_line_costs_digits_and_no_truth(table: Table, d
         "tie_rod_outer": (452 + sliver, -300, 62),
     }
     theta = mpmath.acos(mpf(-30) / mpmath.sqrt(180**2 + 325**2 + 30**2))
-    truth = solve_truth(thin, {"arm_angle": (theta, 0, 0)}, guess=thin, digits=digits)
+    truth = solve_truth(thin, {"arm_angle": (theta, 0, 0)}, guess=thin, digits=digits, closure="collinear")
     assert truth.condition > 1e18
     assert truth.digits > digits or digits == 200
     for name, place in thin.items():
@@ -109,7 +109,10 @@ def test_newton_from_nonsense_never_ends_in_a_number_without_proof(table: Table)
 @pytest.mark.parametrize("digits", [15, 50, 60, 100, 150])
 def test_more_digits_stay_within_the_radius_of_fewer(table: Table, digits: int) -> None:
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (20.0, 150.0, 50.0), "heave": (3.0, 100.0, 10.0)}
-    few, many = solve_truth(table, inputs, digits=digits), solve_truth(table, inputs, digits=200)
+    few, many = (
+        solve_truth(table, inputs, digits=digits, closure="collinear"),
+        solve_truth(table, inputs, digits=200, closure="collinear"),
+    )
     for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
         limit = few.error_bound[quantity] + many.error_bound[quantity]
         for name, vector in getattr(few, quantity).items():
@@ -125,7 +128,7 @@ def edge(table: Table, name: str) -> Fraction:
         middle = (near + beyond) / 2
         inputs = {"arm_angle": (Fraction(3, 2), 0, 0), name: (middle, 0, 0)}
         try:
-            solve_truth(table, inputs, digits=15)
+            solve_truth(table, inputs, digits=15, closure="collinear")
             near = middle
         except InfeasibleError:
             beyond = middle
@@ -138,13 +141,17 @@ def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasib
     table: Table, name: str, distance: Fraction
 ) -> None:
     at = edge(table, name)
-    truth = solve_truth(table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at - distance, 1, 0)})
+    truth = solve_truth(
+        table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at - distance, 1, 0)}, closure="collinear"
+    )
     # A fold: the condition grows as the inverse square root of the distance.
     assert truth.condition > 0.1 * float(distance) ** -0.5
     assert truth.error_bound["velocity"] < mpf("1e-40")
     assert truth.digits <= 120  # no more than it takes
     with pytest.raises(InfeasibleError) as caught:
-        solve_truth(table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at + distance, 1, 0)})
+        solve_truth(
+            table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at + distance, 1, 0)}, closure="collinear"
+        )
     assert caught.value.closure == {"arm_angle": "arm", "rack": "tie_rod"}[name]
     assert 0 < caught.value.gap < 1e-3
 
@@ -158,7 +165,7 @@ def test_an_exactly_singular_pose_is_an_error_that_says_so(table: Table) -> None
         "lower_ball_joint": (0, -300, 0),
     }
     with pytest.raises(SingularPoseError, match="400 digits") as caught:
-        solve_truth(upright, {"arm_angle": (0, 1, 0)})
+        solve_truth(upright, {"arm_angle": (0, 1, 0)}, closure="collinear")
     assert isinstance(caught.value.reason, NotDecidedError)
 
 
@@ -169,7 +176,10 @@ def test_size_and_place_of_the_mechanism_cost_nothing(table: Table, power: int, 
     far = {name: tuple(size * x + offset for x in p) for name, p in table.items()}
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (20, 150, 50)}
     moved_inputs = {**inputs, "rack": tuple(size * x for x in inputs["rack"])}
-    here, there = solve_truth(table, inputs), solve_truth(far, moved_inputs)
+    here, there = (
+        solve_truth(table, inputs, closure="collinear"),
+        solve_truth(far, moved_inputs, closure="collinear"),
+    )
     scale = mpf(size.numerator) / size.denominator
     for name in table:
         for a, b in zip(here.position[name], there.position[name], strict=True):

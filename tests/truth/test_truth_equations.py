@@ -88,7 +88,7 @@ def printed_residual(truth: Instant, table: Table, theta: float, rack: float) ->
 def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
     table: Table, theta: float, rack: float
 ) -> None:
-    truth = solve_truth(table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)})
+    truth = solve_truth(table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear")
     bound = truth.error_bound["position"]
     for value, degree in printed_residual(truth, table, theta, rack):
         # A row changes by at most 12 coordinates' errors times differences below 700 mm.
@@ -96,7 +96,7 @@ def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
 
 
 def test_the_printed_equations_expose_a_shifted_answer(table: Table) -> None:
-    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)})
+    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
     shifted = dict(truth.position)
     x, y, z = shifted["tie_rod_outer"]
     shifted["tie_rod_outer"] = (x + mpf("1e-50"), y, z)
@@ -108,10 +108,10 @@ def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equation
     table: Table,
 ) -> None:
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
-    upright = solve_truth(table, inputs)
+    upright = solve_truth(table, inputs, closure="collinear")
     # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
     turned_table = {name: (x, -z, y) for name, (x, y, z) in table.items()}
-    turned = solve_truth(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1))
+    turned = solve_truth(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
     bound = upright.radius + turned.radius
     for name in table:
         x, y, z = upright.position[name]

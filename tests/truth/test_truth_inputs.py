@@ -54,7 +54,7 @@ def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
     table: Table, change: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth(**{"points": table, "inputs": STILL, **change})
+        solve_truth(**{"points": table, "inputs": STILL, **change}, closure="collinear")
 
 
 @pytest.mark.parametrize(
@@ -70,17 +70,17 @@ def test_a_mechanism_without_extent_is_refused(
     table: Table, name: str, place: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth({**table, name: place}, STILL)
+        solve_truth({**table, name: place}, STILL, closure="collinear")
 
 
 def test_a_strut_top_in_the_ball_joint_is_an_error_and_never_a_number(table: Table) -> None:
     with pytest.raises(TruthError):
-        solve_truth({**table, "strut_top": table["lower_ball_joint"]}, STILL)
+        solve_truth({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
 
 
 def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:
     hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
-    truth = solve_truth(hub_in_axis, STILL)
+    truth = solve_truth(hub_in_axis, STILL, closure="collinear")
     assert abs(truth.kingpin) < 1
     with pytest.raises(TruthError, match="camber"):
         _ = truth.camber

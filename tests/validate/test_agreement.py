@@ -5,17 +5,17 @@ import pytest
 from hypothesis import assume, given, note
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
-from validate.cli import DEFAULT_SCENES
 from validate.compare import compare
 from validate.formulation import FormulationError
 from validate.paper_car import EFFECTS, PAPER
+from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.strategies import make_scene, scenes
 
 PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-@pytest.mark.parametrize("name", DEFAULT_SCENES)
+@pytest.mark.parametrize("name", PAPER_SCENES)
 def test_formulations_agree_on_the_papers_scenes(name: str, pair: tuple[str, str]) -> None:
     outcome = compare(Scene.load(name), *pair, name)
     assert outcome.agreed, outcome.disagreements

@@ -17,7 +17,7 @@ from validate import deep
 from validate.deep_store import CHUNK, Chunk, Store, StoreError
 from validate.formulation import Solution
 from validate.formulations import formulation
-from validate.random_cars import CLOSURES, KINDS, SEED, random_car
+from validate.random_cars import CLOSURES, KINDS, SEED, RandomCar, random_car
 from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, true_solution, unanswered
 
 ROOT = Path(__file__).parent.parent.parent
@@ -87,6 +87,23 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
     faulty[name] = faulty[name] + 1e-3
     solutions[model] = replace(solutions[model], **{quantity: faulty})
     assert judged(scene, solutions["pointcoord"], solutions["absolute"]) == f"{model} wrong"
+
+
+def test_a_fault_that_both_models_share_is_found_by_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:
+    honest = deep._solved
+
+    def shared(name: str, car: RandomCar) -> Solution:
+        solution = honest(name, car)
+        moved = solution.position["wheel_centre"] + 1e-3
+        return replace(solution, position={**solution.position, "wheel_centre": moved})
+
+    cars = (random_car(number) for number in range(0, 200, deep.HELD))
+    car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the truth")
+    monkeypatch.setattr(deep, "_solved", shared)
+    found = deep.examine(car)
+    assert found.outcome == "agreed, the truth: pointcoord and absolute wrong"
+    assert found.kept
+    assert any(word in found.outcome for word in deep.FAULTY)
 
 
 def test_an_answer_that_stands_alone_is_held_to_the_truth() -> None:

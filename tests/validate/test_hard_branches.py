@@ -40,7 +40,7 @@ BY_NAME = {case.name: case for case in CASES}
 
 def feasible(angle: float, rack: float) -> bool:
     try:
-        solve_truth(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15)
+        solve_truth(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15, closure="collinear")
     except InfeasibleError:
         return False
     return True
@@ -62,7 +62,9 @@ def test_assemblies_near_the_meeting_are_as_far_apart_as_the_report_says(share: 
     scene = Scene.from_mapping(through_the_meeting(share, 1.0))
     angle = float(scene.functions["arm_angle"].series(0.5, 0)[0])
     rack = float(scene.functions["rack"].series(0.5, 0)[0])
-    listed = count_assemblies(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=1000)
+    listed = count_assemblies(
+        PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=1000, closure="collinear"
+    )
     drawn = next(i for i in listed.found if i.choices == drawn_choices(scene))
     other = next(i for i in listed.found if i.choices == replace(drawn.choices, tie=-drawn.choices.tie))
     gap = math.dist(*(map(float, i.position["tie_rod_outer"]) for i in (drawn, other)))

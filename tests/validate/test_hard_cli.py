@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -132,7 +133,7 @@ def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
     case = Case("untried", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", never)
     monkeypatch.setattr(catalogue, "CASES", (case,))
     for target in (tmp_path / "no" / "x.json", tmp_path):
-        assert main(["hard", *more, "--json", str(target)]) == 2
+        assert main(["hard", *more, "--json", str(target)]) == 4
         out, err = capsys.readouterr()
         assert out == ""
         (line,) = err.splitlines()
@@ -151,9 +152,29 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
     target = tmp_path / "hard.json"
     if before is not None:
         target.write_text(before)
-    with pytest.raises(KeyboardInterrupt):
-        main(["hard", "--json", str(target)])
+    assert main(["hard", "--json", str(target)]) == 130
     assert (target.read_text() if target.exists() else None) == before
+
+
+def test_an_interrupted_run_leaves_the_cases_that_are_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(value: float) -> Trial:
+        raise KeyboardInterrupt
+
+    def case(name: str, examine: Callable[[float], Trial]) -> Case:
+        return Case(name, "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", examine)
+
+    right = Trial(1.0, (Answer("absolute", "right"),))
+    cases = (*(case(f"done-{i}", lambda value: right) for i in range(3)), case("stop", interrupted))
+    monkeypatch.setattr(catalogue, "CASES", cases)
+    target = tmp_path / "hard.json"
+    assert main(["hard", "--json", str(target)]) == 130
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"pointcoord: interrupted; {target} holds 3 of 4 cases"
+    data = json.loads(target.read_text())
+    assert (data["complete"], data["exit_status"]) == (False, 130)
+    assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
 
 
 def test_without_the_packages_of_the_truth_one_line_says_what_to_install() -> None:

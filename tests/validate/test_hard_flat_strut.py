@@ -7,7 +7,7 @@ import pytest
 
 from pointcoord import Scene, SceneError
 from pointcoord.mechanism import Mechanism
-from pointcoord.simulate import scene_mechanism
+from pointcoord.simulation import scene_mechanism
 from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, any_rotation, car_content, rotation, turned
 from validate.hard.case import Case
 from validate.hard.flat_strut import CASES, quarter_turn_less

@@ -34,7 +34,7 @@ def test_what_is_free_without_a_link_belongs_to_its_points(number: float) -> Non
     trial = links.missing(number)
     answer = next(a for a in trial.answers if a.formulation == "pointcoord")
     assert answer.outcome == "refused"
-    ends = str(trial.facts["link"]).removeprefix("link ").split(" - ")
+    ends = str(trial.facts["constraint"]).removeprefix("link ").split(" - ")
     moving = [end for end in ends if end in COLLINEAR.moving]
     assert any(f"{axis} of {end}" in answer.reason for end in moving for axis in "xyz")
 

@@ -67,7 +67,7 @@ def test_the_rack_ends_where_a_pose_exists_on_one_side_only(ahead: bool) -> None
 
 def test_a_mirrored_and_turned_car_has_the_same_range() -> None:
     for driven in ("arm_angle", "rack"):
-        plain, turned = last_value("paper", driven, True), last_value("turned", driven, True)
+        plain, turned = last_value("beside", driven, driven != "rack"), last_value("turned", driven, True)
         # Its coordinates, up to 4e6 mm, were rounded by 2^-31 mm when it was turned; the rack's end moves
         # by some ten times as much.
         assert plain.reach == pytest.approx(turned.reach, rel=0.0, abs=1e-7)

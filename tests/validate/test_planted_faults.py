@@ -24,7 +24,7 @@ from validate.formulation import Solution
 from validate.formulations import formulation
 
 # The module; the package's attribute of this name is the function.
-solver = import_module("pointcoord.simulate")
+solver = import_module("pointcoord.simulation")
 
 Plant = Callable[[pytest.MonkeyPatch], None]
 

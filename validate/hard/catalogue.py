@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 
 from validate.hard import (
@@ -43,6 +43,34 @@ CASES: tuple[Case, ...] = (
     *found.CASES,
     *beside.CASES,
 )
+
+# Cases with fewer than eight values of their parameter, and why they have no more.
+_WAY = "each value is a whole way up to where it locks, or through a near miss: half a second to three"
+_REFUSAL = "each refusal takes half a second or more"
+_LINKS = "there are no more links"
+FEW_VALUES: Mapping[str, str] = {
+    "strut-passes-flat": _WAY,
+    "strut-points-near": _REFUSAL,
+    "knuckle-foot-short": _REFUSAL,
+    "long-sine": "each refusal takes two thousand segments",
+    **dict.fromkeys(("branches-nearly-meet", "branches-nearly-meet-beside"), _WAY),
+    **dict.fromkeys(("branches-met", "branches-met-beside"), _WAY),
+    **dict.fromkeys(("whole-range-arm", "whole-range-rack"), _WAY),
+    **{
+        f"reach-{end}{car}": _WAY
+        for end in ("arm-highest", "arm-lowest", "rack-least", "rack-greatest")
+        for car in ("", "-turned")
+    },
+    "reach-slide-runs-out": _WAY,
+    **dict.fromkeys(("link-missing", "link-twice", "link-twice-for-another"), _LINKS),
+    **dict.fromkeys(("link-twice-beside", "link-twice-for-another-beside"), _LINKS),
+    "strut-drawn-folded": _REFUSAL,
+    **dict.fromkeys(("far-start-high", "far-start-rack"), _WAY),
+    **{
+        f"assemblies-counted-{where}": "each value is a search from a thousand starts"
+        for where in ("drawing", "rack", "arm", "meeting")
+    },
+}
 
 
 class UnknownCase(Exception):

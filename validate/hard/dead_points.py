@@ -32,6 +32,7 @@ RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
 # its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
 # the range, and at ten times the nearest decade above that no end is near enough to be a reason.
 ABSOLUTE_FROM = 1e-11
+COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
 BEYOND = {"pointcoord": REFUSED, "absolute": REFUSED}
 OUTSIDE = "refused: there is no pose"
 
@@ -122,8 +123,8 @@ def _case(
         group=group,
         why=why + more[law],
         parameter=DISTANCE,
-        # Coming closer from beyond, or with another car, is tried every second decade.
-        values=decades(-12, -1) if law != "beyond" and car_key == "" else decades(-12, -2)[::2],
+        # A motion takes longest; with the other car it is tried at every second decade and at the end.
+        values=decades(-12, -1) if law != "moving" or car_key == "" else COARSE,
         scene=content,
         expected=BEYOND if law == "beyond" else near_end(law),
         behaviour=OUTSIDE if law == "beyond" else inside(law),

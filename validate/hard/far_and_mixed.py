@@ -193,7 +193,8 @@ def _mixed_case(
         group=GROUP,
         why=why,
         parameter=parameter,
-        values=decades(),
+        # Where it is refused, each refusal takes a second.
+        values=(*decades(-4), 1e-6, 1e-9, 1e-12),
         expected=dict.fromkeys(SOLVERS, MIXED),
         behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
         examine=lambda value: try_on_side(value, mixed(value, points, shrinking, closure), SOLVERS),

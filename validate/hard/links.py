@@ -9,26 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pointcoord import MechanismError
+from pointcoord.body_axis import AxisInBody, Normal
 from pointcoord.constraints import Constraint, Link
 from pointcoord.hardpoints import build_mechanism
-from pointcoord.suspensions.macpherson import COLLINEAR
+from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN
 from pointcoord.topology import Topology
+from validate.closed_form import Closure
+from validate.hard.cars import BESIDE
 from validate.hard.case import REFUSED, Answer, Case, Trial
 from validate.hard.near_points import drawn_angle
-from validate.paper_car import PAPER
+from validate.paper_car import PAPER, Points
 
 if TYPE_CHECKING:
     from absolute import Model
 
 GROUP = "10. Links and numbers that make no mechanism"
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-LINKS = tuple(c for c in COLLINEAR.constraints if isinstance(c, Link))
 JOINTS = (
     "arm_pivot",
     "strut",
@@ -48,12 +51,32 @@ EXCHANGED = (
     ("top_mount", "tie_rod_outer_ball"),
     ("tie_rod_outer_ball", "lower_ball"),
 )
-NUMBERS = tuple(float(n) for n in range(1, len(LINKS) + 1))
+DRAWINGS: dict[Closure, Points] = {"collinear": PAPER, "drawn": BESIDE}
 
 
-def with_constraints(change: Callable[[tuple[Constraint, ...]], tuple[Constraint, ...]]) -> Topology:
+def links_of(closure: Closure) -> tuple[Link, ...]:
+    """The links of one kind of strut."""
+    topology = COLLINEAR if closure == "collinear" else DRAWN
+    return tuple(c for c in topology.constraints if isinstance(c, Link))
+
+
+def counted(number: int) -> tuple[float, ...]:
+    """The numbers of so many constraints."""
+    return tuple(float(n) for n in range(1, number + 1))
+
+
+LINKS = links_of("collinear")
+NUMBERS = counted(len(LINKS))
+# Without its normal or its axis's direction a knuckle has no such vector that could be free.
+HELD = tuple(c for c in DRAWN.constraints if not isinstance(c, AxisInBody | Normal))
+
+
+def with_constraints(
+    change: Callable[[tuple[Constraint, ...]], tuple[Constraint, ...]], closure: Closure = "collinear"
+) -> Topology:
     """The strut with other constraints."""
-    return replace(COLLINEAR, constraints=change(COLLINEAR.constraints))
+    whole = COLLINEAR if closure == "collinear" else DRAWN.given(BESIDE)
+    return replace(whole, constraints=change(whole.constraints))
 
 
 def twice(link: Link) -> Link:
@@ -107,72 +130,88 @@ def by_absolute(describe: Callable[[], Model], inputs: Mapping[str, float] | Non
     return Answer("absolute", "wrong", "takes it for a mechanism")
 
 
-def strut() -> Model:
-    """The paper's car as the absolute model describes it."""
+def strut(closure: Closure = "collinear") -> Model:
+    """A car of one kind of strut as the absolute model describes it."""
     import absolute
 
-    return absolute.macpherson(PAPER)
+    return absolute.macpherson(DRAWINGS[closure], closure=closure)
 
 
-def missing(number: float) -> Trial:
-    """The mechanism without one of its links, or without one of its joints."""
-    link, joint = LINKS[int(number) - 1], JOINTS[int(number) - 1]
+def missing(number: float, closure: Closure = "collinear") -> Trial:
+    """The mechanism without one of its constraints, or without one of its joints.
+
+    Of a collinear strut the links are tried; of a drawn one what fixes its axis as well.
+    """
+    every = LINKS if closure == "collinear" else HELD
+    gone, joint = every[int(number) - 1], JOINTS[(int(number) - 1) % len(JOINTS)]
 
     def without() -> Model:
-        whole = strut()
+        whole = strut(closure)
         return replace(whole, joints={n: j for n, j in whole.joints.items() if n != joint})
 
-    topology = with_constraints(lambda all_: tuple(c for c in all_ if c != link))
+    topology = with_constraints(lambda all_: tuple(c for c in all_ if c != gone), closure)
     # All else held, what can move violates the link that is gone, so that one of its ends moves.
-    free = {f"{axis} of {end}" for axis in "xyz" for end in (link.start, link.end) if end in COLLINEAR.moving}
+    ends = (gone.start, gone.end) if isinstance(gone, Link) else ()
+    free = {f"{axis} of {end}" for axis in "xyz" for end in ends if end in COLLINEAR.moving}
     return Trial(
         number,
-        (by_pointcoord(topology, set(), free), by_absolute(without)),
+        (by_pointcoord(topology, set(), free, points=DRAWINGS[closure]), by_absolute(without)),
+        {"constraint": gone.labels[0], "joint": joint},
+    )
+
+
+def redundant(number: float, closure: Closure = "collinear") -> Trial:
+    """One of the links twice, or one of the joints."""
+    link, joint = links_of(closure)[int(number) - 1], JOINTS[int(number) - 1]
+
+    def again() -> Model:
+        whole = strut(closure)
+        return replace(whole, joints={**whole.joints, "again": whole.joints[joint]})
+
+    topology = with_constraints(lambda all_: (*all_, twice(link)), closure)
+    rows = {link.labels[0], twice(link).labels[0]}
+    return Trial(
+        number,
+        (by_pointcoord(topology, rows, points=DRAWINGS[closure]), by_absolute(again)),
         {"link": link.labels[0], "joint": joint},
     )
 
 
-def redundant(number: float) -> Trial:
-    """One of the links twice, or one of the joints."""
-    link, joint = LINKS[int(number) - 1], JOINTS[int(number) - 1]
-
-    def again() -> Model:
-        whole = strut()
-        return replace(whole, joints={**whole.joints, "again": whole.joints[joint]})
-
-    topology = with_constraints(lambda all_: (*all_, twice(link)))
-    rows = {link.labels[0], twice(link).labels[0]}
-    return Trial(
-        number, (by_pointcoord(topology, rows), by_absolute(again)), {"link": link.labels[0], "joint": joint}
-    )
-
-
-def exchanged(number: float) -> Trial:
+def exchanged(number: float, closure: Closure = "collinear") -> Trial:
     """One link twice in place of another, so that there are as many rows as unknowns; joints alike."""
-    link, lost = LINKS[int(number) - 1], LINKS[int(number) % len(LINKS)]
+    links = links_of(closure)
+    link, lost = links[int(number) - 1], links[int(number) % len(links)]
     doubled, dropped = EXCHANGED[int(number) - 1]
 
     def swapped() -> Model:
-        whole = strut()
+        whole = strut(closure)
         joints = {n: j for n, j in whole.joints.items() if n != dropped}
         return replace(whole, joints={**joints, "again": whole.joints[doubled]})
 
-    topology = with_constraints(lambda all_: (*(c for c in all_ if c != lost), twice(link)))
+    topology = with_constraints(lambda all_: (*(c for c in all_ if c != lost), twice(link)), closure)
     rows = {link.labels[0], twice(link).labels[0]}
     facts: dict[str, float | str] = {
         "twice": f"{link.labels[0]}; {doubled}",
         "missing": f"{lost.labels[0]}; {dropped}",
     }
-    return Trial(number, (by_pointcoord(topology, rows), by_absolute(swapped)), facts)
+    return Trial(
+        number, (by_pointcoord(topology, rows, points=DRAWINGS[closure]), by_absolute(swapped)), facts
+    )
 
 
-def _case(name: str, why: str, behaviour: str, examine: Callable[[float], Trial]) -> Case:
+def _case(
+    name: str,
+    why: str,
+    behaviour: str,
+    examine: Callable[[float], Trial],
+    values: tuple[float, ...] = NUMBERS,
+) -> Case:
     return Case(
         name=name,
         group=GROUP,
         why=why,
         parameter="number of the link (and of a joint of the absolute model)",
-        values=NUMBERS,
+        values=values,
         expected={"pointcoord": REFUSED, "absolute": REFUSED},
         behaviour=behaviour,
         examine=examine,
@@ -197,5 +236,26 @@ CASES: tuple[Case, ...] = (
         "There are as many rows as unknowns, but one says nothing new and one is missing.",
         "refused; pointcoord names both rows",
         exchanged,
+    ),
+    _case(
+        "constraint-missing-beside",
+        "As before, of a strut beside its ball joint: a link, its axis or a place on the axis is not held.",
+        "refused; pointcoord names what is free, of a link a coordinate of its own ends",
+        partial(missing, closure="drawn"),
+        counted(len(HELD)),
+    ),
+    _case(
+        "link-twice-beside",
+        "As before, of a strut beside its ball joint.",
+        "refused; pointcoord names both rows",
+        partial(redundant, closure="drawn"),
+        counted(len(links_of("drawn"))),
+    ),
+    _case(
+        "link-twice-for-another-beside",
+        "As before, of a strut beside its ball joint.",
+        "refused; pointcoord names both rows",
+        partial(exchanged, closure="drawn"),
+        counted(len(links_of("drawn"))),
     ),
 )

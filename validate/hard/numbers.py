@@ -9,13 +9,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
+from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, car_content
 from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
 from validate.hard.content import SQUARE, paper_car
 from validate.hard.links import GROUP
 from validate.hard.sides import try_on_side
+from validate.input_ends import Car
 from validate.paper_car import PAPER
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -71,6 +73,8 @@ def everywhere(number: object) -> Callable[[float], Trial]:
 
 
 PAIRS = tuple(itertools.combinations(PAPER, 2))
+# A rod without length has no truth: which way its end lies is not drawn.
+PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != ("strut_top", "strut_rod_end"))
 # Pairs that hold each other at a distance, or make a line together: they cannot be in one place.
 APART = frozenset(
     frozenset(pair)
@@ -92,14 +96,13 @@ def linked(first: bool) -> tuple[tuple[str, str], ...]:
     return tuple(pair for pair in PAIRS if (frozenset(pair) in APART) == first)
 
 
-def coincident(pairs: tuple[tuple[str, str], ...]) -> Callable[[float], Trial]:
-    """Tries the paper's car with the points of one pair in one place: the second is put on the first."""
+def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Callable[[float], Trial]:
+    """Tries a car with the points of one pair in one place: the second is put on the first."""
 
     def examine(value: float) -> Trial:
         onto, moved = pairs[int(value) - 1]
-        points = deepcopy(PAPER)
-        points[moved] = points[onto]
-        trial = try_on_side(value, paper_car(1.65, points=points), SOLVERS)
+        there = replace(car, points={**car.points, moved: car.points[onto]})
+        trial = try_on_side(value, car_content(there, 1.65), SOLVERS)
         return Trial(value, trial.answers, {**trial.facts, "place": f"{moved} on {onto}"})
 
     return examine
@@ -162,6 +165,14 @@ CASES: tuple[Case, ...] = (
         "Two points without a link are drawn in one place, which may be a mechanism or not.",
         coincident(linked(False)),
         _counted(len(linked(False))),
+        RIGHT_OR_REFUSED,
+        EVERY_PAIR,
+    ),
+    _case(
+        "points-in-one-place-beside",
+        "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
+        coincident(PAIRS_BESIDE, BESIDE_CAR),
+        _counted(len(PAIRS_BESIDE)),
         RIGHT_OR_REFUSED,
         EVERY_PAIR,
     ),

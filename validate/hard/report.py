@@ -157,7 +157,7 @@ def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
 
 
 def results_data(results: Sequence[Examined]) -> dict[str, Any]:
-    """Everything, as plain data: each case with each trial. JSON has no infinity: it becomes null."""
+    """Everything, as plain data: each case with each trial."""
     return {
         "as_expected": as_expected(results),
         "counts": {name: dict(found) for name, found in counts(results).items()},
@@ -186,7 +186,7 @@ def _case_data(result: Examined) -> dict[str, Any]:
             {
                 "value": trial.value,
                 "answers": [_answer_data(answer) for answer in trial.answers],
-                "facts": _finite(dict(trial.facts)),
+                "facts": dict(trial.facts),
             }
             for trial in result.trials
         ],
@@ -195,12 +195,8 @@ def _case_data(result: Examined) -> dict[str, Any]:
 
 
 def _expected_data(expected: Expected) -> dict[str, Any]:
-    return _finite({"outcomes": list(expected.outcomes), "right_from": expected.right_from})
+    return {"outcomes": list(expected.outcomes), "right_from": expected.right_from}
 
 
 def _answer_data(answer: Answer) -> dict[str, Any]:
-    return _finite(asdict(answer))
-
-
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+    return asdict(answer)

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from validate.formulations import MissingPackage
+from validate.extras import MissingPackage
 from validate.hard.case import Answer, Case, Trial, unexpected, wrong_without_warning
 
 

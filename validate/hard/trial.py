@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Scene, SceneError
+from validate.extras import MissingPackage
 from validate.formulation import FormulationError, Solution
-from validate.formulations import MissingPackage, formulation
+from validate.formulations import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
 from validate.hard.content import decades as decades
 from validate.hard.content import paper_car as paper_car

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from flint import arb
 
 from validate.truth.branches import every_candidate
-from validate.truth.closures import equations_for
+from validate.truth.closures import DEFAULT, equations_for
 from validate.truth.design import Design, Driven, values_only
 from validate.truth.equations import Known
 from validate.truth.errors import BadInputError, InfeasibleError, SingularPoseError
@@ -58,7 +58,7 @@ def count_assemblies(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = "collinear",
+    closure: str = DEFAULT,
 ) -> Assemblies:
     """Search the assemblies of a pose from random starts and prove each find.
 

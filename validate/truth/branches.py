@@ -30,6 +30,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
+from validate.truth.closures import DEFAULT
 from validate.truth.equations import Known, carried_points
 from validate.truth.errors import AmbiguousAssemblyError, InfeasibleError, NotDecidedError
 from validate.truth.exact import as_ball
@@ -171,7 +172,7 @@ def choices_of(points: Mapping[int, Vector], known: Known) -> Choices:
 
 
 def choices_of_table(
-    table: Mapping[int, Vector], up: Vector, closure: str = "collinear", clearness: float = CLEAR_SIGN
+    table: Mapping[int, Vector], up: Vector, closure: str = DEFAULT, clearness: float = CLEAR_SIGN
 ) -> Choices:
     """The choices that the given points make, which need not be assembled; fractions.
 

@@ -18,10 +18,10 @@ from fractions import Fraction
 from flint import arb, arb_mat, ctx
 
 from validate.truth.closures import equations_for
-from validate.truth.equations import CHASSIS, Known
+from validate.truth.equations import CHASSIS, MOVING, Known
 from validate.truth.errors import NotDecidedError
 from validate.truth.exact import as_ball
-from validate.truth.vectors import plus
+from validate.truth.vectors import minus, plus
 
 MOST_STEPS = 60  # quadratic convergence needs 5 from float accuracy; the rest is for a far guess
 
@@ -34,12 +34,14 @@ class Certificate:
         centre: exact middle of the box.
         radius: half the box's width in each coordinate of the points.
         enclosure: balls that contain the zero, far inside the box.
+        shift: its points 5 to 9 are at most so far from the centre's.
         condition: of the Jacobian, in the maximum norm, each row scaled to unit absolute sum.
     """
 
     centre: Sequence[arb]
     radius: Fraction
     enclosure: Sequence[arb]
+    shift: arb
     condition: float
 
 
@@ -85,9 +87,7 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
         for n, p in equations.points_of(centre, known).items()
     }
     for place, value in enumerate(equations.implied(near, known), start=equations.COORDINATES):
-        box[place] = arb(centre[place], (4 * value.rad() + abs(value - centre[place])).upper())
-        if not box[place].contains_interior(value):
-            raise NotDecidedError("what follows from the points in its box", value, box[place])
+        box[place] = arb(centre[place], abs(value - centre[place]).upper())
 
     at_centre = jacobian_matrix(centre, known).mid()
     try:
@@ -102,10 +102,11 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
         if not side.contains_interior(image):
             reach = (image - number).abs_upper()
             raise NotDecidedError("Krawczyk's image inside its box, reach from the centre", reach, side.rad())
-    hand = equations.handedness(enclosure)
-    if not hand > 0:
-        raise NotDecidedError("the handedness of the knuckle", hand, "> 0")
-    return Certificate(centre, radius, enclosure, _condition(at_centre, inverse))
+    there, here = (equations.points_of(y, known) for y in (enclosure, centre))
+    shift = _largest([x for n in MOVING for x in minus(there[n], here[n])])
+    if not shift < width:
+        raise NotDecidedError("the points of the zero within the radius of the centre's", shift, width)
+    return Certificate(centre, radius, enclosure, shift, _condition(at_centre, inverse))
 
 
 def jacobian_matrix(unknown: Sequence[arb], known: Known) -> arb_mat:

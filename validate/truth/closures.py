@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from validate.truth import equations, knuckle_equations
+import validate.truth.equations as straight
+import validate.truth.knuckle_equations as drawn
 from validate.truth.equations import Known
 from validate.truth.errors import BadInputError
 from validate.truth.vectors import Scalar, Vector
@@ -51,7 +52,8 @@ class Equations(Protocol):
         """Positive for an assembly, negative for a zero that mirrors the knuckle."""
 
 
-CLOSURES: dict[str, Equations] = {"drawn": knuckle_equations, "collinear": equations}
+CLOSURES: dict[str, Equations] = {"drawn": drawn, "collinear": straight}
+DEFAULT = "drawn"
 
 
 def equations_for(closure: str) -> Equations:

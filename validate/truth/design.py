@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import arb
 
-from validate.truth.closures import equations_for
+from validate.truth.closures import DEFAULT, equations_for
 from validate.truth.equations import CHASSIS, NUMBER_OF, Known
 from validate.truth.errors import BadInputError
 from validate.truth.exact import as_ball, as_fraction
@@ -85,7 +85,7 @@ class Design:
         up: Sequence[object],
         right: Sequence[object],
         side: str,
-        closure: str = "collinear",
+        closure: str = DEFAULT,
     ) -> Design:
         """Take over the named points, mm. Without a rack centre the rack's line passes through point 9.
 
@@ -129,15 +129,18 @@ class Design:
         return {name: n for name, n in NUMBER_OF.items() if n in self.table}
 
     def known(self, driven: Driven) -> Known:
-        """What the equations take as given, as jets of balls at the present precision, local.
+        """What the equations take as given, as jets of balls at the present precision, local."""
+        return self.known_for(balls(driven.arm_angle), balls(driven.rack), balls(driven.heave))
+
+    def known_for(self, theta: Jet, rack: Jet, heave: Jet) -> Known:
+        """The same from jets of balls, or of duals of balls; rad, mm, mm.
 
         Heave moves points 1 to 4 by heave(t) up. With h = d_51 cos(theta):
         h' = -d_51 sin(theta) theta',  h'' = -d_51 (cos(theta) theta'^2 + sin(theta) theta'').
         """
-        rise = balls(driven.heave) * as_ball(1 / self.unit)
+        rise = heave * as_ball(1 / self.unit)
         up = ball_vector(self.up)
         lift = (rise * up[0], rise * up[1], rise * up[2])
-        theta = balls(driven.arm_angle)
         sine, cosine = theta.value.sin_cos()
         d51 = as_ball(self.squared_length[5, 1]).sqrt()
         bend = cosine * theta.rate * theta.rate + sine * theta.acceleration
@@ -148,7 +151,7 @@ class Design:
             right=ball_vector(self.right),
             squared_length={link: as_ball(squared) for link, squared in self.squared_length.items()},
             arm_height=Jet(d51 * cosine, -d51 * sine * theta.rate, -d51 * bend),
-            rack=balls(driven.rack) * as_ball(1 / self.unit),
+            rack=rack * as_ball(1 / self.unit),
             knuckle={n: ball_vector(numbers) for n, numbers in self.knuckle.items()},
         )
 

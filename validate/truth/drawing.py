@@ -11,6 +11,7 @@ from flint import arb, ctx
 from mpmath import mpf
 
 from validate.truth.branches import CLEAR_SIGN, candidate, choices_of_table
+from validate.truth.closures import DEFAULT
 from validate.truth.design import Design, Driven
 from validate.truth.equations import Known
 from validate.truth.exact import as_ball, as_fraction, bits, centre_of, mpf_from_fraction
@@ -48,7 +49,7 @@ def closed_drawing(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = "collinear",
+    closure: str = DEFAULT,
     clearness: float = CLEAR_SIGN,
 ) -> ClosedDrawing:
     """Solve a drawing at its own inputs; every link as long as drawn, the side of each choice as drawn.

@@ -13,11 +13,11 @@ from validate.truth.branches import Choices, choices_of
 from validate.truth.certificate import Certificate, certify, refine
 from validate.truth.closures import equations_for
 from validate.truth.design import Design, ball_vector, values_only
-from validate.truth.equations import MOVING, Known
+from validate.truth.equations import Known
 from validate.truth.errors import NotDecidedError, TruthError
 from validate.truth.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
-from validate.truth.kinematics import body_rates, unknown_jets, wheel_angles
-from validate.truth.vectors import Vector, minus, plus, times
+from validate.truth.kinematics import body_turns, unknown_jets, wheel_angles
+from validate.truth.vectors import Vector, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
 
@@ -99,26 +99,17 @@ def prove_instant(
         NotDecidedError: a proof fails with the present digits.
     """
     still = values_only(known)
-    # Extra digits go half into a smaller box, which keeps a close second assembly out, and half into
-    # the arithmetic, which a nearly singular Jacobian wears down.
-    box = Fraction(1, 10 ** ((digits + working) // 2))
-    certificate = certify(refine(start, still), still, box)
-    equations = equations_for(known.closure)
+    certificate = prove_pose(still, start, expected, digits, working)
     solved = unknown_jets(certificate.enclosure, known)
-    points = equations.points_of(solved, known)
-    choices = choices_of({n: _part(p, "value") for n, p in points.items()}, still)
-    if expected is not None and choices != expected:
-        raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))
+    points = equations_for(known.closure).points_of(solved, known)
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
     named = {name: points[number] for name, number in design.names.items()}
     position = {name: plus(origin, times(_part(p, "value"), unit)) for name, p in named.items()}
     velocity = {name: times(_part(p, "rate"), unit) for name, p in named.items()}
     acceleration = {name: times(_part(p, "acceleration"), unit) for name, p in named.items()}
-    omega, alpha = {}, {}
-    lower_arm = minus(points[2], points[1]), minus(points[5], points[1])
-    for body, pair in {"knuckle": equations.knuckle_frame(solved, known), "lower_arm": lower_arm}.items():
-        omega[body], alpha[body] = body_rates(*pair)
+    turns = body_turns(solved, points, known)
+    omega, alpha = ({body: turn[i] for body, turn in turns.items()} for i in (0, 1))
 
     fastest, hardest = _greatest(velocity.values()), _greatest(acceleration.values())
     push = hardest + fastest * fastest / unit  # centripetal parts may cancel: their size counts
@@ -147,13 +138,13 @@ def prove_instant(
     # The proof speaks of a box about the centre, the answer is the middle of the enclosure. Half the
     # box about the answer lies inside the whole box about the centre, so the proof holds there too;
     # a shift of at most a quarter leaves room for the rounding of the radius itself.
-    radius = box * design.unit / 2
-    shift = _farthest(certificate, still) * unit + bounds["position"]
+    radius = certificate.radius * design.unit / 2
+    shift = certificate.shift * unit + bounds["position"]
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
     angles = {}
-    for name, angle in zip(("camber", "kingpin"), wheel_angles(points, design, still), strict=True):
+    for name, angle in wheel_angles(points, design, still).items():
         if angle.rad() < as_ball(Fraction(1, 10**digits)):
             angles[name] = angle
     bounds["angles"] = max((angle.rad() for angle in angles.values()), default=arb(0))
@@ -163,9 +154,27 @@ def prove_instant(
         radius=mpf_from_fraction(radius, working),
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
         condition=certificate.condition,
-        choices=choices,
+        choices=choices_of({n: _part(p, "value") for n, p in points.items()}, still),
         digits=working,
     )
+
+
+def prove_pose(
+    known: Known, start: Sequence[arb], expected: Choices | None, digits: int, working: int
+) -> Certificate:
+    """Refine and prove the position at the present precision; `known` without rates, else as above.
+
+    Raises:
+        NotDecidedError: a proof fails with the present digits.
+    """
+    # Extra digits go half into a smaller box, which keeps a close second assembly out, and half into
+    # the arithmetic, which a nearly singular Jacobian wears down.
+    certificate = certify(refine(start, known), known, Fraction(1, 10 ** ((digits + working) // 2)))
+    points = equations_for(known.closure).points_of(certificate.enclosure, known)
+    choices = choices_of(points, known)
+    if expected is not None and choices != expected:
+        raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))
+    return certificate
 
 
 def _part(vector: Vector, name: str) -> Vector:
@@ -181,13 +190,6 @@ def _greatest(vectors: Iterable[Vector]) -> arb:
 def _greatest_radius(vectors: Iterable[Vector]) -> arb:
     greatest: arb = max(x.rad() for vector in vectors for x in vector)
     return greatest
-
-
-def _farthest(certificate: Certificate, known: Known) -> arb:
-    """Greatest distance of points 5 to 9 from the centre's, from above."""
-    points_of = equations_for(known.closure).points_of
-    there, here = (points_of(y, known) for y in (certificate.enclosure, certificate.centre))
-    return _greatest(minus(there[n], here[n]) for n in MOVING)
 
 
 def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:

@@ -12,7 +12,7 @@ from validate.truth.design import Design, values_only
 from validate.truth.equations import Known
 from validate.truth.errors import NotDecidedError
 from validate.truth.jet import Jet
-from validate.truth.vectors import Vector, cross, dot, minus, plus, times
+from validate.truth.vectors import Scalar, Vector, cross, dot, minus, plus, times
 
 
 def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
@@ -24,17 +24,35 @@ def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
-    residual = equations_for(known.closure).residual
-    try:
-        inverse = jacobian_matrix(enclosure, values_only(known)).inv()
-    except ZeroDivisionError:
-        raise NotDecidedError("the inverse of the Jacobian for the rates", "0", "not 0") from None
+    residual, inverse = equations_for(known.closure).residual, inverse_jacobian(enclosure, values_only(known))
     zero = arb(0)
     still = [Jet(value, zero, zero) for value in enclosure]
     velocity = inverse * _right_hand_side([row.rate for row in residual(still, known)])
     moving = [Jet(jet.value, velocity[i, 0], zero) for i, jet in enumerate(still)]
     acceleration = inverse * _right_hand_side([row.acceleration for row in residual(moving, known)])
     return [Jet(jet.value, jet.rate, acceleration[i, 0]) for i, jet in enumerate(moving)]
+
+
+def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
+    """C'^-1 over the enclosure.
+
+    Raises:
+        NotDecidedError: the Jacobian over the enclosure may be singular.
+    """
+    try:
+        return jacobian_matrix(enclosure, known).inv()
+    except ZeroDivisionError:
+        raise NotDecidedError("the inverse of the Jacobian for the rates", "0", "not 0") from None
+
+
+def body_turns(
+    solved: Sequence[Jet], points: Mapping[int, Vector], known: Known
+) -> dict[str, tuple[Vector, Vector]]:
+    """Angular velocity and acceleration of the knuckle and the lower arm, rad/s, rad/s^2."""
+    return {
+        "knuckle": body_rates(*equations_for(known.closure).knuckle_frame(solved, known)),
+        "lower_arm": body_rates(minus(points[2], points[1]), minus(points[5], points[1])),
+    }
 
 
 def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
@@ -65,22 +83,30 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
     return omega, alpha
 
 
-def wheel_angles(points: Mapping[int, Vector], design: Design, known: Known) -> tuple[arb, arb]:
-    """Camber and kingpin angle, rad, eqs. (17) and (16), side aware; balls.
+def wheel_angles(points: Mapping[int, Vector], design: Design, known: Known) -> dict[str, arb]:
+    """Camber and kingpin angle, rad, balls."""
+    return {name: arb.atan2(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
+
+
+def wheel_directions(
+    points: Mapping[int, Vector], design: Design, known: Known
+) -> dict[str, tuple[Scalar, Scalar]]:
+    """(y, x) of each wheel angle atan2(y, x), eqs. (17) and (16), side aware.
 
     With a the steering axis, from 5 to 7 (collinear) or 4 (drawn), and w the wheel's spin axis, to 10
     from 11 or, where that is not given, from 7:
 
-    kingpin = atan2(a . inboard, a . up)
     camber  = atan2(-w . up, w . outboard)
+    kingpin = atan2(a . inboard, a . up)
     """
     p = {n: _part(point, "value") for n, point in points.items()}
     outboard = times(known.right, design.outboard)
     axis = minus(p[equations_for(known.closure).KINGPIN_TOP], p[5])
     spin = minus(p[10], p.get(11, p[7]))
-    kingpin = arb.atan2(-dot(axis, outboard), dot(axis, known.up))
-    camber = arb.atan2(-dot(spin, known.up), dot(spin, outboard))
-    return camber, kingpin
+    return {
+        "camber": (-dot(spin, known.up), dot(spin, outboard)),
+        "kingpin": (-dot(axis, outboard), dot(axis, known.up)),
+    }
 
 
 def _right_hand_side(rows: Sequence[arb]) -> arb_mat:

@@ -19,7 +19,8 @@ axis the strut top is. The 13 equations C(y) = 0 are
 Then p_i = p5 + R k_i for what the knuckle carries, and p8 = p4 + R k_8 with k_8 along u, as long as d_84
 and to the side on which it is drawn. Nothing here needs the ball joint off or on the axis, nor the points
 5, 6 and 7 in a triangle. Every equation is at most quadratic, so the Jacobian is linear in y. The equations
-also hold for the mirror image of the knuckle, det R = -1, which is no assembly (see `handedness`).
+also hold for the mirror image of the knuckle, det R = -1, which is no assembly: `implied` turns only, so no
+certificate's box keeps to a mirrored zero.
 """
 
 from __future__ import annotations
@@ -105,13 +106,13 @@ def implied(points: Mapping[int, Vector], known: Known) -> list[Scalar]:
     """R by columns, and s, of assembled points.
 
     Two vectors a, b of the knuckle that are k, m in its own frame give R: it takes k, m, k x m to a, b,
-    a x b. Of all pairs the one is taken that errors of the points harm least.
+    a x b. Of the pairs of r6, r7 and the rod the one is taken that errors of the points harm least.
     """
-    vectors = {n: (k, minus(points[n], points[5])) for n, k in known.knuckle.items() if n not in (AXIS, 8)}
     along = known.knuckle[8]
     shorter = (dot(along, along) / known.squared_length[8, 4]).sqrt()
-    vectors[8] = along, times(minus(points[8], points[4]), shorter)
-    (k, a), (m, b) = max(combinations(vectors.values(), 2), key=lambda pair: _spread(pair[0][0], pair[1][0]))
+    vectors = [(known.knuckle[n], minus(points[n], points[5])) for n in (6, 7)]
+    vectors.append((along, times(minus(points[8], points[4]), shorter)))
+    (k, a), (m, b) = max(combinations(vectors, 2), key=lambda pair: _spread(pair[0][0], pair[1][0]))
     frame = turning(k, m, a, b)
     axis = known.knuckle[AXIS]
     slide = dot(minus(points[4], points[7]), turned(frame, axis)) / dot(axis, axis)

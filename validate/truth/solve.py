@@ -9,7 +9,7 @@ from typing import TypeVar
 from flint import arb, ctx
 
 from validate.truth.branches import CLEAR_SIGN, Candidate, candidate, choices_of_table, every_candidate
-from validate.truth.closures import equations_for
+from validate.truth.closures import DEFAULT, equations_for
 from validate.truth.design import Design, Driven, ball_vector, exact_vector, values_only
 from validate.truth.equations import Known
 from validate.truth.errors import AmbiguousAssemblyError, BadInputError, NotDecidedError, SingularPoseError
@@ -34,7 +34,7 @@ def solve_truth(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = "collinear",
+    closure: str = DEFAULT,
     clearness: float = CLEAR_SIGN,
 ) -> Instant:
     """Solve the car at one instant, with a proof of every digit.

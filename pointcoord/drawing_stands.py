@@ -18,7 +18,7 @@ from pointcoord.linear import weakest_balance
 from pointcoord.mechanism import Mechanism
 from pointcoord.readout import wheel_angles
 from pointcoord.scene import Scene
-from pointcoord.simulate import scene_mechanism
+from pointcoord.simulation import scene_mechanism
 
 Array = NDArray[np.float64]
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.assembly import Pose, assemble, close_drawing
-from pointcoord.chain import Chain, Settings, build_chain
+from pointcoord.chain import COARSEST, FINEST, Chain, Settings, build_chain
 from pointcoord.chassis import ChassisMotion
 from pointcoord.closing import ALLOWED, Closing, closing
 from pointcoord.effects import plan_effects
 from pointcoord.enclosed_rates import Summed
 from pointcoord.errors import (
     AssemblyError,
+    InputNotKnown,
     InputOutOfRange,
     MechanismError,
     MotionTooLong,
@@ -53,14 +54,17 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         method: `series` (a chain of power series, dense in time), `newton` (the paper's algorithm, at the
             scene's instants only) or `printed` (the same with the paper's printed formulas).
     Raises:
-        SceneError: the hardpoints do not make a mechanism.
+        SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
         InputOutOfRange: an input leaves the values for which it has a meaning.
+        InputNotKnown: the terms of an input's law cancel so far that no pose can be proven with it.
         AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there.
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
     """
     if method not in ("series", "newton", "printed"):
         raise UnknownName("method", method, ("series", "newton", "printed"))
+    # Its dictionaries can be written after it was read.
+    scene = Scene.checked(scene, scene.title or "scene")
     mechanism = scene_mechanism(scene, printed=method == "printed")
     readout = Readout(
         mechanism=mechanism,
@@ -144,10 +148,11 @@ def _by_series(
     def motion(chain: Chain, instants: Array) -> Motion:
         sampler = Sampler(readout, functions, chain, time.start)
         work = pose.work + chain.work + sampler.work
-        prover = _prover(readout, functions, sampler.coordinates, sampler.summed)
-        return _motion(
-            sampler(instants), method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes
-        )
+        prover = SceneProver(readout, functions, sampler.coordinates, sampler.summed)
+        samples = sampler(instants)
+        _require_known(prover, samples, scene.tolerance)
+        solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes)
+        return replace(solved, notes=(*_tolerance_notes(scene, settings, mechanism), *solved.notes))
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -156,6 +161,18 @@ def _by_series(
             error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
         raise
     return motion(chain, scene.instants)
+
+
+def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> tuple[str, ...]:
+    """Where the chain is cut by another tolerance than the scene's."""
+    used = min(max(settings.tolerance, FINEST), COARSEST)
+    if used == settings.tolerance:
+        return ()
+    reason = (
+        "finer than the rounding of a sum of series" if used == FINEST else "too coarse to keep to one branch"
+    )
+    held = used * float(mechanism.unit) / TRUNCATION_SHARE
+    return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 
 def _by_newton(
@@ -174,12 +191,8 @@ def _by_newton(
         width = sum(3 * len(state) for state in states)
         work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
         samples = readout.samples(solved.times, states)
-
-        def coordinates(instants: Array) -> list[Array]:
-            places = np.searchsorted(solved.times, instants)
-            return [state[places] for state in solved.states]
-
-        prover = _prover(readout, functions, coordinates, lambda instants: ())
+        prover = SceneProver(readout, functions, solved.coordinates, _not_summed)
+        _require_known(prover, samples, scene.tolerance)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
 
@@ -194,43 +207,75 @@ def _by_newton(
     return motion(solved)
 
 
-def _prover(
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    coordinates: Callable[[Array], list[Array]],
-    summed: Callable[[Array], Sequence[Summed]],
-) -> Prover:
-    mechanism = readout.mechanism
+@dataclass(frozen=True)
+class SceneProver:
+    """Proves samples of a scene's motion.
 
-    def prover(samples: Samples, everything: bool) -> Proof:
-        times = samples.times
-        added = readout.offset(times)
+    Attributes:
+        functions: the laws of the inputs that drive the mechanism.
+        coordinates: gives y and the derivatives that were solved for at some of the instants.
+        summed: how these were summed; nothing if they were solved for.
+    """
+
+    readout: Readout
+    functions: Mapping[str, TimeFunction]
+    coordinates: Callable[[Array], list[Array]]
+    summed: Callable[[Array], Sequence[Summed]]
+
+    def __call__(self, samples: Samples, rates: bool = False) -> Proof:
+        """What is proven at each of the samples' times, of every number by itself if `rates`."""
+        return self.with_doubts(samples, self.doubts(samples.times), rates)
+
+    def doubts(self, times: Array) -> dict[str, Array]:
+        """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
+        return {name: function.rounding(times) for name, function in self.functions.items()}
+
+    def with_doubts(self, samples: Samples, laws: Mapping[str, Array], rates: bool = False) -> Proof:
+        """What would be proven if the laws' values were off by so much."""
+        mechanism, times = self.readout.mechanism, samples.times
+        added = self.readout.offset(times)
         offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
-        rounding = readout.chassis.rounding(times, mechanism.origin)
-        laws = {name: function.rounding(times) for name, function in functions.items()}
-        asked = _reported(readout, functions, samples, summed) if everything else None
-        return prove(mechanism, times, coordinates, samples.position, offset, rounding, laws, asked)
+        rounding = self.readout.chassis.rounding(times, mechanism.origin)
+        reported = self._reported(samples) if rates else None
+        position = samples.position
+        return prove(mechanism, times, self.coordinates, position, offset, rounding, laws, reported)
 
-    return prover
+    def _reported(self, samples: Samples) -> Reported:
+        """All numbers of samples, and what went into them beside the coordinates."""
+        readout = self.readout
+        return Reported(
+            numbers=Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)}),
+            chassis=readout.chassis,
+            laws=self.functions,
+            lines=readout.angle_lines,
+            axes=readout.angle_axes,
+            summed=self.summed,
+            body_loss=readout.body_loss,
+        )
 
 
-def _reported(
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    samples: Samples,
-    summed: Callable[[Array], Sequence[Summed]],
-) -> Reported:
-    """All numbers of samples, and what went into them beside the coordinates."""
-    numbers = Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)})
-    return Reported(
-        numbers,
-        readout.chassis,
-        functions,
-        readout.angle_lines,
-        readout.angle_axes,
-        summed,
-        readout.body_loss,
-    )
+def _not_summed(instants: Array) -> tuple[Summed, ...]:
+    return ()
+
+
+def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> None:
+    """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
+
+    Raises:
+        InputNotKnown: it does, and with the law's values as they are the pose is proven.
+    """
+    doubts = prover.doubts(samples.times)
+    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+        return
+    certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
+    unproven = ~np.isfinite(prover(samples).bound)
+    unproven &= np.isfinite(prover.with_doubts(samples, certain).bound)
+    if unproven.any():
+        place = int(np.argmax(unproven))
+        name = max(doubts, key=lambda name: float(doubts[name][place]))
+        function, instant = prover.functions[name], float(samples.times[place])
+        value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
+        raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
 
 
 def _motion(

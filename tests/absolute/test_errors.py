@@ -1,0 +1,306 @@
+"""The error estimated of each component: never below the true one, and never far above it."""
+
+import importlib.util
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import absolute
+from absolute.assemble import assemble
+from absolute.assembly import Mechanism
+from absolute.rounding import pose_doubt
+
+Array = NDArray[np.float64]
+Held = Callable[[float, float], dict[str, Array]]
+EPS = float(np.finfo(float).eps)
+PARTS = {"position": "x", "velocity": "v", "acceleration": "a"}
+MOVED = ("tie_rod_outer", "wheel_centre")
+SPINS = {"angular_velocity": 0, "angular_acceleration": 1}
+
+
+def load(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+form, struts, ends = load("moving_form"), load("struts"), load("test_dead_points")
+
+
+def shares(exact: Any, motion: absolute.Solution) -> Iterator[tuple[str, str, Array, Array]]:
+    """(quantity, name, error, estimate) of everything that a closed form knows, at the only instant."""
+    for quantity, part in PARTS.items():
+        for name, place in exact.points.items():
+            error = form.errors_of([getattr(x, part) for x in place], getattr(motion, quantity)[name][0])
+            yield quantity, name, error, getattr(motion, f"{quantity}_error")[name][0]
+    for quantity, order in SPINS.items():
+        for name, spin in exact.spins.items():
+            error = form.errors_of(spin[order], getattr(motion, quantity)[name][0])
+            yield quantity, name, error, getattr(motion, f"{quantity}_error")[name][0]
+
+
+def at(angle: float, rack: float, rates: Array) -> dict[str, Array]:
+    return {
+        "arm_angle": np.array([[angle, *rates[:2]]]),
+        "rack": np.array([[rack, *(200.0 * rates[2:])]]),
+    }
+
+
+def car_of(seed: int) -> tuple[dict[str, Array], str]:
+    closure = "drawn" if seed % 3 else "collinear"
+    car = struts.off_axis_strut(seed, seed % 2 == 0) if seed % 3 else struts.collinear_strut(seed)
+    return {"rack_centre": car["tie_rod_inner"], **car}, closure
+
+
+def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -> None:
+    largest = dict.fromkeys((*PARTS, *SPINS), 0.0)
+    relative: dict[str, list[float]] = {quantity: [] for quantity in largest}
+    solved = 0
+    for seed in range(300):
+        car, closure = car_of(seed)
+        random = np.random.default_rng(seed)
+        angle, rack = form.drawn_inputs(car)
+        goal = angle + random.uniform(-0.4, 0.4), rack + random.uniform(-50.0, 50.0)
+        inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
+        exact = form.moving_form(car, *(series[0] for series in inputs.values()), closure)
+        try:
+            motion = absolute.solve(absolute.macpherson(car, closure=closure), inputs, errors=True)
+        except absolute.PoseError:
+            continue
+        solved += 1
+        for quantity, name, error, estimate in shares(exact, motion):
+            assert (error <= estimate).all(), (seed, quantity, name)
+            told = estimate > 0
+            largest[quantity] = max(largest[quantity], *(error[told] / estimate[told]), 0.0)
+            value = np.linalg.norm(getattr(motion, quantity)[name][0])
+            if value > 0:
+                relative[quantity].append(float(estimate.max() / value))
+    assert solved > 250
+    for quantity, share in largest.items():
+        # Roundings are counted one by one: of thousands, some come near a tenth of the worst.
+        assert share > 0.05, quantity
+        # A fault of 1e-11 of a quantity stands out a hundred times.
+        assert np.median(relative[quantity]) < 1e-13, quantity
+
+
+@pytest.mark.parametrize("end", ends.ENDS)
+@pytest.mark.parametrize("before", [1e-14, 1e-13, 1e-12, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3])
+def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: float) -> None:
+    random = np.random.default_rng(int(-np.log10(before)))
+    strut = absolute.macpherson(end.car)
+    for share in random.uniform(1.0, 10.0, 4):
+        goal = [inside - share * before * out for inside, out in zip(end.inside, end.out, strict=True)]
+        inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
+        exact = form.moving_form(end.car, *(series[0] for series in inputs.values()), "drawn")
+        assert exact is not None
+        motion = absolute.solve(strut, inputs, errors=True)
+        for quantity, name, error, estimate in shares(exact, motion):
+            assert (error <= estimate).all(), (quantity, name)
+            # Only within some hundred roundings of the end may rates be anything.
+            assert np.isfinite(estimate).all() or (quantity != "position" and before <= 1e-13)
+
+
+@pytest.mark.parametrize("turns", [1.0, 1e3])
+def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> None:
+    # A slider crank: x = 50 cos a + sqrt(l^2 - y^2), y the pin's height, the crank turning evenly.
+    z, x, y = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    pin, piston = (50.0 * np.cos(1.1), 50.0 * np.sin(1.1), 0.0), (147.0, 0.0, 0.0)
+    axis, ends_of = absolute.Axis, absolute.Joint
+    model = absolute.Model(
+        {"pivot": (0.0, 0.0, 0.0), "pin": pin, "piston": piston},
+        "ground",
+        {"ground": ("pivot",), "crank": ("pivot", "pin"), "rod": ("pin", "piston"), "slider": ("piston",)},
+        {
+            "crank_pivot": ends_of("revolute", "ground", "crank", axis("pivot", z), axis("pivot", z)),
+            "crank_pin": ends_of("spherical", "crank", "rod", axis("pin"), axis("pin")),
+            "piston_pin": ends_of("universal", "slider", "rod", axis("piston", z), axis("piston", y)),
+            "bore": ends_of("prismatic", "ground", "slider", axis("pivot", x), axis("piston", x)),
+        },
+        {"angle": absolute.Input("ground", axis("pivot", x), "crank", "pin", "cosine", 50.0)},
+    )
+    angles = np.linspace(0.3, 2.8, 60)
+    series = np.stack([angles, np.full(60, turns), np.zeros(60)], -1)
+    motion = absolute.solve(model, {"angle": series}, errors=True)
+    share = dict.fromkeys(PARTS, 0.0)
+    with form.mp.workdps(form.DIGITS):
+        crank, rod = (form.fixed(line) for line in (pin, np.subtract(piston, pin)))
+        for k, row in enumerate(series):
+            along = form.number(50.0) * form.Jet(*map(form.mpf, row)).cosine()
+            height = form.dot(crank, crank) - along * along
+            place = along + (form.dot(rod, rod) - height).root()
+            for quantity, part in PARTS.items():
+                found, told = (getattr(motion, quantity + e)["piston"][k] for e in ("", "_error"))
+                error = form.errors_of([getattr(place, part)], found[:1])[0]
+                assert error <= told[0], (quantity, k)
+                share[quantity] = max(share[quantity], error / told[0])
+    assert min(share.values()) > 0.02, share
+
+
+def test_rows_close_to_what_they_are_rounded_from() -> None:
+    # At a pose that corrections have settled, what is left of a row is rounding, and not much less.
+    largest: dict[str, float] = {}
+    for seed in range(40):
+        car, closure = car_of(seed)
+        mechanism = Mechanism(absolute.macpherson(car, closure=closure))
+        try:
+            pose, _ = assemble(mechanism)
+        except absolute.PoseError:
+            continue
+        poses = mechanism.stack.place(pose.poses.rotation[None], pose.poses.origin[None])
+        inputs = mechanism.drawn_inputs.tolist()
+        target = mechanism.targets(inputs, [0.0, 0.0], [0.0, 0.0])[:1]
+        doubt = pose_doubt(mechanism, poses, target)
+        assert (doubt.known == np.abs(target - poses.values)).all()
+        for owner, left, rounded in zip(
+            mechanism.stack.owners, doubt.known[0], doubt.rounded[0], strict=True
+        ):
+            largest[owner] = max(largest.get(owner, 0.0), left / rounded)
+    assert max(largest.values()) < 1.0, largest
+    # The rack slides along an axis of coordinates, and nothing is rounded there.
+    assert np.median(list(largest.values())) > 0.02, largest
+
+
+def test_a_point_does_not_take_the_sensitivity_of_another() -> None:
+    end = next(end for end in ends.ENDS if end.limit == "rack")
+    goal = [inside - 1e-10 * out for inside, out in zip(end.inside, end.out, strict=True)]
+    motion = absolute.solve(absolute.macpherson(end.car), at(*goal, np.full(4, 0.5)), errors=True)
+    # The rack's own end moves with the rack, however near the tie rod is to its dead point.
+    assert motion.position_error["tie_rod_outer"].max() > 1e-9
+    assert motion.position_error["tie_rod_inner"].max() < 1e-11
+    # What is left of its velocity equation comes from a factorisation together with the fast bodies.
+    fast, slow = (motion.velocity_error[f"tie_rod_{end}"].max() for end in ("outer", "inner"))
+    assert slow < 1e-4 * fast
+
+
+@pytest.mark.parametrize("name", ["arm_angle", "rack"])
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_what_an_input_may_be_off_shows_as_the_motion_of_the_other_input(name: str, order: int) -> None:
+    car, closure = car_of(4)
+    strut = absolute.macpherson(car, closure=closure)
+    angle, rack = form.drawn_inputs(car)
+    inputs = at(angle + 0.1, rack - 5.0, np.array([0.7, -0.3, 0.4, 0.6]))
+    off = 1e-5 if name == "arm_angle" else 1e-3
+    doubt = np.zeros((1, 3))
+    doubt[0, order] = off
+    bare = absolute.solve(strut, inputs, errors=True)
+    told = absolute.solve(strut, inputs, errors=True, input_errors={name: doubt})
+    up, down = (absolute.solve(strut, {**inputs, name: inputs[name] + sign * doubt}) for sign in (1.0, -1.0))
+    for quantity in (*PARTS, *SPINS):
+        for point, series in getattr(told, f"{quantity}_error").items():
+            change = 0.5 * np.abs(getattr(up, quantity)[point] - getattr(down, quantity)[point])
+            # Exact to first order; the next is smaller by the shift itself, 1e-5 of the car.
+            added = series - getattr(bare, f"{quantity}_error")[point]
+            scale = 1e-4 * change.max() + 2e-12
+            assert np.allclose(added, change, rtol=1e-4, atol=scale), (quantity, point)
+            assert order > 0 or quantity != "position" or point not in MOVED or change.max() > 0.1 * off
+    # A shift of the arm turns the bodies as far as its rate turns them in that time.
+    if order == 0:
+        rate = {key: np.array([[*series[0, :1], 0.0, 0.0]]) for key, series in inputs.items()}
+        rate[name][0, 1] = off
+        turning = absolute.solve(strut, rate).angular_velocity
+        for body, turn in told.rotation_error.items():
+            assert np.allclose(turn, np.abs(turning[body]), rtol=1e-4, atol=1e-4 * turn.max() + 1e-13), body
+
+
+def test_beyond_what_the_inputs_may_be_off_from_a_dead_point_rates_may_be_anything() -> None:
+    end = ends.ENDS[0]
+    goal = [inside - 1e-6 * out for inside, out in zip(end.inside, end.out, strict=True)]
+    strut, inputs = absolute.macpherson(end.car), at(*goal, np.full(4, 0.5))
+    for off, finite in ((1e-8, True), (1e-5, False)):
+        doubt = {end.limit: np.array([[off, 0.0, 0.0]])}
+        motion = absolute.solve(strut, inputs, errors=True, input_errors=doubt)
+        for quantity in (*PARTS, *SPINS):
+            for name, error in getattr(motion, f"{quantity}_error").items():
+                assert not np.isnan(error).any(), (quantity, name)
+        assert np.isfinite(motion.velocity_error["wheel_centre"]).all() == finite
+        assert np.isfinite(motion.position_error["wheel_centre"]).all()
+        # Up to the end itself, and as far back, nothing is further away than told.
+        for shift in (min(off, 0.99e-6), -off):
+            moved = {name: series.copy() for name, series in inputs.items()}
+            moved[end.limit][0, 0] += shift * (end.out[0] or end.out[1])
+            there = absolute.solve(strut, moved, rates=False)
+            for name, error in motion.position_error.items():
+                change = np.abs(there.position[name] - motion.position[name])
+                # To the end itself no digit is lost: the fold is where it was expected.
+                assert (change <= error + 1e-3 * error.max()).all(), name
+
+
+def test_what_is_added_for_the_chassis_is_rounded_once_more(strut: absolute.Model, held: Held) -> None:
+    far = np.zeros((1, 3, 3))
+    far[0, 0] = 1e9, 0.0, 0.0
+    near, away = (
+        absolute.solve(strut, held(1.5, 3.0), chassis=chassis, errors=True) for chassis in (None, far)
+    )
+    for name, error in away.position_error.items():
+        assert np.allclose(
+            error - near.position_error[name], [0.5 * EPS * 1e9, 0, 0], rtol=1e-5, atol=0.5 * EPS * 1e3
+        ), name
+
+
+def test_errors_are_told_only_when_asked_for(strut: absolute.Model, held: Held) -> None:
+    bare = absolute.solve(strut, held(1.5, 3.0))
+    poses = absolute.solve(strut, held(1.5, 3.0), rates=False, errors=True)
+    told = absolute.solve(strut, held(1.5, 3.0), errors=True)
+    for quantity in (*PARTS, *SPINS, "rotation"):
+        assert not getattr(bare, f"{quantity}_error")
+        assert getattr(told, f"{quantity}_error")
+        assert bool(getattr(poses, f"{quantity}_error")) == (quantity in ("position", "rotation"))
+    for name in strut.points:
+        assert (told.position[name] == bare.position[name]).all()
+        assert (told.acceleration[name] == bare.acceleration[name]).all()
+        # Positions alone leave out nothing that positions need.
+        assert (poses.position_error[name] == told.position_error[name]).all()
+        with pytest.raises(ValueError, match="read-only"):
+            told.position_error[name][0] = 0.0
+    assert list(told.position_error) == list(told.position)
+
+
+def test_a_long_motion_has_the_errors_of_each_of_its_instants(
+    strut: absolute.Model, both: Callable[[Array], dict[str, Array]]
+) -> None:
+    inputs = both(np.linspace(0.0, 2.6, 40))
+    whole = absolute.solve(strut, inputs, errors=True)
+    tail = absolute.solve(strut, {name: series[30:] for name, series in inputs.items()}, errors=True)
+    for name in strut.points:
+        assert whole.velocity_error[name].shape == (40, 3)
+        # The same pose to rounding: a handful of the numbers that are left of an equation differ.
+        assert np.allclose(whole.velocity_error[name][30:], tail.velocity_error[name], rtol=0.5)
+    racks = np.array([0.0, 40.0, 80.0, 500.0])
+    with pytest.raises(absolute.UnreachableError) as caught:
+        absolute.solve(
+            strut,
+            {
+                "arm_angle": np.tile([np.pi / 2, 0.0, 0.0], (4, 1)),
+                "rack": np.stack([racks, 0 * racks, 0 * racks], -1),
+            },
+            errors=True,
+        )
+    assert caught.value.partial is not None
+    assert caught.value.partial.position_error["wheel_centre"].shape == (3, 3)
+    none = absolute.solve(strut, {name: series[:0] for name, series in inputs.items()}, errors=True)
+    assert none.position_error["wheel_centre"].shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("doubts", "say"),
+    [
+        ({"steer": np.zeros((1, 3))}, r"may name \['arm_angle', 'rack'\]; unknown: \['steer'\]"),
+        ({"rack": np.zeros((2, 3))}, "2 instants, the inputs 1"),
+        ({"rack": np.array([[0.0, -1.0, 0.0]])}, "magnitudes"),
+        ({"rack": np.array([[0.0, np.nan, 0.0]])}, "finite"),
+        ({"rack": np.zeros(3)}, "shape"),
+    ],
+)
+def test_input_errors_are_checked(strut: absolute.Model, held: Held, doubts: Any, say: str) -> None:
+    with pytest.raises(absolute.InputError, match=say):
+        absolute.solve(strut, held(1.5, 3.0), errors=True, input_errors=doubts)

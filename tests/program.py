@@ -1,0 +1,52 @@
+"""The program as a shell runs it: a process of its own, with short scenes."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pointcoord
+
+ROOT = Path(pointcoord.__file__).parent.parent
+PROGRAM = [sys.executable, "-m", "pointcoord"]
+BOUNCE = (ROOT / "pointcoord" / "scenes" / "bounce.toml").read_text(encoding="utf-8")
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": str(ROOT),
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+}
+
+
+def short_scene(folder: Path, name: str = "short.toml", **changes: str) -> str:
+    """A scene file of five instants, with other values of some keys."""
+    lines = BOUNCE.splitlines()
+    for key, value in {"samples": "5", **changes}.items():
+        (place,) = (i for i, line in enumerate(lines) if line.partition("=")[0].strip() == key)
+        lines[place] = f"{key} = {value}"
+    path = folder / name
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return str(path)
+
+
+# Laws of the arm that lead the car past its dead point, and out of the range of angles.
+PAST_ITS_END = {"arm_angle": "{ polynomial = [0.8, 0.8] }"}
+
+
+def complaints(err: str) -> list[str]:
+    """The lines on standard error that are no warnings or notes: the paper's car warns of its drawing."""
+    said = ("pointcoord: warning: ", "pointcoord: note: ")
+    return [line for line in err.splitlines() if not line.startswith(said)]
+
+
+def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
+    """Run the program to its end."""
+    options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more
+    return subprocess.run([*PROGRAM, *words], check=False, timeout=120, **options)
+
+
+def in_shell(script: str, *words: str, **more: object) -> subprocess.CompletedProcess[str]:
+    """Run a shell script in which "$@" is the program with its words."""
+    options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more
+    command = ["bash", "-c", script, "bash", *PROGRAM, *words]
+    return subprocess.run(command, check=False, timeout=120, **options)

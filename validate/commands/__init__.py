@@ -1,0 +1,1 @@
+"""The commands of the program: each adds its options and is run with a console."""

@@ -1,0 +1,186 @@
+"""`pointcoord validate`: scenes solved by several formulations, and every quantity compared."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pointcoord import Scene, SceneError
+from validate import report
+from validate.commands.usage import (
+    SCENE_HELP,
+    STANDARD_INPUT,
+    UsageError,
+    load_scene,
+    require_target,
+)
+from validate.document import Head, Journal
+from validate.errata import Finding, findings
+from validate.examined import Examined, examine
+from validate.exit_status import ExitStatus, combined
+from validate.formulations import NAMES, formulation
+from validate.output import Console, shown
+from validate.paper import PaperRow, compare_with_paper
+from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
+from validate.refusals import Refusal
+
+FIRST, SECOND = "pointcoord", "absolute"
+# Without names on the command line the paper's own algorithm is held to the other model too.
+FURTHER = ("pointcoord-newton", "absolute")
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser("validate", help="solve scenes by two formulations and compare them")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: the paper's scenes")
+    parser.add_argument(
+        "--first",
+        metavar="NAME",
+        help=f"one of {', '.join(NAMES)}; without --first and --second {FIRST} is held to {SECOND}, and "
+        f"{FURTHER[0]} as well",
+    )
+    parser.add_argument("--second", metavar="NAME", help="the other one")
+    parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
+    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    parser.set_defaults(run=run)
+
+
+@dataclass
+class _Results:
+    """What is there so far, as plain data and in counts."""
+
+    scenes: list[dict[str, Any]] = field(default_factory=list)
+    statuses: list[ExitStatus] = field(default_factory=list)
+    agreed: dict[tuple[str, str], int] = field(default_factory=dict)
+    printed: list[str] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+    unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
+    paper: Sequence[PaperRow] = ()
+
+    def add(self, examined: Examined) -> None:
+        self.scenes.append(report.examined_data(examined))
+        self.statuses.append(examined.status)
+        for outcome in examined.outcomes:
+            first, second = (s.formulation for s in outcome.solutions)
+            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.agreed
+        if examined.printed is not None:
+            self.printed.append(examined.name)
+            self.findings += findings([examined.printed])
+        if examined.unprinted is not None:
+            self.unprinted.append((examined.name, examined.unprinted))
+
+    def data(self) -> dict[str, Any]:
+        return {
+            "scenes": self.scenes,
+            "printed_formulas": [report.finding_data(finding) for finding in self.findings],
+            "printed_tables": report.paper_data(self.paper) if self.paper else None,
+        }
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Compare the scenes; each is said, and written as JSON, as soon as it is done.
+
+    Raises:
+        UsageError: the options do not go together.
+        UnknownFormulation, MissingPackage: a formulation is not there.
+        OutputError: the results cannot be written.
+    """
+    names = options.scenes or list(DEFAULT_SCENES)
+    pairs = _pairs(options)
+    if names.count(STANDARD_INPUT) > 1:
+        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
+    require_target(options.json, "--json", tuple(names))
+    console.quiet, console.mute = options.quiet, options.json == "-"
+    if not console.quiet or console.mute:
+        console.require("use --quiet, or --quiet --json FILE")
+    for name in dict.fromkeys(name for pair in pairs for name in pair):
+        formulation(name)  # found before any scene is read
+    journal = Journal(options.json, Head.of("validate", options.command), console)
+    results = _Results()
+    status, complete = ExitStatus.INTERRUPTED, False
+    try:
+        for name, scene in _loaded(names, console):
+            if isinstance(scene, Scene):
+                _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
+            else:
+                examined = scene
+            results.add(examined)
+            journal.keep(results.data, _finished(results, names))
+        if not options.scenes:
+            results.paper = compare_with_paper()
+        _say_at_the_end(results, pairs, len(names), console)
+        status, complete = combined(results.statuses), True
+    except KeyboardInterrupt:
+        raise
+    except BaseException:
+        status = ExitStatus.NOT_FINISHED
+        raise
+    finally:
+        if complete or results.scenes:
+            journal.close(results.data, status, complete, _finished(results, names))
+    return status
+
+
+def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
+    first, second = options.first or FIRST, options.second or SECOND
+    if options.first == "" or options.second == "":
+        raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
+    if first == second:
+        others = ", ".join(name for name in NAMES if name != first)
+        raise UsageError(
+            f"{first!r} is to be compared with itself, which tells nothing; "
+            f"give another --first or --second: {others}"
+        )
+    alone = options.first is None and options.second is None
+    return ((first, second), FURTHER) if alone else ((first, second),)
+
+
+def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | Examined]]:
+    """The scenes, all read before any is solved; of those that cannot be, it is said at once why not."""
+    scenes: list[tuple[str, Scene | Examined]] = []
+    for name in names:
+        try:
+            scenes.append((name, load_scene(name)))
+        except SceneError as error:
+            bad = Examined(name=shown(name), problem=str(error))
+            console.complain(bad.complaint)
+            scenes.append((name, bad))
+    return scenes
+
+
+def _say(examined: Examined, console: Console) -> None:
+    if examined.complaint:
+        console.complain(examined.complaint)
+    else:
+        for warning in examined.warnings:
+            console.warn(f"{examined.name}: {warning}")
+    for outcome in examined.outcomes[:1]:
+        notes = "".join(f"\n  note: {note}" for note in (*examined.warnings, *examined.defaults))
+        console.say(report.outcome_text(outcome) + notes + "\n")
+    for outcome in examined.outcomes[1:]:
+        # The tables of a further pair would say nearly the same.
+        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)
+        console.say(text + "\n")
+
+
+def _finished(results: _Results, names: Sequence[str]) -> str:
+    return f"{len(results.scenes)} of {len(names)} scenes"
+
+
+def _say_at_the_end(
+    results: _Results, pairs: Sequence[tuple[str, str]], count: int, console: Console
+) -> None:
+    if results.printed:
+        console.say(report.findings_text(results.findings, results.printed) + "\n")
+    for name, why in results.unprinted:
+        console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
+    if results.paper:
+        console.say(report.paper_text(results.paper) + "\n")
+    told = [
+        f"{results.agreed.get(pair, 0)} of {count} {'scenes agree ' if i == 0 else ''}between {pair[0]} and "
+        f"{pair[1]}"
+        for i, pair in enumerate(pairs)
+    ]
+    console.say(", ".join(told) + ".")

@@ -1,0 +1,82 @@
+"""`pointcoord hard`: the cases that are known to be hard, held to the truth."""
+
+from __future__ import annotations
+
+import argparse
+
+from validate.commands.usage import UsageError, require_target
+from validate.document import Head, Journal
+from validate.exit_status import ExitStatus
+from validate.output import Console
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser(
+        "hard", help="try the cases that are known to be hard, and hold them to the truth"
+    )
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
+    parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
+    parser.add_argument(
+        "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
+    )
+    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Try the cases; each is said, and written as JSON, as soon as it is done.
+
+    Raises:
+        UsageError: no case has such a name, or no file.
+        MissingPackage: the truth, or a formulation, is not there.
+        OutputError: the results cannot be written.
+    """
+    require_target(options.json, "--json")
+    # The truth needs packages that the solvers do without.
+    from validate.hard import catalogue
+    from validate.hard import report as hard_report
+    from validate.hard import run as hard_run
+
+    try:
+        cases = catalogue.chosen(options.cases)
+    except catalogue.UnknownCase as error:
+        raise UsageError(str(error)) from None
+    console.quiet, console.mute = options.quiet, options.json == "-"
+    if not console.quiet or console.mute:
+        console.require("use --quiet, or --quiet --json FILE")
+    kind = "hard-list" if options.list else "hard"
+    journal = Journal(options.json, Head.of(kind, options.command), console)
+    if options.list:
+        console.say(hard_report.listing(cases))
+        journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
+        return ExitStatus.AGREE
+    results: list[hard_run.Examined] = []
+    headings: list[str] = []
+
+    def finished() -> str:
+        return f"{len(results)} of {hard_report.numbered(len(cases), 'case')}"
+
+    def tell(result: hard_run.Examined) -> None:
+        results.append(result)
+        if result.case.group not in headings:
+            headings.append(result.case.group)
+            console.say(f"== {result.case.group}\n")
+        console.say(hard_report.case_text(result, bool(options.cases)) + "\n")
+        journal.keep(lambda: hard_report.results_data(results), finished())
+
+    status, complete = ExitStatus.INTERRUPTED, False
+    try:
+        hard_run.run(cases, tell)
+        console.say(hard_report.summary_text(results))
+        status = ExitStatus.AGREE if hard_run.as_expected(results) else ExitStatus.DISAGREE
+        complete = True
+    except KeyboardInterrupt:
+        raise
+    except BaseException:
+        status = ExitStatus.NOT_FINISHED
+        raise
+    finally:
+        if results:
+            journal.close(lambda: hard_report.results_data(results), status, complete, finished())
+    return status

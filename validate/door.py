@@ -1,0 +1,66 @@
+"""Every way out of the program: what an error means to the one who called it, in one line and a status."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+
+from pointcoord import PointcoordError
+from validate.commands.usage import UsageError
+from validate.examined import told_failure
+from validate.exit_status import ExitStatus
+from validate.extras import MissingPackage
+from validate.files import OutputError, UnknownEnding
+from validate.formulation import FormulationError
+from validate.formulations import UnknownFormulation
+from validate.output import Console
+
+# In the order in which they are looked for: an unknown ending is an output error of its own.
+MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
+    (UnknownEnding, ExitStatus.WRONG_INPUT),
+    (OutputError, ExitStatus.NOT_FINISHED),
+    ((UsageError, UnknownFormulation, MissingPackage), ExitStatus.WRONG_INPUT),
+    (FormulationError, ExitStatus.NO_VERDICT),
+    (PointcoordError, ExitStatus.WRONG_INPUT),
+)
+
+
+def guarded(action: Callable[[Console], ExitStatus], program: str = "pointcoord") -> int:
+    """Run an action; whatever ends it, one line on standard error says so, and the status is documented.
+
+    A defect is told in one line too; `python -X dev` shows where it came from.
+    """
+    console = Console(program)
+    try:
+        status = action(console)
+        console.flush()
+        return status
+    except BaseException as error:
+        ending = _ending(error, console)
+        if ending is None or (ending[0] is ExitStatus.NOT_FINISHED and sys.flags.dev_mode):
+            raise
+        status, message = ending
+    # Outside of the handler: memory that the error held on to is free here.
+    console.complain(message)
+    return status
+
+
+def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | None:
+    """Status and message of an error; None for the end that the interpreter itself was asked for."""
+    if any(isinstance(one, KeyboardInterrupt) for one in _chain(error)):
+        return ExitStatus.INTERRUPTED, f"interrupted; {'; '.join(console.written) or 'nothing is written'}"
+    for kind, status in MEANINGS:
+        if isinstance(error, kind):
+            return status, str(error)
+    if not isinstance(error, Exception):
+        return None
+    name = "" if isinstance(error, MemoryError) else f"{type(error).__name__}: "
+    return ExitStatus.NOT_FINISHED, f"{name}{told_failure(error)}"
+
+
+def _chain(error: BaseException) -> Iterator[BaseException]:
+    """An error and those that it came from: Ctrl-C in the import of a library may end as another error."""
+    one: BaseException | None = error
+    while one is not None:
+        yield one
+        one = one.__cause__ or one.__context__

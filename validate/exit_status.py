@@ -1,0 +1,58 @@
+"""The exit statuses of the program, in one place: what each means, and what several scenes come to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """What a run ends with."""
+
+    AGREE = 0
+    DISAGREE = 1
+    WRONG_INPUT = 2
+    NO_VERDICT = 3
+    NOT_FINISHED = 4
+    INTERRUPTED = 130
+
+    @property
+    def verdict(self) -> str:
+        """The status in words, as in the JSON."""
+        return self.name.lower().replace("_", " ")
+
+
+MEANINGS = {
+    ExitStatus.AGREE: "all agree; of a command that compares nothing: done",
+    ExitStatus.DISAGREE: "something disagrees, and the table says what",
+    ExitStatus.WRONG_INPUT: "the command line or a scene is wrong, or a package is missing",
+    ExitStatus.NO_VERDICT: "no verdict: a formulation refuses a scene, or a comparison tests nothing",
+    ExitStatus.NOT_FINISHED: "could not finish or write: a full disk, no memory, an error of the program",
+    ExitStatus.INTERRUPTED: "interrupted by Ctrl-C",
+}
+
+# The first of these that any scene has is the status of the run. A disagreement is news whatever became of
+# the other scenes; a scene that was not finished could be one.
+ORDER = (
+    ExitStatus.DISAGREE,
+    ExitStatus.NOT_FINISHED,
+    ExitStatus.WRONG_INPUT,
+    ExitStatus.NO_VERDICT,
+    ExitStatus.AGREE,
+)
+
+HELP = "\n".join(
+    (
+        "exit status:",
+        *(f"  {status.value:>3}  {meaning}" for status, meaning in MEANINGS.items()),
+        f"Of several scenes the first of {', '.join(str(status.value) for status in ORDER)} counts that any "
+        "of them has; but a run\nwhose results cannot be written ends with 4, and an interrupted one with "
+        "130, whatever they are.",
+    )
+)
+
+
+def combined(statuses: Iterable[ExitStatus]) -> ExitStatus:
+    """The status of a run from those of its scenes."""
+    found = set(statuses)
+    return next((status for status in ORDER if status in found), ExitStatus.AGREE)

@@ -1,0 +1,27 @@
+"""What the program needs besides the solver, and what to say where it is not there."""
+
+from __future__ import annotations
+
+
+class MissingPackage(ImportError):
+    """A part of the program needs a package that is not installed, or that does not load.
+
+    Args:
+        part: the part, such as a formulation's name.
+        error: what the import of the package raised.
+    """
+
+    def __init__(self, part: str, error: ImportError) -> None:
+        self.part = part
+        self.package = error.name or "pin"
+        if "pointcoord[validate]" in str(error):
+            # The part says it itself.
+            super().__init__(str(error), name=error.name)
+            return
+        missing = isinstance(error, ModuleNotFoundError)
+        problem = "is not installed" if missing else f"does not load ({' '.join(str(error).split())})"
+        super().__init__(
+            f"{part!r} needs the package {self.package!r}, which {problem}; "
+            "try: pip install 'pointcoord[validate]'",
+            name=error.name,
+        )
