@@ -191,7 +191,7 @@ def _by_newton(
         width = sum(3 * len(state) for state in states)
         work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
         samples = readout.samples(solved.times, states)
-        prover = SceneProver(readout, functions, solved.coordinates, _nothing_summed)
+        prover = SceneProver(readout, functions, solved.coordinates, _not_summed)
         _require_known(prover, samples, scene.tolerance)
         cost = pose.work + solved.work + work
         return _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
@@ -207,11 +207,6 @@ def _by_newton(
     return motion(solved)
 
 
-def _nothing_summed(instants: Array) -> tuple[Summed, ...]:
-    """Newton's poses are reported as they were solved."""
-    return ()
-
-
 @dataclass(frozen=True)
 class SceneProver:
     """Proves samples of a scene's motion.
@@ -219,7 +214,7 @@ class SceneProver:
     Attributes:
         functions: the laws of the inputs that drive the mechanism.
         coordinates: gives y and the derivatives that were solved for at some of the instants.
-        summed: gives what the reported numbers were summed from there.
+        summed: how these were summed; nothing if they were solved for.
     """
 
     readout: Readout
@@ -227,22 +222,40 @@ class SceneProver:
     coordinates: Callable[[Array], list[Array]]
     summed: Callable[[Array], Sequence[Summed]]
 
-    def __call__(self, samples: Samples, everything: bool = False) -> Proof:
-        """What is proven at each of the samples' times."""
-        return self.with_doubts(samples, self.doubts(samples.times), everything)
+    def __call__(self, samples: Samples, rates: bool = False) -> Proof:
+        """What is proven at each of the samples' times, of every number by itself if `rates`."""
+        return self.with_doubts(samples, self.doubts(samples.times), rates)
 
     def doubts(self, times: Array) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
         return {name: function.rounding(times) for name, function in self.functions.items()}
 
-    def with_doubts(self, samples: Samples, laws: Mapping[str, Array], everything: bool = False) -> Proof:
+    def with_doubts(self, samples: Samples, laws: Mapping[str, Array], rates: bool = False) -> Proof:
         """What would be proven if the laws' values were off by so much."""
         mechanism, times = self.readout.mechanism, samples.times
         added = self.readout.offset(times)
         offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
         rounding = self.readout.chassis.rounding(times, mechanism.origin)
-        asked = _reported(self.readout, self.functions, samples, self.summed) if everything else None
-        return prove(mechanism, times, self.coordinates, samples.position, offset, rounding, laws, asked)
+        reported = self._reported(samples) if rates else None
+        position = samples.position
+        return prove(mechanism, times, self.coordinates, position, offset, rounding, laws, reported)
+
+    def _reported(self, samples: Samples) -> Reported:
+        """All numbers of samples, and what went into them beside the coordinates."""
+        readout = self.readout
+        return Reported(
+            numbers=Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)}),
+            chassis=readout.chassis,
+            laws=self.functions,
+            lines=readout.angle_lines,
+            axes=readout.angle_axes,
+            summed=self.summed,
+            body_loss=readout.body_loss,
+        )
+
+
+def _not_summed(instants: Array) -> tuple[Summed, ...]:
+    return ()
 
 
 def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> None:
@@ -263,25 +276,6 @@ def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> N
         function, instant = prover.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
         raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
-
-
-def _reported(
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    samples: Samples,
-    summed: Callable[[Array], Sequence[Summed]],
-) -> Reported:
-    """All numbers of samples, and what went into them beside the coordinates."""
-    numbers = Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)})
-    return Reported(
-        numbers,
-        readout.chassis,
-        functions,
-        readout.angle_lines,
-        readout.angle_axes,
-        summed,
-        readout.body_loss,
-    )
 
 
 def _motion(

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.scene import MechanismPart, Scene
-from validate.absolute_accuracy import claims
 from validate.extras import MissingPackage
 from validate.formulation import AccuracyError, FormulationError, Solution
 from validate.inputs import rates
 
 try:
     import absolute
+    from validate.absolute_accuracy import claims
 except ModuleNotFoundError as error:
     raise MissingPackage("absolute", error) from None
 

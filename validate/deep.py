@@ -33,6 +33,7 @@ from validate.refusals import same_reason, why_refused
 from validate.verdicts import NEITHER_WRONG, NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 
 MODELS = ("pointcoord", "absolute")
+ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 HELD = 20  # every so many scenes are held to the truth although both models agree
 # What makes the status 1; an answer that stands alone and is wrong is one of them.
 FAULTY = (
@@ -43,7 +44,6 @@ FAULTY = (
     "agreed, the truth: no such pose",
     "answer wrong",
 )
-ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 
 
 @dataclass(frozen=True)
