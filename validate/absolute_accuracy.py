@@ -1,7 +1,9 @@
 r"""What the absolute model claims of its accuracy: its own estimates, and what reporting rounds.
 
 The model estimates the error of every point's and body's motion from what its equations are rounded from,
-and measures lengths from a place near the car. To this come the sum with that place, rounded by u of the
+as four standard deviations of the counted roundings, and measures lengths from a place near the car. A
+scene has thousands of numbers, of which one in 16,000 goes beyond four deviations and none beyond eight, so
+twice the estimate is claimed. To this come the sum with that place, rounded by u of the
 result, and the chassis' displacement along `up`, u of it. An angle of a line a, seen along
 z = a . right + i a . up, is off by
 
@@ -14,6 +16,7 @@ rotation times a, with the rounding of the ends; the smaller of the two.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +49,7 @@ def claims(
         AccuracyError: the model does not know the error of a number.
     """
     count = len(next(iter(position.values())))
+    solved = _twice(solved)
     moved = np.zeros((3, count, 3)) if chassis is None else EPS * np.abs(np.moveaxis(chassis, 1, 0))
     return Accuracy(
         condition=np.ones(count) if solved.condition is None else solved.condition,
@@ -58,6 +62,23 @@ def claims(
         angular_velocity=solved.angular_velocity_error,
         angular_acceleration=solved.angular_acceleration_error,
         wheel={name: _angle(part, solved, line) for name, line in lines.items()},
+    )
+
+
+def _twice(solved: absolute.Solution) -> absolute.Solution:
+    """The solution with twice its estimates."""
+
+    def twice(estimates: Arrays) -> dict[str, Array]:
+        return {name: 2.0 * estimate for name, estimate in estimates.items()}
+
+    return replace(
+        solved,
+        position_error=twice(solved.position_error),
+        velocity_error=twice(solved.velocity_error),
+        acceleration_error=twice(solved.acceleration_error),
+        angular_velocity_error=twice(solved.angular_velocity_error),
+        angular_acceleration_error=twice(solved.angular_acceleration_error),
+        rotation_error=twice(solved.rotation_error),
     )
 
 
