@@ -194,7 +194,7 @@ def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Ar
         level(side.claims[quantity].values(), side.numbers[quantity].values(), side.condition)
         for side in (one, two)
     ]
-    apart = gap.reshape(len(gap), -1).max(axis=-1) > 0.0
+    apart = gap.reshape(len(gap), -1).max(axis=-1) > SMALLEST
     loose = untested(*held, *levels) & apart
     verdict: Verdict = "agrees"
     if any(claim is None for claim in claims):
