@@ -246,7 +246,7 @@ def stopped(
         y: coordinates, shape (..., size).
         goal: known coordinates, shape (..., known coordinates).
         unfinished: shape (...).
-        change: how far each known coordinate would still go; from y to the goal unless given.
+        change: how far each known coordinate would still go, with its sign; from y to the goal unless given.
     """
     member = tuple(np.argwhere(unfinished)[0])
     known = y[..., mechanism.map.unknowns :]
@@ -255,18 +255,34 @@ def stopped(
         values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
         return {name: float(value[member]) for name, value in values.items()}
 
-    first = mechanism.map.unknowns
-    left = np.broadcast_to(np.abs(goal - known) if change is None else change, known.shape)
-    going = {
-        drive.input: float(left[..., mechanism.layout.scalar(drive.coordinate) - first][member])
-        for drive in mechanism.topology.drives
-    }
+    balance = weakest_balance(factors.matrix[member])
+    left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
+    pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
     return AssemblyError(
         problem,
         reached=told(known),
         wanted=told(goal),
         condition=float(factors.condition[member]),
-        reduce=max(going, key=going.__getitem__) if any(going.values()) else "",
-        limits=mechanism.topology.strongest(weakest_balance(factors.matrix[member])),
+        reduce=max(pushes, key=pushes.__getitem__) if any(pushes.values()) else "",
+        limits=mechanism.topology.strongest(balance),
         instant=instant,
     )
+
+
+def _pushes(mechanism: Mechanism, y: Array, forces: Array, left: Array) -> dict[str, float]:
+    """How far each input pushes across the end of a path.
+
+    There C_u loses rank: forces that hold each other in balance do no work on any motion of the unknowns, so
+    what is left of the inputs' way, C_w dw, works against them alone.
+
+    Args:
+        forces: the balance, one per unscaled row. left: of every known coordinate, with its sign.
+    """
+    work = {}
+    for drive in mechanism.topology.drives:
+        place = mechanism.layout.scalar(drive.coordinate)
+        along = np.zeros_like(y)
+        along[place] = left[place - mechanism.map.unknowns]
+        work[drive.input] = float(forces @ (2.0 * mechanism.map.polar(y, along)))
+    total = sum(work.values())
+    return {name: part * (1.0 if total >= 0.0 else -1.0) for name, part in work.items()}

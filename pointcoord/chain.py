@@ -260,13 +260,13 @@ def _cannot_pass(
 ) -> AssemblyError | MotionTooRough:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
-    # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not.
-    span = stop - instant
+    # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not: the first of
+    # their rates that is not zero.
     laws = mechanism.known_series({name: f.series(instant, 4) for name, f in functions.items()})
-    with np.errstate(over="ignore", under="ignore"):
-        change = sum(np.abs(laws[..., k, :]) * span**k for k in range(1, 5))
+    moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
+    change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
     problem = "the motion cannot pass a singular pose"
-    error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, np.asarray(change))
+    error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, change)
     error.partial = partial
     # Near a lock the condition number has grown as the inverse root of the shortest step.
     if error.condition > REGULAR:

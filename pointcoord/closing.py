@@ -18,6 +18,7 @@ from pointcoord.mechanism import Mechanism
 Array = NDArray[np.float64]
 
 NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so more than that is no rounding
+NOTICED_SHARE = 2e-4  # of the size: that tenth of a car of half a metre, for cars in other units than mm
 ROUNDING = 1e-11  # of the size: a hundred roundings, 500 times as far where the pose is badly conditioned
 ALLOWED = 0.01  # of the car's size: more than that is another car
 
@@ -57,7 +58,12 @@ class Closing:
     @property
     def noticeable(self) -> bool:
         """Whether the user should be warned."""
-        return self.largest > NOTICED
+        return self.largest > min(NOTICED, NOTICED_SHARE * self.size)
+
+    @property
+    def moves(self) -> bool:
+        """Whether a point moves by more than rounding."""
+        return self.largest > ROUNDING * self.size
 
     @property
     def changes_the_car(self) -> bool:
@@ -67,7 +73,7 @@ class Closing:
     @property
     def words(self) -> str:
         """Largest movement and point, and what the drawing misses, in a line."""
-        if self.largest <= ROUNDING * self.size:
+        if not self.moves:
             return f"the drawing closes: no point moves by more than {self.largest:.1g} mm"
         why = ", ".join(f"{name} by {miss:.3g} mm" for name, miss in self.misses.items())
         missed = f"; the drawing misses {why}" if why else ""

@@ -18,7 +18,7 @@ from pointcoord.linear import weakest_balance
 from pointcoord.mechanism import Mechanism
 from pointcoord.readout import wheel_angles
 from pointcoord.scene import Scene
-from pointcoord.simulation import scene_mechanism
+from pointcoord.simulation import require_scene, scene_mechanism
 
 Array = NDArray[np.float64]
 
@@ -61,6 +61,7 @@ def standing(scene: Scene) -> Standing:
         SceneError: the hardpoints make no mechanism.
         AssemblyError: the drawing cannot be closed.
     """
+    require_scene(scene)
     mechanism = scene_mechanism(scene)
     closed = close_drawing(mechanism)
     first = mechanism.map.unknowns

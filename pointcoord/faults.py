@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 SHAPES = {
     "missing": "this key is missing",
     "tuple_type": "Input should be a list",
-    "model_type": "Input should be a table",
+    "model_type": "Input should be a table, such as { constant = 0.0 } for an input",
     "dict_type": "Input should be a table",
 }
 LONGEST = 60
@@ -19,6 +19,8 @@ LONGEST = 60
 def problem_of(fault: ErrorDetails) -> str:
     """One fault as a problem; a fault of our own validators shows its value itself."""
     kind, given = fault["type"], fault["input"]
+    if kind == "missing" and fault["loc"] and isinstance(fault["loc"][-1], int):
+        return f"a number is missing: there are {fault['loc'][-1]} where three belong"
     said = fault["msg"].removeprefix("Value error, ").replace("Tuple", "List")
     problem = SHAPES.get(kind, said.partition(" after validation")[0])
     if kind in ("missing", "value_error") or isinstance(given, dict | BaseModel):

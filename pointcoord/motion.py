@@ -130,7 +130,8 @@ class Motion(Samples):
     sizer: Callable[[], tuple[float, ...]]
 
     def __repr__(self) -> str:
-        return f"<Motion by {self.method}: {self._span}; {self._quantities}>"
+        noted = f"; {len(self.notes)} notes, the first: {self.notes[0]}" if self.notes else ""
+        return f"<Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
 
     def proof(self, rates: bool = False) -> Proof:
         """Proven error bound, condition number and sensitivity of the pose at each of the times.

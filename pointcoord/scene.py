@@ -5,7 +5,9 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from difflib import get_close_matches
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from pointcoord.drawing_doubts import drawing_doubts
 from pointcoord.effects import EFFECTS
+from pointcoord.errors import SceneError
 from pointcoord.even_instants import even_instants
 from pointcoord.faults import plain_number, shown
 from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
@@ -57,7 +61,11 @@ class MechanismPart(Part):
         extra = [name for name in points if name not in topology.points]
         missing = [name for name in topology.required_points if name not in points]
         if extra:
-            raise ValueError(f"no point is called {shown(extra[0])}; allowed: {', '.join(topology.points)}")
+            near = get_close_matches(extra[0], topology.points, n=1)
+            meant = f" (did you mean {near[0]!r}?)" if near else ""
+            raise ValueError(
+                f"no point is called {shown(extra[0])}{meant}; allowed: {', '.join(topology.points)}"
+            )
         if missing:
             needed = ", ".join(topology.required_points)
             raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
@@ -85,7 +93,8 @@ class MechanismPart(Part):
             raise ValueError(
                 f"wheel_centre lies {inboard:.6g} mm inboard of strut_top for side = {self.side!r}; allowed: "
                 f"a wheel outboard of its strut top, here towards {'-' if self.side == 'left' else '+'}right "
-                f"{self.right}; check the signs of the points, or try side = {other!r}"
+                f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
+                f"if it is a wheel of the other side, try side = {other!r}"
             )
         return self
 
@@ -109,6 +118,19 @@ class MechanismPart(Part):
         if "wheel_axis_inner" in self.points:
             return ()
         return ("wheel_axis_inner is not given: the wheel's spin axis starts at strut_lower",)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What looks wrong with the drawing although it can be solved, in words."""
+        topology = self.topology
+        return drawing_doubts(
+            {name: np.array(place) for name, place in self.points.items()},
+            np.array(self.up),
+            self.outboard,
+            topology.wheel_axis,
+            topology.steering_axis,
+            {"wheel_axis_inner"},
+        )
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -273,6 +295,9 @@ class Scene(Part):
             SceneError: there is no such scene, it is not written as it must be, or it is no regular file of
                 at most 64 MB.
         """
+        if not isinstance(name, str | os.PathLike):
+            allowed = f"a path, or one of {', '.join(built_in_scenes())}"
+            raise SceneError(shown(name), "", f"is a {type(name).__name__}, and names no scene", allowed)
         if str(name) in built_in_scenes():
             text = resources.files("pointcoord").joinpath("scenes", f"{name}.toml").read_bytes()
         else:

@@ -25,6 +25,7 @@ from pointcoord.errors import (
     SceneError,
     UnknownName,
 )
+from pointcoord.faults import shown
 from pointcoord.hardpoints import build_mechanism
 from pointcoord.inputs import TimeFunction
 from pointcoord.instants import Solved, solve_instants, square_velocity_term
@@ -61,6 +62,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
     """
+    require_scene(scene)
     if method not in ("series", "newton", "printed"):
         raise UnknownName("method", method, ("series", "newton", "printed"))
     # Its dictionaries can be written after it was read.
@@ -95,8 +97,19 @@ def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
             "mechanism.points",
             f"{moved.words}: that is another car",
             f"at most {ALLOWED:.0%} of the car's size, {ALLOWED * moved.size:.3g} mm; draw the points that "
-            "miss where they belong, or ask for the paper's strut with closure = 'collinear'",
+            "miss where they belong",
         )
+
+
+def require_scene(scene: object) -> None:
+    """Find what is no scene, such as the name of one.
+
+    Raises:
+        SceneError: it is none.
+    """
+    if not isinstance(scene, Scene):
+        allowed = "a Scene, as Scene.load(name) gives it"
+        raise SceneError(shown(scene), "", f"is a {type(scene).__name__}, and no scene", allowed)
 
 
 def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
@@ -152,7 +165,8 @@ def _by_series(
         samples = sampler(instants)
         _require_known(prover, samples, scene.tolerance)
         solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes)
-        return replace(solved, notes=(*_tolerance_notes(scene, settings, mechanism), *solved.notes))
+        said = (*_drawing_notes(scene, moved), *_tolerance_notes(scene, settings, mechanism))
+        return replace(solved, notes=(*said, *solved.notes))
 
     try:
         chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
@@ -161,6 +175,11 @@ def _by_series(
             error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
         raise
     return motion(chain, scene.instants)
+
+
+def _drawing_notes(scene: Scene, moved: Closing) -> tuple[str, ...]:
+    """How the solved car differs from the drawn one, and what looks wrong with the drawing."""
+    return (*((moved.words,) if moved.noticeable else ()), *scene.mechanism.doubts)
 
 
 def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> tuple[str, ...]:
@@ -194,7 +213,8 @@ def _by_newton(
         prover = SceneProver(readout, functions, solved.coordinates, _not_summed)
         _require_known(prover, samples, scene.tolerance)
         cost = pose.work + solved.work + work
-        return _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
+        found = _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
+        return replace(found, notes=(*_drawing_notes(scene, moved), *found.notes))
 
     try:
         solved = solve_instants(

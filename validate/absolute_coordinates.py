@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.closing import ALLOWED
+from pointcoord.errors import SceneError
 from pointcoord.scene import MechanismPart, Scene
 from validate.extras import MissingPackage
 from validate.formulation import AccuracyError, FormulationError, Solution
@@ -44,7 +46,8 @@ class AbsoluteCoordinates:
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(near, up=part.up, right=part.right, closure=closure_of(part))
+            model = absolute.macpherson(near, up=part.up, right=part.right, closure=part.closure)
+            _require_the_drawn_car(scene, model)
             solved = absolute.solve(
                 model, inputs, chassis=chassis, rates=needs_rates, conditions=True, errors=True
             )
@@ -67,6 +70,27 @@ class AbsoluteCoordinates:
             angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
             wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
             accuracy=accuracy,
+        )
+
+
+def _require_the_drawn_car(scene: Scene, model: absolute.Model) -> None:
+    """Refuse a drawing that this model's own closing makes another car of, as pointcoord does with its own.
+
+    Raises:
+        SceneError: a point moves by more than is allowed.
+    """
+    if scene.mechanism.closure != "drawn":
+        return
+    movement = absolute.close_drawing(model).movement
+    point = max(movement, key=lambda name: movement[name])
+    limit = ALLOWED * extent(scene.mechanism)
+    if movement[point] > limit:
+        raise SceneError(
+            scene.title or "scene",
+            "mechanism.points",
+            f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
+            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw strut_rod_end on the strut axis and "
+            "tie_rod_inner on the line of the rack",
         )
 
 
@@ -119,11 +143,6 @@ def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str
 
 def angle_lines(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, tuple[str, str]]:
     """The lines that the wheel angles are of, from point to point."""
-    upper = "strut_top" if closure_of(part) == "drawn" else "strut_lower"
+    upper = "strut_top" if part.closure == "drawn" else "strut_lower"
     hub = "wheel_axis_inner" if "wheel_axis_inner" in position else "strut_lower"
     return {"camber": (hub, "wheel_centre"), "kingpin": ("lower_ball_joint", upper)}
-
-
-def closure_of(part: MechanismPart) -> str:
-    """What the scene says of the strut; "collinear" where scenes cannot say it."""
-    return str(getattr(part, "closure", "collinear"))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.scene import Scene
+from pointcoord.simulation import require_scene
 from validate.formulation import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations import formulation
 from validate.given import Given, given
@@ -122,6 +123,7 @@ def compare(
         FormulationError: one of them refuses the scene, or gives what is no solution.
         SceneError: the scene's own hardpoints make no mechanism.
     """
+    require_scene(scene)
     one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
     return compare_solutions(scene, one, two, name or scene.title or "scene")
 
@@ -146,7 +148,7 @@ def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> 
     instants = scene.instants
     first, second = given(one, instants), given(two, instants)
     both = first.found & second.found
-    notes = (*one.notes, *two.notes, *first.notes, *second.notes)
+    notes = tuple(dict.fromkeys((*one.notes, *two.notes, *first.notes, *second.notes)))
     first, second = first.at(both), second.at(both)
     rows: list[Comparison] = []
     missing: list[str] = []

@@ -177,7 +177,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
             break  # a scene that fills the memory once would do so again, after a long time
     refusals |= {one.name: r for one in once.values() if (r := _refusal(one, name, scene)) is not None}
     against, unprinted = None, None
-    if printed and isinstance(once[names[0]].answer, Solution):
+    if printed and PRINTED not in once and isinstance(once[names[0]].answer, Solution):
         formulas = Once(formulation(PRINTED))
         found = _compared(scene, name, once[names[0]], formulas)
         against = found if isinstance(found, Outcome) else None
@@ -202,7 +202,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
             one.name for one in once.values() if isinstance(one.answer, Solution) and one.name not in refusals
         ),
         advice=_advice(once.values()),
-        warnings=warnings_of(moved),
+        warnings=(*warnings_of(moved), *scene.mechanism.doubts),
         closing=closing_data(moved),
         defaults=scene.mechanism.defaults_taken,
     )

@@ -74,4 +74,4 @@ def write_motion(target: str, motion: Motion) -> None:
         OutputError: the file cannot be written; what was there is whole.
     """
     require_known_ending(target, ENDINGS)
-    write_whole(target, lambda stream: ENDINGS[Path(target).suffix](stream, motion))
+    write_whole(target, lambda stream: ENDINGS[Path(target).suffix.lower()](stream, motion))

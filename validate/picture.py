@@ -28,6 +28,10 @@ VIEW = 290.0  # px, side of the square that a view is scaled into
 MARGIN = 30.0
 LINE = 15.0  # px, from line to line of text
 LETTERS = 150  # to a line
+KEY = (
+    "blue: as drawn; red: as closed, where that differs by a pixel; filled: on the chassis; "
+    "dashed: steering axis and spin axis"
+)
 STYLE = """
 text { font: 11px sans-serif; fill: #222 }
 .title { font-size: 13px; font-weight: bold }
@@ -63,7 +67,7 @@ def svg(scene: Scene) -> str:
     width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
     lines = _legend(points, numbers, mechanism.topology)
     rows, below_lines = -(-len(lines) // 2), wrap(words, LETTERS)
-    height = top + VIEW + MARGIN + (rows + len(below_lines) + 2) * LINE
+    height = top + VIEW + MARGIN + (rows + len(below_lines) + 3) * LINE
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
         f'viewBox="0 0 {width:.0f} {height:.0f}">',
@@ -73,9 +77,9 @@ def svg(scene: Scene) -> str:
     up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
     rearward = np.cross(right, up)
     views = (
-        View("from behind: y right, z up", right, up),
-        View("from the left: x right, z up", rearward, up),
-        View("from above: y right, x down", right, -rearward),
+        View(f"from behind: {_named(right)} right, {_named(up)} up", right, up),
+        View(f"from the left: {_named(rearward)} right, {_named(up)} up", rearward, up),
+        View(f"from above: {_named(right)} right, {_named(rearward)} down", right, -rearward),
     )
     # One scale for all views, so that lengths can be compared between them.
     scale = VIEW / max(float(np.ptp([p @ a for p in points.values()])) for a in (right, up, rearward))
@@ -85,9 +89,18 @@ def svg(scene: Scene) -> str:
     below = top + VIEW + MARGIN + LINE
     for i, line in enumerate(lines):
         parts.append(_text(MARGIN + (i // rows) * width / 2, below + (i % rows) * LINE, line))
+    below_lines = [KEY, *below_lines]
     for i, line in enumerate(below_lines):
         parts.append(_text(MARGIN, below + (rows + 0.5 + i) * LINE, line))
     return "\n".join([*parts, "</svg>", ""])
+
+
+def _named(direction: Array) -> str:
+    """A direction of the car in the axes that its points are given in: +y, -x, or its three components."""
+    along = np.flatnonzero(direction)
+    if len(along) == 1:
+        return f"{'+' if direction[along[0]] > 0.0 else '-'}{'xyz'[along[0]]}"
+    return f"({', '.join(f'{c:.3g}' for c in direction)})"
 
 
 def _closed(mechanism: Mechanism) -> tuple[Places, str]:

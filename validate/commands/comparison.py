@@ -34,7 +34,7 @@ FURTHER = ("pointcoord-newton", "absolute")
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser("validate", help="solve scenes by two formulations and compare them")
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: the paper's scenes")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
     parser.add_argument(
         "--first",
         metavar="NAME",
@@ -157,7 +157,7 @@ def _say(examined: Examined, console: Console) -> None:
         for warning in examined.warnings:
             console.warn(f"{examined.name}: {warning}")
     for outcome in examined.outcomes[:1]:
-        notes = "".join(f"\n  note: {note}" for note in (*examined.warnings, *examined.defaults))
+        notes = "".join(f"\n  note: {note}" for note in examined.defaults)
         console.say(report.outcome_text(outcome) + notes + "\n")
     for outcome in examined.outcomes[1:]:
         # The tables of a further pair would say nearly the same.

@@ -6,6 +6,7 @@ import argparse
 from typing import BinaryIO
 
 from pointcoord import SceneError
+from validate.closing import closing_of, warnings_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -43,11 +44,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         require_known_ending(target, (".svg",))
         require_writable(target)
     scene = load_scene(options.scene)
+    name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
     try:
         picture = svg(scene)
     except SceneError as error:
-        name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
         raise SceneError(name, error.key, error.problem, error.allowed) from error
+    for warning in (*warnings_of(closing_of(scene)), *scene.mechanism.doubts):
+        console.warn(f"{name}: {warning}")
     if target is None:
         console.write(picture)
         console.flush()

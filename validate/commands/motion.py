@@ -66,8 +66,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
     try:
         motion = simulate(scene, options.method)
-        for warning in warnings_of(motion.closing):
+        for warning in (*warnings_of(motion.closing), *scene.mechanism.doubts):
             console.warn(f"{name}: {warning}")
+        said = {*warnings_of(motion.closing), *scene.mechanism.doubts}
+        for note in motion.notes:
+            if note not in said:
+                console.note(f"{name}: {note}")
+        if motion.closing.moves and not motion.closing.noticeable:
+            console.note(f"{name}: {motion.closing.words}")
         if "wheel_angles" in scene.effects:
             for taken in scene.mechanism.defaults_taken:
                 console.note(f"{name}: {taken}")

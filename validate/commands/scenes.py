@@ -7,7 +7,8 @@ import argparse
 import numpy as np
 
 from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
-from pointcoord.drawing_stands import End
+from pointcoord.closing import ALLOWED
+from pointcoord.drawing_stands import End, Standing
 from pointcoord.effects import EFFECTS, plan_effects
 from validate.closing import warnings_of
 from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
@@ -72,14 +73,29 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
     lines.append(stands.closing.words)
     console.say("\n".join(lines))
     if stands.closing.changes_the_car and scene.mechanism.closure == "drawn":
+        limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
         console.complain(
-            f"{name}: mechanism.points: {stands.closing.words}: that is another car, and no solver takes it; "
-            "draw the points that miss where they belong"
+            f"{name}: mechanism.points: {stands.closing.words}: that is another car, which is refused; "
+            f"allowed: {limit}; draw the points that miss where they belong"
         )
         return ExitStatus.WRONG_INPUT
-    for warning in warnings_of(stands.closing):
+    for warning in (*warnings_of(stands.closing), *scene.mechanism.doubts, *_out_of_reach(scene, stands)):
         console.warn(f"{name}: {warning}")
     return ExitStatus.AGREE
+
+
+def _out_of_reach(scene: Scene, stands: Standing) -> list[str]:
+    """Inputs that the scene drives farther than they go with the others as drawn."""
+    told = []
+    for name, (low, high) in stands.reach.items():
+        values = scene.functions[name].series(scene.instants, 0)[:, 0]
+        least, most = float(values.min()), float(values.max())
+        if least < low.value or most > high.value:
+            told.append(
+                f"the scene drives {name} from {_told(name, least)} to {_told(name, most)}, beyond what it "
+                "reaches with the others as drawn"
+            )
+    return told
 
 
 def _degrees(angle: float) -> str:
