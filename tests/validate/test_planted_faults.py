@@ -18,10 +18,10 @@ import validate.absolute_coordinates
 from pointcoord import Scene
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Channel, Samples
-from validate.cli import DEFAULT_SCENES
 from validate.compare import compare
 from validate.formulation import Solution
 from validate.formulations import formulation
+from validate.paper_scenes import DEFAULT_SCENES
 
 # The module; the package's attribute of this name is the function.
 solver = import_module("pointcoord.simulation")
