@@ -91,16 +91,16 @@ def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
     acceleration = {name: a + push for name, a in home.acceleration.items()}
     accuracy = replace(
         home.accuracy,
-        position=_rounded(position, value),
-        velocity=_rounded(velocity, rate),
-        acceleration=_rounded(acceleration, push),
+        position=_rounded(home.accuracy.position, position, value),
+        velocity=_rounded(home.accuracy.velocity, velocity, rate),
+        acceleration=_rounded(home.accuracy.acceleration, acceleration, push),
     )
     return replace(home, position=position, velocity=velocity, acceleration=acceleration, accuracy=accuracy)
 
 
-def _rounded(sums: Mapping[str, Array], added: Array) -> dict[str, Array]:
-    """What is added is rounded once, and so is the sum; what was there is smaller than one of them."""
-    return {name: EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
+def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], added: Array) -> dict[str, Array]:
+    """What is claimed at home; what is added is rounded once, and so is the sum."""
+    return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
 def heaving(every: tuple[Tried, ...]) -> Callable[[float], Trial]:
