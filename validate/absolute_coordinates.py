@@ -89,8 +89,8 @@ def _require_the_drawn_car(scene: Scene, model: absolute.Model) -> None:
             scene.title or "scene",
             "mechanism.points",
             f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
-            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw strut_rod_end on the strut axis and "
-            "tie_rod_inner on the line of the rack",
+            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw strut_rod_end on the strut axis "
+            "and tie_rod_inner on the line of the rack",
         )
 
 
