@@ -130,7 +130,8 @@ class Motion(Samples):
     sizer: Callable[[], tuple[float, ...]]
 
     def __repr__(self) -> str:
-        noted = f"; {len(self.notes)} notes, the first: {self.notes[0]}" if self.notes else ""
+        count = len(self.notes)
+        noted = f"; {count} note{'s' if count > 1 else ''}" if count else ""
         return f"<Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
 
     def proof(self, rates: bool = False) -> Proof:

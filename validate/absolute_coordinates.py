@@ -23,6 +23,8 @@ except ModuleNotFoundError as error:
 
 Array = NDArray[np.float64]
 
+SLOW = 2.0**-200  # rad/s and mm/s
+LONGEST = 500  # s, as a power of two whose square is still a number
 LARGEST = 1e300  # mm: four times that, and sums of ten coordinates, stay finite
 
 
@@ -42,6 +44,8 @@ class AbsoluteCoordinates:
         heave = inputs.pop("heave", None)
         with np.errstate(invalid="ignore"):  # the model refuses what is not finite
             chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
+        unit = slow_unit(inputs, chassis)
+        inputs = {name: _per(unit, law) for name, law in inputs.items()}
         needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
@@ -49,13 +53,18 @@ class AbsoluteCoordinates:
             model = absolute.macpherson(near, up=part.up, right=part.right, closure=part.closure)
             _require_the_drawn_car(scene, model)
             solved = absolute.solve(
-                model, inputs, chassis=chassis, rates=needs_rates, conditions=True, errors=True
+                model,
+                inputs,
+                chassis=None if chassis is None else _per(unit, chassis),
+                rates=needs_rates,
+                conditions=True,
+                errors=True,
             )
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
                 error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
             raise FormulationError(self.name, error) from error
-        position = _moved(solved.position, origin)
+        solved, position = _per_second(unit, solved), _moved(solved.position, origin)
         try:
             accuracy = claims(part, solved, position, chassis, angle_lines(part, solved.position))
         except AccuracyError as error:
@@ -92,6 +101,55 @@ def _require_the_drawn_car(scene: Scene, model: absolute.Model) -> None:
             f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw strut_rod_end on the strut axis "
             "and tie_rod_inner on the line of the rack",
         )
+
+
+def slow_unit(inputs: Mapping[str, Array], chassis: Array | None) -> Array:
+    """Unit of time in which rates are told to the model, a power of two at each instant, (N,), s.
+
+    The model squares rates and their errors, and the square of a number below 1e-154 is lost. So where all
+    inputs are slower than SLOW, time is counted in units in which they are not; elsewhere in seconds.
+    """
+    count = len(next(iter(inputs.values())))
+    fastest, shift = np.zeros(count), np.zeros(count)
+    for law in inputs.values():
+        fastest = np.maximum(fastest, np.maximum(np.abs(law[:, 1]), np.sqrt(np.abs(law[:, 2]))))
+    if chassis is not None:
+        shift = np.abs(chassis[:, 1:]).max(axis=(1, 2))
+    slow = (fastest > 0.0) & (fastest < SLOW)
+    exponent = np.minimum(-np.frexp(np.where(slow, fastest, 1.0))[1], LONGEST)
+    # What moves the chassis is added by the model, and must not overflow in such units.
+    return np.asarray(np.where(slow & (shift < SLOW), np.ldexp(1.0, exponent), 1.0))
+
+
+def _per(unit: Array, series: Array) -> Array:
+    """Value, rate and acceleration, (N, 3, ...), per another unit of time."""
+    if (unit == 1.0).all():
+        return series
+    factor = unit.reshape(-1, *(1,) * (series.ndim - 2))
+    return np.stack([series[:, 0], series[:, 1] * factor, series[:, 2] * factor * factor], axis=1)
+
+
+def _per_second(unit: Array, solved: absolute.Solution) -> absolute.Solution:
+    """Rates and their errors per second again."""
+    if (unit == 1.0).all():
+        return solved
+    once = unit[:, None]
+    twice = once * once
+
+    def divided(arrays: Mapping[str, Array], divisor: Array) -> dict[str, Array]:
+        return {name: array / divisor for name, array in arrays.items()}
+
+    return replace(
+        solved,
+        velocity=divided(solved.velocity, once),
+        velocity_error=divided(solved.velocity_error, once),
+        angular_velocity=divided(solved.angular_velocity, once),
+        angular_velocity_error=divided(solved.angular_velocity_error, once),
+        acceleration=divided(solved.acceleration, twice),
+        acceleration_error=divided(solved.acceleration_error, twice),
+        angular_acceleration=divided(solved.angular_acceleration, twice),
+        angular_acceleration_error=divided(solved.angular_acceleration_error, twice),
+    )
 
 
 def _moved(position: Mapping[str, Array], origin: Array) -> dict[str, Array]:

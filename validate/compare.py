@@ -18,9 +18,8 @@ from validate.given import Given, given
 from validate.tolerance import level, tolerance, untested
 
 Array = NDArray[np.float64]
-# Squares of numbers below 1.5e-154 underflow, and with them estimates of their rounding, which condition
-# numbers and lengths enlarge: below this a difference is none.
-SMALLEST = 1e-140
+# Numbers below the smallest normal one lose digits, and so do tolerances made of them.
+SMALLEST = float(np.finfo(float).tiny)
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
 UNITS = {

@@ -199,7 +199,6 @@ def test_a_drawing_that_closing_makes_another_car_of_is_refused(make_scene: Call
         assert miss in caught.value.problem
         assert caught.value.key == "mechanism.points"
         assert f"{ALLOWED:.0%} of the car's size" in caught.value.allowed
-        assert "closure = 'collinear'" in caught.value.allowed
 
 
 def test_the_paper_s_car_is_put_in_line_only_where_the_scene_asks_for_it(

@@ -187,7 +187,7 @@ def test_printed_quotient_fails_in_the_steering_scene_and_least_squares_do_not(
     assert any("not a number" in note and "angular velocity" in note for note in printed.notes) == bool(
         (~np.isfinite(noisy)).any()
     )
-    assert ours.notes == ()
+    assert ours.notes == (ours.closing.words,)
 
 
 def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> None:
