@@ -3,9 +3,10 @@ r"""What the absolute model claims of its accuracy: its own estimates, and what 
 The model estimates the error of every point's and body's motion from what its equations are rounded from,
 as four standard deviations of the counted roundings, and measures lengths from a place near the car. A
 scene has thousands of numbers, of which one in 16,000 goes beyond four deviations and none beyond eight, so
-twice the estimate is claimed. To this come the sum with that place, rounded by u of the
-result, and the chassis' displacement along `up`, u of it. An angle of a line a, seen along
-z = a . right + i a . up, is off by
+twice the estimate is claimed. A rate is claimed to eps of the largest one of its kind at least: its equations
+are solved at once, and rounding in one unknown is seen in all (Higham, ch. 9). To this come the sum with
+that place, rounded by u of the result, and the chassis' displacement along `up`, u of it. An angle of a line
+a, seen along z = a . right + i a . up, is off by
 
     |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
 
@@ -57,12 +58,21 @@ def claims(
             name: error + moved[0] + EPS * np.abs(position[name])
             for name, error in solved.position_error.items()
         },
-        velocity={name: error + moved[1] for name, error in solved.velocity_error.items()},
-        acceleration={name: error + moved[2] for name, error in solved.acceleration_error.items()},
-        angular_velocity=solved.angular_velocity_error,
-        angular_acceleration=solved.angular_acceleration_error,
+        velocity=_at_least(solved.velocity, solved.velocity_error, moved[1]),
+        acceleration=_at_least(solved.acceleration, solved.acceleration_error, moved[2]),
+        angular_velocity=_at_least(solved.angular_velocity, solved.angular_velocity_error),
+        angular_acceleration=_at_least(solved.angular_acceleration, solved.angular_acceleration_error),
         wheel={name: _angle(part, solved, line) for name, line in lines.items()},
     )
+
+
+def _at_least(rates: Arrays, errors: Arrays, added: Array | float = 0.0) -> dict[str, Array]:
+    """Errors not below eps of the largest rate of all points or bodies at the instant, and what is added."""
+    if not errors:
+        return {}
+    sizes = [np.abs(rate).max(axis=-1, keepdims=True) for rate in rates.values()]
+    least = EPS * np.max(sizes, axis=0)
+    return {name: np.maximum(error, least) + added for name, error in errors.items()}
 
 
 def _twice(solved: absolute.Solution) -> absolute.Solution:
