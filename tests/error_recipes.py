@@ -23,6 +23,7 @@ from pointcoord.rigid import body_rates
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
 from validate.deep_store import Store
+from validate.formulation import Accuracy
 from validate.formulations import formulation
 from validate.hard.catalogue import chosen
 from validate.motion_tables import write_motion
@@ -195,6 +196,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: solved({"rack_centre": (570, 60, 2000)}),
         ("the drawing cannot be assembled", "mm", "draw the points closer"),
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
+    ),
+    "validate.formulation.AccuracyError": Recipe(
+        lambda *_: Accuracy(condition=np.ones(2), position={"wheel_centre": np.full((2, 3), -1.0)}),
+        ("position of wheel_centre", "-1", "finite numbers from 0 up"),
+        {"claim": "position of wheel_centre", "problem": bool, "allowed": bool},
     ),
     "absolute.errors.MissingPinocchioError": Recipe(
         lambda _, patch: without_pinocchio(patch),
