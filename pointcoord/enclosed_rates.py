@@ -112,7 +112,7 @@ def enclosed_coordinates(
         rest = twice_polar(system, pose, computed)
         if derivative == 2:
             rest = rest + twice_polar(system, result[1], result[1])
-        result.append(_corrected(computed, rest, inverse, certificate, spoilt))
+        result.append(_corrected(computed, rest, factors, certificate, spoilt))
     if summed:
         for derivative, state in enumerate(result):
             made = summed[derivative].expected(states[derivative], factors.condition, powers[derivative])
@@ -137,13 +137,14 @@ def _tail(system: QuadraticMap, certificate: Certificate, magnitude: Array) -> A
 
 
 def _corrected(
-    computed: Enclosed, rest: Enclosed, inverse: Array, certificate: Certificate, spoilt: Array
+    computed: Enclosed, rest: Enclosed, factors: Factors, certificate: Certificate, spoilt: Array
 ) -> Enclosed:
     """The rates that leave no rest, from computed ones that leave `rest` = 2 B(y*, .) + ...
 
     Args:
         spoilt: F, (N, unknowns, unknowns).
     """
+    inverse = factors.preconditioner
     n = inverse.shape[-1]
     gamma = (n + 2) * EPS
     middle, magnitude = rest.middle, np.abs(inverse)
@@ -156,7 +157,11 @@ def _corrected(
     low, radius = computed.low.copy(), computed.radius.copy()
     low[:, :n] = step
     radius[0, :, :n] = proven + tail
-    radius[1, :, :n] = _applied(magnitude, rest.radius[1])
+    rounded = _applied(magnitude, rest.radius[1])
+    # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
+    # after one refinement.
+    shared = gamma * factors.condition * rounded.max(axis=-1)
+    radius[1, :, :n] = rounded + shared[:, None]
     radius[1] += UNIT_ROUNDOFF * np.abs(computed.high)
     return Enclosed.of(computed.high, low, *radius)
 

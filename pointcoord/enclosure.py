@@ -27,7 +27,7 @@ Indices = NDArray[np.intp]
 
 OF_A_SUM = 4.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
-TINY = 1e-300  # splitting a number below 1e-140 loses less than this
+TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
 CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 

@@ -15,7 +15,7 @@ from pointcoord.simulation import require_scene
 from validate.formulation import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations import formulation
 from validate.given import Given, given
-from validate.tolerance import level, tolerance, untested
+from validate.tolerance import largest_of, level, tolerance, untested
 
 Array = NDArray[np.float64]
 # Numbers below the smallest normal one lose digits, and so do tolerances made of them.
@@ -188,7 +188,9 @@ def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Ar
     gap = np.where(np.isfinite(gap), gap, np.inf)
     claims = [side.claims[quantity].get(part) for side in (one, two)]
     held = [np.zeros_like(gap) if claim is None else claim for claim in claims]
-    allowed = tolerance(*held)
+    # The smaller of both, so that a wrong number does not widen its own tolerance.
+    largest = min(largest_of(side.numbers[quantity].values()) for side in (one, two))
+    allowed = tolerance(held[0], held[1], largest)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
     levels = [

@@ -2,11 +2,13 @@ r"""Tolerances of a comparison: what two formulations claim of their own accurac
 
 With e1 and e2 the errors that two formulations claim of a number at most (see `Accuracy`), a difference up to
 
-    T = e1 + e2
+    T = e1 + e2 + eps^2 M
 
-is explained by both, and a larger one by neither. The claims are those of each instant and each component:
-pointcoord's are proven from its own equations in twice the working precision, but never more than its method
-loses where nothing is wrong (`Proof.expected`); the absolute model's are what its equations are rounded from.
+is explained by both, and a larger one by neither. M is the largest number of the quantity in the scene: what
+is zero is solved for together with what is not, and a rounding of a rounding of that is left in it. The
+claims are those of each instant and each component: pointcoord's are proven from its own equations in twice
+the working precision, but never more than its method loses where nothing is wrong (`Proof.expected`); the
+absolute model's are what its equations are rounded from.
 
 A tolerance rests on the formulation that claims the larger part of it. One that is LOOSEST times as wide as
 what the other one alone would give tests nothing that the other one could not be wrong in, and no agreement
@@ -28,9 +30,15 @@ EPS = float(np.finfo(float).eps)
 LOOSEST = 1000.0
 
 
-def tolerance(first: Array, second: Array) -> Array:
+def tolerance(first: Array, second: Array, largest: float) -> Array:
     """What a difference is held to."""
-    return np.asarray(first + second)
+    return np.asarray(first + second + EPS**2 * largest)
+
+
+def largest_of(numbers: Iterable[Array]) -> float:
+    """The largest finite number of a quantity, 0 if there is none."""
+    finite = (np.where(np.isfinite(array), np.abs(array), 0.0) for array in numbers)
+    return max((float(np.max(array, initial=0.0)) for array in finite), default=0.0)
 
 
 def level(claims: Iterable[Array], numbers: Iterable[Array], condition: Array) -> Array:
