@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
 from pointcoord.proof import Proof
-from pointcoord.quadratic import UNIT_ROUNDOFF
 from pointcoord.simulation import Method
 from validate.formulation import NUMBERS_OF, Accuracy, FormulationError, Solution
 
@@ -64,30 +63,13 @@ class PointCoordinates:
         """
         claims: dict[str, Array] = {}
         expected = getattr(proof.expected, quantity)
-        if not expected:
-            return claims
-        least = self._noise(motion, proof, quantity)
         for name, proven in getattr(proof.proven, quantity).items():
             # What is not a number has no error; the comparison finds it.
             number = np.isfinite(getattr(motion, quantity)[name])
-            noise = least.reshape(-1, *[1] * (number.ndim - 1))
             bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
             _refuse_unproven(self.name, motion, proof, f"{quantity.replace('_', ' ')} of {name}", bound)
-            claims[name] = np.where(number, np.minimum(proven, np.maximum(expected[name], noise)), 0.0)
+            claims[name] = np.where(number, np.minimum(proven, expected[name]), 0.0)
         return claims
-
-    @staticmethod
-    def _noise(motion: Motion, proof: Proof, quantity: str) -> Array:
-        """What a solve with one refinement leaves of a number that is zero, (N,).
-
-        Rounded by u in the solve and by u again in its refinement, either at most some ten times (Higham,
-        ch. 12), in parts of the condition number and of the largest number of the quantity.
-        """
-        numbers = [
-            np.abs(array).reshape(len(proof.condition), -1) for array in getattr(motion, quantity).values()
-        ]
-        largest = np.max([array.max(axis=-1) for array in numbers], axis=0)
-        return 100.0 * UNIT_ROUNDOFF**2 * proof.condition * np.where(np.isfinite(largest), largest, 0.0)
 
 
 def _refuse_unproven(who: str, motion: Motion, proof: Proof, what: str, bound: Array) -> None:

@@ -98,7 +98,10 @@ def test_what_a_motion_is_fits_on_a_line_or_two(make_scene: Callable[..., Scene]
         (repr(motion.at([[0.5, 1.0]])), ("Samples", "2 instants from 0.5 to 1 s")),
         (repr(motion.at(0.5)), ("Samples", "at 0.5 s")),
         (repr(motion.at([])), ("no instants",)),
-        (repr(simulate(make_scene(effects=()), "newton")), ("Motion by newton", "9 instants", "; position>")),
+        (
+            repr(simulate(make_scene(effects=()), "newton")),
+            ("Motion by newton", "9 instants", "; position; 1 note>"),
+        ),
     ):
         assert len(text) <= 160
         assert "\n" not in text

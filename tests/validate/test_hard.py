@@ -1,5 +1,6 @@
 """The catalogue is worth what its judge catches: wrong numbers, silence about them, and what crashes."""
 
+import json
 import math
 import warnings
 from collections.abc import Callable
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.document import json_text
 from validate.formulation import FormulationError, Solution
 from validate.formulations import formulation
 from validate.hard import trial
@@ -226,8 +228,9 @@ def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -
     text = case_text(replace(result, trials=(result.trials[0], mended)), every_value=True)
     assert "absolute gives up at 131, before pointcoord, which never gives up." in text
     data = results_data([replace(result, trials=(result.trials[0], mended))])
-    assert data["cases"][0]["trials"][1]["answers"][0]["share"] is None
-    assert data["cases"][0]["expected"]["absolute"]["right_from"] is None
+    written = json.loads(json_text(data))
+    assert written["cases"][0]["trials"][1]["answers"][0]["share"] is None
+    assert written["cases"][0]["expected"]["absolute"]["right_from"] is None
 
 
 def test_decades_are_evenly_spaced_going_in() -> None:
