@@ -10,8 +10,9 @@ a, seen along z = a . right + i a . up, is off by
 
     |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
 
-where d a is at most the sum of its ends' errors and, of a line of one body, also at most the error of its
-rotation times a, with the rounding of the ends; the smaller of the two.
+where d a is at most the sum of its ends' errors and, of the spin axis, also at most the error of the
+knuckle's rotation times a, with the rounding of the ends; the smaller of the two. The ball joint is an end of
+the arm as well, and no more is claimed of a line to it than of its ends.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ Array = NDArray[np.float64]
 Arrays = Mapping[str, Array]
 
 EPS = float(np.finfo(float).eps)
-KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower", "wheel_centre", "wheel_axis_inner")
+SPIN_AXIS = ("strut_lower", "wheel_centre", "wheel_axis_inner")
 
 
 def claims(
@@ -96,7 +97,7 @@ def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]
     start, end = line
     along = solved.position[end] - solved.position[start]
     off = solved.position_error[start] + solved.position_error[end]
-    if start in KNUCKLE and end in KNUCKLE:
+    if start in SPIN_AXIS and end in SPIN_AXIS:
         turn, size = solved.rotation_error["knuckle"], np.abs(along)
         turned = np.roll(turn, -1, axis=-1) * np.roll(size, -2, axis=-1)
         turned += np.roll(turn, -2, axis=-1) * np.roll(size, -1, axis=-1)
