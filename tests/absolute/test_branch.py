@@ -1,13 +1,12 @@
 """Of the up to sixteen assemblies of a strut, the one that the drawing's signs name, or a refusal."""
 
 import dataclasses
-import importlib.util
 import json
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
+import closed_form as closed
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -26,18 +25,6 @@ Table = dict[str, tuple[float, float, float]]
 Held = Callable[[float, float], dict[str, Array]]
 EPS = np.finfo(float).eps
 HERE = Path(__file__).parent
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, HERE / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-closed = load("closed_form")
 
 
 @pytest.mark.parametrize("case", json.loads((HERE / "branch_cases.json").read_text()))

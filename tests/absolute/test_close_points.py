@@ -1,12 +1,10 @@
 """A vector between two points of a body is as accurate as the coordinates given, however short it is."""
 
-import importlib.util
 from collections.abc import Callable
 from fractions import Fraction
 from math import isqrt
-from pathlib import Path
-from types import ModuleType
 
+import exact_form as exact
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -31,18 +29,6 @@ PAIRS = [
     ("tie_rod_outer", "wheel_centre"),
 ]
 SHARES = [1e-4, 1e-5, 1e-6, 1e-7]
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-exact = load("exact_form")
 
 
 def drawn_close(table: Table, fixed: str, moved: str, share: float, seed: int) -> dict[str, Array]:

@@ -1,14 +1,13 @@
 """The error estimated of each component: never below the true one, and never far above it."""
 
-import importlib.util
-import sys
 from collections.abc import Callable, Iterator
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
+import moving_form as form
 import numpy as np
 import pytest
+import struts
+from dead_points import ENDS
 from numpy.typing import NDArray
 
 import absolute
@@ -22,19 +21,6 @@ EPS = float(np.finfo(float).eps)
 PARTS = {"position": "x", "velocity": "v", "acceleration": "a"}
 MOVED = ("tie_rod_outer", "wheel_centre")
 SPINS = {"angular_velocity": 0, "angular_acceleration": 1}
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-form, struts, ends = load("moving_form"), load("struts"), load("test_dead_points")
 
 
 def shares(exact: Any, motion: absolute.Solution) -> Iterator[tuple[str, str, Array, Array]]:
@@ -93,7 +79,7 @@ def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -
         assert np.median(relative[quantity]) < 1e-13, quantity
 
 
-@pytest.mark.parametrize("end", ends.ENDS)
+@pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("before", [1e-14, 1e-13, 1e-12, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3])
 def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: float) -> None:
     random = np.random.default_rng(int(-np.log10(before)))
@@ -171,7 +157,7 @@ def test_rows_close_to_what_they_are_rounded_from() -> None:
 
 
 def test_a_point_does_not_take_the_sensitivity_of_another() -> None:
-    end = next(end for end in ends.ENDS if end.limit == "rack")
+    end = next(end for end in ENDS if end.limit == "rack")
     goal = [inside - 1e-10 * out for inside, out in zip(end.inside, end.out, strict=True)]
     motion = absolute.solve(absolute.macpherson(end.car), at(*goal, np.full(4, 0.5)), errors=True)
     # The rack's own end moves with the rack, however near the tie rod is to its dead point.
@@ -213,7 +199,7 @@ def test_what_an_input_may_be_off_shows_as_the_motion_of_the_other_input(name: s
 
 
 def test_beyond_what_the_inputs_may_be_off_from_a_dead_point_rates_may_be_anything() -> None:
-    end = ends.ENDS[0]
+    end = ENDS[0]
     goal = [inside - 1e-6 * out for inside, out in zip(end.inside, end.out, strict=True)]
     strut, inputs = absolute.macpherson(end.car), at(*goal, np.full(4, 0.5))
     for off, finite in ((1e-8, True), (1e-5, False)):

@@ -1,10 +1,8 @@
 """At the ends of the motion: a pose is given where rows close to rounding, and nowhere else."""
 
-import importlib.util
 from collections.abc import Callable
-from pathlib import Path
-from types import ModuleType
 
+import exact_form as exact
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -29,18 +27,6 @@ ENDS = [
     ((0.6145, -0.03818180922672851), (0.0, -219.0)),
 ]
 BEYOND = [1e-13, 3e-13, 1e-12, 3e-12, 1e-11, 1e-10, 1e-9]
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-exact = load("exact_form")
 
 
 def check_closed(table: Table, motion: absolute.Solution) -> None:

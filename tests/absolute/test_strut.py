@@ -1,13 +1,11 @@
 """The strut whose axis passes beside its ball joint: the car that is drawn is the car that is solved."""
 
-import importlib.util
-import sys
 from collections.abc import Callable
-from pathlib import Path
-from types import ModuleType
 
+import moving_form as form
 import numpy as np
 import pytest
+import struts
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -19,19 +17,6 @@ Held = Callable[[float, float], dict[str, Array]]
 Table = dict[str, tuple[float, float, float]]
 EPS = float(np.finfo(float).eps)
 SIZE = 500.0
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).parent / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-form, struts = load("moving_form"), load("struts")
 
 
 def with_rack(car: dict[str, Array]) -> dict[str, Array]:
