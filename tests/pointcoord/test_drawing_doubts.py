@@ -1,0 +1,112 @@
+"""What looks wrong with a drawing is said, with its value, and nothing is said of a sound one."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import pytest
+
+from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, simulate, standing
+
+CAR = dict(Scene.load("off-axis-strut").mechanism.points)
+Car = Mapping[str, tuple[float, ...]]
+
+
+def scaled(factor: float) -> Car:
+    return {name: tuple((factor * np.array(place)).tolist()) for name, place in CAR.items()}
+
+
+def with_angle(make_scene: Callable[..., Scene], car: Car, **more: object) -> Scene:
+    return make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn", **more)
+
+
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_nothing_is_doubted_of_the_built_in_scenes(name: str) -> None:
+    assert Scene.load(name).mechanism.doubts == ()
+
+
+@pytest.mark.parametrize(("factor", "length"), [(1e-3, "0.645 mm"), (0.039, "25.2 mm"), (1e3, "6.45e+05 mm")])
+def test_a_car_in_another_unit_is_doubted_and_solved(
+    make_scene: Callable[..., Scene], factor: float, length: str
+) -> None:
+    motion = simulate(with_angle(make_scene, scaled(factor)))
+    assert f"the car is {length} long" in motion.notes[0]
+    count = len(motion.notes)  # a tolerance of 1e-9 mm is too fine for a car of half a kilometre
+    assert repr(motion).endswith(f"; {count} note{'s' if count > 1 else ''}>")
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1.0])
+def test_a_rod_end_off_the_axis_is_noticed_in_a_car_of_any_unit(
+    make_scene: Callable[..., Scene], factor: float
+) -> None:
+    off = {**CAR, "strut_rod_end": tuple(np.add(CAR["strut_rod_end"], (0.0, 0.0, 5.0)).tolist())}
+    aside = {**CAR, "strut_rod_end": tuple(np.add(CAR["strut_rod_end"], (5.0, 0.0, 0.0)).tolist())}
+    # Along the axis, all but 8 degrees of it, and across it.
+    for car, least in ((off, 0.6), (aside, 4.9)):
+        moved = {name: tuple((factor * np.array(place)).tolist()) for name, place in car.items()}
+        closing = simulate(with_angle(make_scene, moved)).closing
+        assert closing.noticeable
+        assert closing.largest >= least * factor
+
+
+@pytest.mark.parametrize(
+    ("point", "place", "words"),
+    [
+        ("wheel_axis_inner", (0.0, -860.0, 309.0), "wheel_axis_inner lies outboard of wheel_centre"),
+        ("wheel_axis_inner", (0.0, -740.0, 200.0), "the drawn camber is"),
+        ("lower_ball_joint", (-5.0, 712.0, 195.0), "the drawn kingpin angle is"),
+        ("wheel_axis_inner", None, "from strut_lower to wheel_centre"),
+    ],
+)
+def test_a_misdrawn_axis_is_doubted_with_its_angle(
+    make_scene: Callable[..., Scene], point: str, place: tuple[float, ...] | None, words: str
+) -> None:
+    car = {name: at for name, at in CAR.items() if name != point}
+    if place is not None:
+        car[point] = place
+    doubts = make_scene(points=car, closure="drawn").mechanism.doubts
+    assert any(words in doubt for doubt in doubts)
+
+
+def test_mirrored_axes_are_told_how_to_say_so(make_scene: Callable[..., Scene]) -> None:
+    mirrored = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
+    with pytest.raises(SceneError, match=r"right = \[0.0, -1.0, 0.0\]"):
+        make_scene(points=mirrored, closure="drawn")
+    laws = {"arm_angle": [1.63, 0.1], "rack": [0.0, 20.0], "stop": 1.0, "closure": "drawn"}
+    plain = simulate(make_scene(points=CAR, **laws))
+    turned = simulate(make_scene(points=mirrored, right=(0.0, -1.0, 0.0), **laws))
+    for name, path in plain.position.items():
+        assert np.abs(turned.position[name] - path * [1.0, -1.0, 1.0]).max() < 1e-10
+    for angle, values in plain.wheel.items():
+        assert np.abs(turned.wheel[angle] - values).max() < 1e-12
+
+
+@pytest.mark.parametrize("call", [simulate, standing])
+def test_a_name_is_no_scene(call: Callable[[object], object]) -> None:
+    with pytest.raises(
+        SceneError, match="is a str, and no scene; allowed: a Scene, as Scene.load"
+    ):
+        call("bounce")
+
+
+@pytest.mark.parametrize("name", [None, 3, b"bounce"])
+def test_what_names_no_scene_is_refused_as_it_is(name: object) -> None:
+    with pytest.raises(SceneError, match="names no scene; allowed: a path, or one of bounce"):
+        Scene.load(name)
+
+
+def test_the_input_that_runs_into_the_lock_is_the_one_to_bring_back(make_scene: Callable[..., Scene]) -> None:
+    # The rack creeps to its end while the arm swings back and forth inside its range.
+    arm = {"sine": {"amplitude": 0.1, "angular_frequency": 30.0, "offset": 1.63}}
+    with pytest.raises(AssemblyError) as caught:
+        simulate(make_scene(arm, [0.0, 215.0], points=CAR, stop=1.0, closure="drawn"))
+    error = caught.value
+    assert error.reduce == "rack"
+    assert error.reached["rack"] > 190.0
+
+
+def test_a_misspelt_point_and_a_short_one_are_told(make_scene: Callable[..., Scene]) -> None:
+    misspelt = {("strut_topp" if name == "strut_top" else name): at for name, at in CAR.items()}
+    with pytest.raises(SceneError, match="did you mean 'strut_top'"):
+        make_scene(points=misspelt, closure="drawn")
+    with pytest.raises(SceneError, match="a number is missing: there are 2 where three belong"):
+        make_scene(points={**CAR, "strut_top": (1.0, 2.0)}, closure="drawn")
