@@ -24,9 +24,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import mpmath
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from validate.extras import MissingPackage
+
+try:
+    import mpmath
+except ModuleNotFoundError as error:
+    raise MissingPackage("validate.closed_form", error) from None
 
 Array = NDArray[Any]  # of floats, or of mpmath's numbers
 Closure = Literal["drawn", "collinear"]

@@ -9,9 +9,10 @@ class MissingPackage(ImportError):
     Args:
         part: the part, such as a formulation's name.
         error: what the import of the package raised.
+        extra: of this distribution, that brings the package.
     """
 
-    def __init__(self, part: str, error: ImportError) -> None:
+    def __init__(self, part: str, error: ImportError, extra: str = "validate") -> None:
         self.part = part
         self.package = error.name or "pin"
         if "pointcoord[validate]" in str(error):
@@ -22,6 +23,6 @@ class MissingPackage(ImportError):
         problem = "is not installed" if missing else f"does not load ({' '.join(str(error).split())})"
         super().__init__(
             f"{part!r} needs the package {self.package!r}, which {problem}; "
-            "try: pip install 'pointcoord[validate]'",
+            f"try: pip install 'pointcoord[{extra}]'",
             name=error.name,
         )

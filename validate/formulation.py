@@ -87,7 +87,7 @@ def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """A solved scene as plain arrays; empty mappings where the scene did not ask.
 
@@ -109,6 +109,10 @@ class Solution:
     wheel: Mapping[str, Array]
     accuracy: Accuracy
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        given = ", ".join(quantity for quantity in NUMBERS_OF if getattr(self, quantity))
+        return f"<Solution of {self.formulation}: {np.size(self.times)} instants; {given}>"
 
 
 class Formulation(Protocol):

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hypothesis import strategies as st
-
 from pointcoord import Scene
 from validate.closed_form import Closure
 from validate.drawings import LEFT_OVER, REACH, as_tuples, random_drawing
+from validate.extras import MissingPackage
 from validate.input_ends import Car, Linkage
 from validate.paper_car import EFFECTS, mirrored
 from validate.random_cars import CLOSURES
+
+try:
+    from hypothesis import strategies as st
+except ModuleNotFoundError as error:
+    raise MissingPackage("validate.strategies", error, "test") from None
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 

@@ -82,9 +82,7 @@ def test_mirrored_axes_are_told_how_to_say_so(make_scene: Callable[..., Scene]) 
 
 @pytest.mark.parametrize("call", [simulate, standing])
 def test_a_name_is_no_scene(call: Callable[[object], object]) -> None:
-    with pytest.raises(
-        SceneError, match="is a str, and no scene; allowed: a Scene, as"
-    ):
+    with pytest.raises(SceneError, match="is a str, and no scene; allowed: a Scene, as"):
         call("bounce")
 
 

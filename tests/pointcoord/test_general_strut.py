@@ -292,3 +292,30 @@ def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Sc
         assert make_scene(points=car, closure="drawn", effects=("velocity",))
     with pytest.raises(SceneError, match=f"{inner} and wheel_centre are at the same place"):
         make_scene(points=car, closure="drawn")
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])
+def test_one_percent_of_the_size_is_the_limit_of_closing(
+    make_scene: Callable[..., Scene], share: float, refused: bool
+) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    far = share * 645.0  # mm: the car is 645 mm high
+    car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
+    scene = make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn")
+    if refused:
+        with pytest.raises(SceneError, match="another car"):
+            simulate(scene)
+    else:
+        # The rod's end keeps its distance from the top, so that it moves a little more than across.
+        assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
+
+
+@pytest.mark.parametrize(("far", "noticed"), [(0.098, False), (0.102, True)])
+def test_a_tenth_of_a_millimetre_is_noticed(
+    make_scene: Callable[..., Scene], far: float, noticed: bool
+) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
+    motion = simulate(make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
+    assert motion.closing.noticeable == noticed
+    assert bool(motion.notes) == noticed

@@ -266,6 +266,30 @@ def test_without_the_extra_one_line_names_it(program: str, words: list[str], tmp
     assert "pip install 'pointcoord[validate]'" in line
 
 
+def test_every_module_says_which_extra_it_lacks() -> None:
+    program = (
+        "import importlib, pkgutil, sys\n"
+        "for name in ('mpmath', 'flint', 'pinocchio', 'eigenpy', 'hypothesis'): sys.modules[name] = None\n"
+        "import validate\n"
+        "for found in pkgutil.walk_packages(validate.__path__, 'validate.', onerror=lambda name: None):\n"
+        "    try:\n"
+        "        importlib.import_module(found.name)\n"
+        "    except ImportError as error:\n"
+        "        print(found.name, 'pip install' in str(error) and 'pointcoord[' in str(error), error)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env=ENVIRONMENT,
+        check=True,
+        timeout=120,
+    )
+    lines = done.stdout.splitlines()
+    assert len(lines) > 20  # the reference, the hard cases and the studies need them
+    assert [line for line in lines if line.split()[1] != "True"] == []
+
+
 def test_standard_output_by_another_name_is_not_written_twice(tmp_path: Path) -> None:
     scene, target = short_scene(tmp_path), tmp_path / "out.txt"
     for name in ("/dev/stdout", str(target)):
