@@ -13,7 +13,7 @@ from pointcoord.chassis import ChassisMotion
 from pointcoord.effects import Plan
 from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Channel, Samples
-from pointcoord.reported_bounds import BodyLoss, no_loss
+from pointcoord.reported_bounds import BodyLoss, loss_of_least_squares
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
@@ -40,7 +40,7 @@ class Readout:
     chassis: ChassisMotion
     outboard: Array
     body_rates: BodyRates
-    body_loss: BodyLoss = no_loss
+    body_loss: BodyLoss = loss_of_least_squares
 
     def samples(self, times: Array, states: States) -> Samples:
         """Name the states and compute the effects of the plan from them."""

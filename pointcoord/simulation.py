@@ -34,7 +34,7 @@ from pointcoord.motion import Motion, Prover, Samples
 from pointcoord.printed import printed_body_loss, printed_body_rates, printed_square_velocity_term
 from pointcoord.proof import Proof, prove
 from pointcoord.readout import Readout, least_squares_rates
-from pointcoord.reported_bounds import Bounds, Reported, no_loss
+from pointcoord.reported_bounds import Bounds, Reported, loss_of_least_squares
 from pointcoord.scene import Scene
 from pointcoord.states import Sampler, solved_states
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
@@ -74,7 +74,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
         chassis=ChassisMotion.of(mechanism, scene.functions),
         outboard=scene.mechanism.outboard,
         body_rates=printed_body_rates if method == "printed" else least_squares_rates,
-        body_loss=printed_body_loss if method == "printed" else no_loss,
+        body_loss=printed_body_loss if method == "printed" else loss_of_least_squares,
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)

@@ -11,7 +11,8 @@ a, seen along z = a . right + i a . up, is off by
     |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
 
 where d a is at most the sum of its ends' errors and, of the spin axis, also at most the error of the
-knuckle's rotation times a, with the rounding of the ends; the smaller of the two. The ball joint is an end of
+knuckle's rotation times a, with the rounding of the ends, which are turned and moved in numbers as large as
+the car; the smaller of the two. The ball joint is an end of
 the arm as well, and no more is claimed of a line to it than of its ends.
 """
 
@@ -93,6 +94,11 @@ def _twice(solved: absolute.Solution) -> absolute.Solution:
     )
 
 
+def _size(position: Arrays) -> float:
+    """The longest side of the box around all points at the first instant, mm."""
+    return float(np.ptp(np.array([place[0] for place in position.values()]), axis=0).max())
+
+
 def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]) -> Array:
     start, end = line
     along = solved.position[end] - solved.position[start]
@@ -101,7 +107,8 @@ def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]
         turn, size = solved.rotation_error["knuckle"], np.abs(along)
         turned = np.roll(turn, -1, axis=-1) * np.roll(size, -2, axis=-1)
         turned += np.roll(turn, -2, axis=-1) * np.roll(size, -1, axis=-1)
-        rounded = EPS * np.abs(solved.position[end]) + EPS * np.abs(solved.position[start])
+        large = _size(solved.position)
+        rounded = sum(EPS * np.maximum(np.abs(solved.position[point]), large) for point in line)
         off = np.minimum(off, turned + rounded)
     right, up = np.array(part.right), np.array(part.up)
     seen = off @ np.abs(right) + off @ np.abs(up)

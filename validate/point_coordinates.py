@@ -14,6 +14,8 @@ from validate.formulation import NUMBERS_OF, Accuracy, FormulationError, Solutio
 
 Array = NDArray[np.float64]
 
+UNKNOWN = 1e-9
+
 
 @dataclass(frozen=True)
 class PointCoordinates:
@@ -50,17 +52,19 @@ class PointCoordinates:
             accuracy=Accuracy(
                 condition=proof.condition,
                 proven=True,
-                **{quantity: self._claims(motion, proof, quantity) for quantity in NUMBERS_OF},
+                **{quantity: self._claims(scene, motion, proof, quantity) for quantity in NUMBERS_OF},
             ),
             notes=motion.notes,
         )
 
-    def _claims(self, motion: Motion, proof: Proof, quantity: str) -> dict[str, Array]:
+    def _claims(self, scene: Scene, motion: Motion, proof: Proof, quantity: str) -> dict[str, Array]:
         """The proven error of each number, or the expected one where that is less.
 
         The proof sees how far off a number is, whatever the reason: a fault of the method would widen its
-        own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong.
+        own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong; but
+        where an input's terms cancel until few of its digits are left, only the proof knows what that does.
         """
+        uncertain = _uncertain_laws(scene)
         claims: dict[str, Array] = {}
         expected = getattr(proof.expected, quantity)
         for name, proven in getattr(proof.proven, quantity).items():
@@ -68,8 +72,18 @@ class PointCoordinates:
             number = np.isfinite(getattr(motion, quantity)[name])
             bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
             _refuse_unproven(self.name, motion, proof, f"{quantity.replace('_', ' ')} of {name}", bound)
-            claims[name] = np.where(number, np.minimum(proven, expected[name]), 0.0)
+            capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected[name])
+            claims[name] = np.where(number, np.minimum(proven, capped), 0.0)
         return claims
+
+
+def _uncertain_laws(scene: Scene) -> NDArray[np.bool_]:
+    """At which instants fewer than nine digits are known of an input, in parts of its largest value, (N,)."""
+    uncertain = np.zeros(len(scene.instants), dtype=bool)
+    for function in scene.functions.values():
+        largest = float(np.abs(function.series(scene.instants, 0)).max())
+        uncertain |= function.rounding(scene.instants) > UNKNOWN * largest
+    return uncertain
 
 
 def _refuse_unproven(who: str, motion: Motion, proof: Proof, what: str, bound: Array) -> None:
