@@ -35,7 +35,8 @@ def loss_of_least_squares(edges: tuple[Array, Array], rates: tuple[Array, Array]
     """How many times more than its terms least squares lose: the inertia of a thin triangle cancels.
 
     J has a condition number near k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined solution keeps a
-    rounding of eps k of what it corrects; 4e3 covers the sums that J is made of. Of any knuckle but a needle it is 1.
+    rounding of eps k of what it corrects; 4e3 covers the sums that J is made of. Of any knuckle but a needle
+    it is 1.
     """
     first, second = edges
     area = np.linalg.norm(np.cross(first, second), axis=-1, keepdims=True)
