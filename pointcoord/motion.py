@@ -116,7 +116,6 @@ class Motion(Samples):
         unit: the mechanism's size as a power of two, mm; scales of its coordinates.
         resample: evaluates the motion at other instants, if the method allows it.
         prover: proves samples of the motion; called by `proof`.
-        sizer: sums the magnitudes of terms; called by `term_sizes`.
     """
 
     method: str
@@ -127,7 +126,6 @@ class Motion(Samples):
     unit: float
     resample: Callable[[Array], Samples] | None
     prover: Prover
-    sizer: Callable[[], tuple[float, ...]]
 
     def __repr__(self) -> str:
         count = len(self.notes)
@@ -142,13 +140,6 @@ class Motion(Samples):
                 the method loses at most where nothing is wrong (`Proof.expected`); takes some times as long.
         """
         return self.prover(self, rates)
-
-    def term_sizes(self) -> tuple[float, ...]:
-        """Of each derivative solved for the largest sum of magnitudes of the terms that give it, mm/s**d.
-
-        Taken anywhere in the motion; empty if the derivatives were not summed.
-        """
-        return self.sizer()
 
     def at(self, instants: ArrayLike) -> Samples:
         """The same results at any instants inside the motion, without a new solve.

@@ -164,7 +164,7 @@ def _by_series(
         prover = SceneProver(readout, functions, sampler.coordinates, sampler.summed)
         samples = sampler(instants)
         _require_known(prover, samples, scene.tolerance)
-        solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism, sampler.term_sizes)
+        solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism)
         said = (*_drawing_notes(scene, moved), *_tolerance_notes(scene, settings, mechanism))
         return replace(solved, notes=(*said, *solved.notes))
 
@@ -213,7 +213,7 @@ def _by_newton(
         prover = SceneProver(readout, functions, solved.coordinates, _not_summed)
         _require_known(prover, samples, scene.tolerance)
         cost = pose.work + solved.work + work
-        found = _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism, tuple)
+        found = _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism)
         return replace(found, notes=(*_drawing_notes(scene, moved), *found.notes))
 
     try:
@@ -307,7 +307,6 @@ def _motion(
     resample: Callable[[Array], Samples] | None,
     prover: Prover,
     mechanism: Mechanism,
-    sizer: Callable[[], tuple[float, ...]],
 ) -> Motion:
     notes = []
     for channel in (samples.angular_velocity, samples.angular_acceleration):
@@ -329,5 +328,4 @@ def _motion(
         unit=float(mechanism.unit),
         resample=resample,
         prover=prover,
-        sizer=sizer,
     )

@@ -22,7 +22,7 @@ from pointcoord.mechanism import Mechanism
 from pointcoord.motion import Samples
 from pointcoord.readout import Readout
 from pointcoord.rigid import carried_series
-from pointcoord.summation import derivative_tables, evaluate
+from pointcoord.summation import evaluate
 from pointcoord.work import Work
 
 Array = NDArray[np.float64]
@@ -119,22 +119,6 @@ class Sampler:
             derivatives_evaluated=self.readout.plan.derivative + 1,
             coordinates_evaluated=sum(3 * len(names) * (derivatives + 1) for names, derivatives in requests),
         )
-
-    def term_sizes(self) -> tuple[float, ...]:
-        """Of each derivative the largest sum of magnitudes of the terms of any point, mm/s**d.
-
-        The rounding of a sum is in proportion to it, also where the sum itself is zero.
-        """
-        derivative = self.readout.plan.derivative
-        sizes = np.zeros(derivative + 1)
-        for segment, points in zip(self.chain.segments, self._point_series, strict=True):
-            terms = np.abs(np.concatenate(list(points.values()), axis=-1))
-            s = (segment.stop - segment.start) / segment.scale
-            tables = derivative_tables(terms, segment.scale, derivative)
-            powers = s ** np.arange(terms.shape[-2])
-            sums = [float(np.einsum("k,...ki->...i", powers, table).max()) for table in tables]
-            sizes = np.maximum(sizes, sums)
-        return tuple(sizes.tolist())
 
     def _requests(self, moving: list[str]) -> list[tuple[list[str], int]]:
         """Which points to evaluate to which derivative."""

@@ -11,7 +11,6 @@ import pointcoord.instants
 from pointcoord import NotComputed, Scene, UnknownName, assembly, newton, simulate
 from pointcoord.effects import EFFECTS, plan_effects
 from pointcoord.linear import Factors, factorise
-from pointcoord.states import Sampler
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.paper_car import PAPER
 
@@ -138,18 +137,3 @@ def test_a_plan_names_what_it_leaves_out_and_refuses_unknown_effects() -> None:
     with pytest.raises(UnknownName, match="did you mean 'velocity'") as caught:
         plan_effects(("velocty",))
     assert set(caught.value.valid) == set(EFFECTS)
-
-
-def test_sizes_of_terms_are_summed_only_when_they_are_asked_for(
-    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def forbidden(self: Sampler) -> tuple[float, ...]:
-        raise AssertionError("nobody asked")
-
-    asked = simulate(make_scene()).term_sizes()
-    # Of every derivative, and at least as large as what the terms sum to.
-    motion = simulate(make_scene())
-    for size, channel in zip(asked[1:], (motion.velocity, motion.acceleration), strict=True):
-        assert size >= max(np.abs(array).max() for array in channel.values())
-    monkeypatch.setattr(Sampler, "term_sizes", forbidden)
-    simulate(make_scene())
