@@ -4,14 +4,14 @@ import json
 import re
 import tomllib
 from datetime import UTC, datetime
-from importlib import metadata
+from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
-from program import PAST_ITS_END, ROOT, short_scene
+from program import PAST_ITS_END, short_scene
 
 from validate import bounds
 from validate.cli import main
@@ -46,11 +46,12 @@ def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) ->
 
 def test_the_schema_is_in_the_wheel() -> None:
     """All files of the packages are, unless git ignores them."""
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
+    sources = Path(__file__).parents[2]
+    settings = tomllib.loads((sources / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
     assert "validate" in settings["wheel"]["packages"]
     assert "exclude" not in settings["wheel"]
-    ignored = (ROOT / ".gitignore").read_text().split()
-    assert (ROOT / "validate" / "schema.json").is_file()
+    ignored = (sources / ".gitignore").read_text().split()
+    assert (resources.files("validate") / "schema.json").is_file()
     assert not [pattern for pattern in ignored if "json" in pattern]
 
 
