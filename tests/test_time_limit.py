@@ -29,7 +29,7 @@ def run(folder: Path, workers: str) -> tuple[int, str]:
     path.write_text(HANGING)
     command = [sys.executable, "-m", "pytest", "-c", str(ROOT / "pyproject.toml"), "-n", workers]
     done = subprocess.run(
-        [*command, "-o", "timeout=1", "-o", f"pythonpath={ROOT / 'tests'}", str(path)],
+        [*command, "-o", "timeout=1", "-o", f"pythonpath={ROOT / 'tests' / 'support'}", str(path)],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -26,9 +26,9 @@ from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.suspensions.macpherson import DRAWN
 from validate.closed_form import Closure
 from validate.inputs import rates
+from validate.reference import InfeasibleError, Instant, TruthError, solve_truth
+from validate.reference.exact import as_fraction
 from validate.singular import NearPose, near_pose
-from validate.truth import InfeasibleError, Instant, TruthError, solve_truth
-from validate.truth.exact import as_fraction
 
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")

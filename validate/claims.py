@@ -21,11 +21,11 @@ from pointcoord import SceneError
 from validate.formulation import NUMBERS_OF, FormulationError, Solution
 from validate.formulations import NAMES, formulation
 from validate.random_cars import RandomCar, random_car
+from validate.reference import TruthError
+from validate.reference.exact import as_fraction
+from validate.reference.instant import Instant
 from validate.report import table
 from validate.true_solution import DUST, as_solution, scales
-from validate.truth import TruthError
-from validate.truth.exact import as_fraction
-from validate.truth.instant import Instant
 from validate.verdicts import inputs_at, true_instant
 
 Array = NDArray[np.float64]

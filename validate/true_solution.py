@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.formulation import Accuracy, Solution
-from validate.truth.instant import Instant
+from validate.reference.instant import Instant
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]

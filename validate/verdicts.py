@@ -10,9 +10,9 @@ from pointcoord import Scene
 from validate.compare import compare_solutions
 from validate.formulation import Solution
 from validate.inputs import rates
+from validate.reference import InfeasibleError, TruthError, solve_truth
+from validate.reference.instant import Instant
 from validate.true_solution import as_solution
-from validate.truth import InfeasibleError, TruthError, solve_truth
-from validate.truth.instant import Instant
 
 NO_OBSTACLE = "no obstacle found"
 NEITHER_WRONG = "neither wrong by its own tolerance"

@@ -20,9 +20,9 @@ from validate.bounds_report import (
     of_strut,
 )
 from validate.input_ends import Linkage
+from validate.reference import InfeasibleError, solve_truth
 from validate.singular import approach, near_pose
 from validate.strategies import cars
-from validate.truth import InfeasibleError, solve_truth
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # A pose takes 40 ms, so the short profile searches briefly and the deep one as long as any.

@@ -21,8 +21,8 @@ from validate.formulations import formulation
 from validate.hard.cars import BESIDE_CAR, PAPER_CAR, any_rotation, turned
 from validate.input_ends import Car, Linkage
 from validate.paper_car import mirrored
+from validate.reference import TruthError
 from validate.strategies import cars, make_scene
-from validate.truth import TruthError
 from validate.verdicts import inputs_at, true_instant
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from validate.hard.case import Case
 from validate.hard.catalogue import CASES, FEW_VALUES
 from validate.hard.run import as_expected, examine
 from validate.input_ends import STRUT, Linkage
-from validate.truth import InfeasibleError, solve_truth
+from validate.reference import InfeasibleError, solve_truth
 
 Array = NDArray[np.float64]
 BY_NAME = {case.name: case for case in beside.CASES}

@@ -33,7 +33,7 @@ from validate.hard.oriented import followed, sides
 from validate.hard.sides import drawn_choices, try_on_side
 from validate.hard.trial import Tried
 from validate.paper_car import PAPER
-from validate.truth import InfeasibleError, count_assemblies, solve_truth
+from validate.reference import InfeasibleError, count_assemblies, solve_truth
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -9,7 +9,7 @@ import pytest
 from validate.hard.case import Case
 from validate.hard.dead_points import ARM_ANGLES, CARS, CASES, arm_ends, rack_ends
 from validate.hard.run import as_expected, examine
-from validate.truth import InfeasibleError, Instant, solve_truth
+from validate.reference import InfeasibleError, Instant, solve_truth
 
 BY_NAME = {case.name: case for case in CASES}
 

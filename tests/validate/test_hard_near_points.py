@@ -13,8 +13,8 @@ from validate.hard.content import paper_car
 from validate.hard.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
 from validate.paper_car import PAPER
-from validate.truth import AmbiguousAssemblyError, Choices
-from validate.truth.equations import LINKS, NUMBER_OF
+from validate.reference import AmbiguousAssemblyError, Choices
+from validate.reference.equations import LINKS, NUMBER_OF
 from validate.verdicts import inputs_at, true_instant, true_solution
 
 EPS = float(np.finfo(float).eps)

@@ -19,7 +19,7 @@ from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
 from validate.hard.case import FAILS, RIGHT, Case
 from validate.hard.content import SQUARE, paper_car
 from validate.hard.trial import Facts, Tried, decades, scene_case
-from validate.truth import solve_truth
+from validate.reference import solve_truth
 
 GROUP = "4. Body rates"
 VALUES = (*decades(-12, -1), 0.0)

@@ -11,7 +11,7 @@ from validate.drawings import as_tuple
 from validate.hard.content import Law, paper_car
 from validate.input_ends import Car
 from validate.paper_car import PAPER, Points, mirrored
-from validate.truth import solve_truth
+from validate.reference import solve_truth
 
 Array = NDArray[np.float64]
 

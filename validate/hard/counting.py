@@ -19,7 +19,7 @@ from validate.hard.oriented import followed
 from validate.hard.sides import try_on_side
 from validate.input_ends import Linkage
 from validate.paper_car import PAPER
-from validate.truth import Choices, count_assemblies
+from validate.reference import Choices, count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 STARTS = 1000

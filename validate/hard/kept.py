@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pointcoord import Motion, Scene
 from pointcoord.suspensions.macpherson import DRAWN
 from validate.inputs import rates
-from validate.truth import TruthError
+from validate.reference import TruthError
 from validate.verdicts import inputs_at, true_instant
 
 Array = NDArray[np.float64]

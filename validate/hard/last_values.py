@@ -17,7 +17,7 @@ from validate.drawings import as_tuple
 from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, RIGHT, UP, WIDE_CAR, any_rotation, turned
 from validate.input_ends import Car, Linkage
 from validate.paper_car import mirrored
-from validate.truth import InfeasibleError, SingularPoseError, solve_truth
+from validate.reference import InfeasibleError, SingularPoseError, solve_truth
 
 DIGITS = 15  # of the truth: only whether there is a pose counts, which is proven anyhow
 NEAR = 1e-6  # of the range: what the rough end, good to rounding, is off by at most

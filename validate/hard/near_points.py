@@ -19,7 +19,7 @@ from validate.hard.content import decades, paper_car
 from validate.hard.sides import try_on_side
 from validate.input_ends import Linkage
 from validate.paper_car import PAPER
-from validate.truth import solve_truth
+from validate.reference import solve_truth
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]

@@ -24,7 +24,7 @@ from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import LastValue, car_called, home, last_value
 from validate.hard.trial import scene_case
 from validate.inputs import rates
-from validate.truth import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, TruthError
 from validate.verdicts import inputs_at, true_instant
 
 GROUP = "9. Reachable range"

@@ -16,21 +16,21 @@ from validate.formulation import Solution
 from validate.hard.case import Answer, Trial
 from validate.hard.judged import judged_answer
 from validate.hard.trial import Measure, Tried, solved, try_scene
+from validate.reference import AmbiguousAssemblyError, Choices, Instant, TruthError
+from validate.reference.branches import candidate
+from validate.reference.closures import equations_for
+from validate.reference.design import Design, Driven, exact_vector, values_only
+from validate.reference.instant import prove_instant
+from validate.reference.solve import with_enough_digits
+from validate.reference.vectors import cross, dot, minus
 from validate.true_solution import as_solution
-from validate.truth import AmbiguousAssemblyError, Choices, Instant, TruthError
-from validate.truth.branches import candidate
-from validate.truth.closures import equations_for
-from validate.truth.design import Design, Driven, exact_vector, values_only
-from validate.truth.instant import prove_instant
-from validate.truth.solve import with_enough_digits
-from validate.truth.vectors import cross, dot, minus
 from validate.verdicts import inputs_at
 
 DIGITS = 60
 
 
 def drawn_choices(scene: Scene) -> Choices:
-    """The four signs of a drawing, from exact products (see `validate.truth.Choices`).
+    """The four signs of a drawing, from exact products (see `validate.reference.Choices`).
 
     Raises:
         AmbiguousAssemblyError: a product is exactly zero, so that nothing tells the side.

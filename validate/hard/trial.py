@@ -21,7 +21,7 @@ from validate.hard.case import Answer, Case, Expected, Trial
 from validate.hard.content import decades as decades
 from validate.hard.content import paper_car as paper_car
 from validate.hard.judged import judged_answer
-from validate.truth import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, TruthError
 from validate.verdicts import true_solution
 
 Facts = Mapping[str, float | str]

@@ -1,0 +1,304 @@
+"""How each error class can be met: what raises it, parts of its message, and the data it carries."""
+
+import importlib
+import sys
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from math import comb
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from flint import arb, ctx
+
+import absolute
+import absolute.backend
+import pointcoord
+from absolute.assemble import assemble
+from absolute.assembly import Mechanism
+from absolute.continuation import follow
+from pointcoord.hardpoints import build_mechanism
+from pointcoord.rigid import body_rates
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate import cli, compare
+from validate.deep_store import Store
+from validate.formulation import Accuracy
+from validate.formulations import formulation
+from validate.hard.catalogue import chosen
+from validate.motion_tables import write_motion
+from validate.reference import solve_truth
+from validate.reference.branches import candidate, choices_of_table
+from validate.reference.certificate import certify, refine
+from validate.reference.design import Design, Driven, values_only
+from validate.reference.equations import unknown_of
+from validate.reference.exact import bits
+
+BOUNCE = pointcoord.Scene.load("bounce")
+TABLE = dict(BOUNCE.mechanism.points)
+UPRIGHT = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0.0]])}
+IN_LINE = np.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
+# The arm's axis is level and the arm stands upright: the ball joint is on top of its circle.
+TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, -300, 0)}
+
+
+class Recipe(NamedTuple):
+    """What raises an error, parts of its message, and its attributes: values, or tests of them."""
+
+    cook: Callable[[Path, pytest.MonkeyPatch], object]
+    words: tuple[str, ...]
+    data: Mapping[str, object] = {}
+
+
+def changed(**sections: Mapping[str, Any]) -> pointcoord.Scene:
+    """The built-in bounce with other inputs, times or points."""
+    content = BOUNCE.model_dump(exclude_none=True)
+    for section, changes in sections.items():
+        content[section].update(changes)
+    return pointcoord.Scene.from_mapping(content, "mine")
+
+
+def jumping() -> pointcoord.Scene:
+    """The arm jumps by 0.01 rad within a nanosecond: cubics of size 1e25 that rounding cannot hold."""
+    times = (0.0, 0.2, 0.5, 0.5 + 1e-9, 0.8, 1.0)
+    arm = {"table": {"times": times, "values": [1.6, 1.6, 1.6, 1.61, 1.61, 1.61]}}
+    return changed(inputs={"arm_angle": arm}, time={"start": 0.5 - 2e-8, "stop": 0.5 + 2e-9})
+
+
+def cancelling(power_of_two: int) -> pointcoord.Scene:
+    """The rack goes 16 (t - start)^6 mm, multiplied out: terms of up to 20 start^6 each cancel to that."""
+    start = 2.0**power_of_two
+    terms = [16.0 * comb(6, k) * (-start) ** (6 - k) for k in range(7)]
+    laws = {"rack": {"polynomial": terms}, "arm_angle": {"constant": 1.6}}
+    return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
+
+
+def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
+    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+
+
+def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
+    patch.setitem(sys.modules, "pinocchio", None)
+    return importlib.reload(absolute.backend)
+
+
+def blocked() -> object:
+    """A path along which the rack goes half a metre."""
+    mechanism = Mechanism(absolute.macpherson(TABLE, closure="collinear"))
+    begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
+
+    def path(share: float) -> Any:
+        values = [a + share * c for a, c in zip(begin, change, strict=True)]
+        return mechanism.targets(values, change, [0.0, 0.0])
+
+    return follow(mechanism, assemble(mechanism)[0], path)
+
+
+def uncertified() -> object:
+    """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
+    with ctx.workprec(bits(60)):
+        design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
+        known = values_only(design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)})))
+        drawn = candidate(known, choices_of_table(design.table, design.up, "collinear"))
+        assembled = refine(unknown_of(drawn.points, known), known)
+        assembled[0] = (assembled[0] + arb("1e-59")).mid()
+        return certify(assembled, known, Fraction(1, 10**60))
+
+
+RECIPES: dict[str, Recipe] = {
+    "pointcoord.errors.SceneError": Recipe(
+        lambda *_: changed(time={"stop": -1.0}),
+        ("mine: time:", "-1.0", "allowed: start < stop"),
+        {"source": "mine", "key": "time"},
+    ),
+    "pointcoord.errors.UnknownName": Recipe(
+        lambda *_: pointcoord.simulate(BOUNCE).position["wheel_center"],
+        ("wheel_center", "did you mean 'wheel_centre'?", "lower_arm_front"),
+        {"kind": "position", "name": "wheel_center", "valid": lambda names: "wheel_centre" in names},
+    ),
+    "pointcoord.errors.NotComputed": Recipe(
+        lambda *_: pointcoord.simulate(BOUNCE.model_copy(update={"effects": ()})).wheel["camber"],
+        ("camber was not computed", "add 'wheel_angles'"),
+        {"effect": "wheel_angles", "quantity": lambda name: "camber" in name},
+    ),
+    "pointcoord.errors.MechanismError": Recipe(
+        lambda *_: build_mechanism(COLLINEAR, {**TABLE, "strut_lower": TABLE["lower_ball_joint"]}, UPRIGHT),
+        ("link", "lower_ball_joint", "strut_lower", "no length", "move one"),
+        {"names": lambda names: set(names) == {"lower_ball_joint", "strut_lower"}, "problem": bool},
+    ),
+    "pointcoord.errors.InputOutOfRange": Recipe(
+        lambda *_: pointcoord.simulate(changed(inputs={"arm_angle": {"constant": 3.5}})),
+        ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
+        {"name": "arm_angle", "value": 3.5, "instant": 0.0, "allowed": bool},
+    ),
+    "pointcoord.errors.InputNotKnown": Recipe(
+        lambda *_: pointcoord.simulate(cancelling(15)),
+        ("input 'rack' is not known at t = 32768 s", "its polynomial cancel to 0", "off by 3.1", "a table"),
+        {"name": "rack", "law": "polynomial", "value": 0.0, "doubt": lambda doubt: 3.0 < doubt < 3.2},
+    ),
+    "pointcoord.errors.AssemblyError": Recipe(
+        lambda *_: pointcoord.simulate(
+            changed(inputs={"rack": {"polynomial": (0.0, 100.0)}, "arm_angle": {"constant": 1.6}})
+        ),
+        ("t = ", "wanted", "rack = ", "stopped at", "condition number", "tie_rod", "bring 'rack' back"),
+        {
+            "reduce": "rack",
+            "reached": lambda values: 0.0 < values["rack"] < 260.0,
+            "instant": np.isfinite,
+            "limits": lambda links: any("tie_rod" in link for link in links),
+            "partial": lambda motion: isinstance(motion, pointcoord.Motion) and len(motion.times) > 1,
+        },
+    ),
+    "pointcoord.errors.MotionTooLong": Recipe(
+        lambda _, pretend: (
+            pretend.setattr("pointcoord.chain.MOST_SEGMENTS", 5),
+            pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}})),
+        ),
+        ("from 0 to 2.6 s", "segments; allowed: 5", "reach t = ", "slow the inputs down", "'newton'"),
+        {"limit": 5, "stop": 2.6, "instant": np.isfinite, "partial": bool},
+    ),
+    "pointcoord.errors.MotionTooRough": Recipe(
+        lambda *_: pointcoord.simulate(jumping()),
+        ("input 'arm_angle' changes too fast", "after t = 0.4999999", "'newton'"),
+        {"name": "arm_angle", "instant": 0.5 - 2e-8, "partial": lambda motion: motion is None},
+    ),
+    "pointcoord.errors.SingularConfiguration": Recipe(
+        lambda *_: body_rates(IN_LINE, IN_LINE, IN_LINE),
+        ("in one line", "turn about that line is free", "condition number", "move an input or a point"),
+        {"free": bool, "condition": lambda number: number > 1e14},
+    ),
+    "pointcoord.errors.OutsideMotion": Recipe(
+        lambda *_: pointcoord.simulate(BOUNCE).at(2.7),
+        ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
+        {"instant": 2.7, "start": 0.0, "stop": 2.6},
+    ),
+    "absolute.continuation.BlockedError": Recipe(
+        lambda *_: blocked(),
+        ("blocked at 0.", "of the way"),
+        {
+            "share": lambda share: 0.0 < share < 1.0,
+            "pose": lambda pose: pose is not None,
+            "corrections": bool,
+        },
+    ),
+    "absolute.errors.DescriptionError": Recipe(
+        lambda *_: solved({"strut_top": (1.0, float("nan"), 2.0)}),
+        ("point 'strut_top'", "nan", "three finite numbers"),
+        {"name": "strut_top", "value": lambda value: len(value) == 3},
+    ),
+    "absolute.errors.InputError": Recipe(
+        lambda *_: solved({}, {**HELD, "rack": np.array([[0.0, np.inf, 0.0]])}),
+        ("rack", "inf", "instant 0", "finite"),
+        {"name": "rack", "instant": 0},
+    ),
+    "absolute.errors.AssemblyError": Recipe(
+        lambda *_: solved({"rack_centre": (570, 60, 2000)}),
+        ("the drawing cannot be assembled", "mm", "draw the points closer"),
+        {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
+    ),
+    "validate.formulation.AccuracyError": Recipe(
+        lambda *_: Accuracy(condition=np.ones(2), position={"wheel_centre": np.full((2, 3), -1.0)}),
+        ("position of wheel_centre", "-1", "finite numbers from 0 up"),
+        {"claim": "position of wheel_centre", "problem": bool, "allowed": bool},
+    ),
+    "absolute.errors.MissingPinocchioError": Recipe(
+        lambda _, patch: without_pinocchio(patch),
+        ("Pinocchio", "pip install 'pointcoord[validate]'"),
+        {},
+    ),
+    "absolute.errors.BranchError": Recipe(
+        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
+        ("no branch", "tie rod beside the kingpin"),
+        {"side": bool, "drawn": np.isfinite},
+    ),
+    "absolute.errors.UnreachableError": Recipe(
+        lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),
+        ("instant 0", "rack = 500", "locks at", "condition number", "Keep the inputs inside"),
+        {
+            "instant": 0,
+            "inputs": lambda inputs: inputs["rack"] == 500.0,
+            "reached": lambda inputs: inputs["rack"] < 260.0,
+        },
+    ),
+    "absolute.errors.SingularError": Recipe(
+        # The ball joint is on the axis that it turns about; the strut is drawn along its own line.
+        lambda *_: solved(
+            {"lower_ball_joint": (432, -8, -16), "strut_lower": (434.8, -25.2, 32.6)}
+            | {"strut_rod_end": (446, -94, 227)}
+        ),
+        ("singular", "condition number", "can be solved", "Look for points on one line"),
+        {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
+    ),
+    "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
+    "validate.commands.usage.UsageError": Recipe(
+        lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
+        ("simulat", "invalid choice", "pointcoord --help"),
+    ),
+    "validate.deep_store.StoreError": Recipe(
+        lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
+    ),
+    "validate.formulation.FormulationError": Recipe(
+        lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
+        ("pointcoord: ", "rack = 500", "bring 'rack' back"),
+        {"formulation": "pointcoord", "reason": lambda it: isinstance(it, pointcoord.AssemblyError)},
+    ),
+    "validate.formulations.UnknownFormulation": Recipe(
+        lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
+    ),
+    "validate.extras.MissingPackage": Recipe(
+        lambda _, pretend: (
+            pretend.delitem(sys.modules, "validate.absolute_coordinates", raising=False),
+            pretend.setitem(sys.modules, "absolute", None),
+            formulation("absolute"),
+        ),
+        ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
+        {"part": "absolute", "package": "absolute"},
+    ),
+    "validate.files.OutputError": Recipe(
+        lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
+        ("x.csv: cannot be written", "there is no folder"),
+        {"target": lambda name: name.endswith("x.csv"), "problem": bool},
+    ),
+    "validate.files.UnknownEnding": Recipe(
+        lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
+        ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
+        {"target": "motion.xlsx"},
+    ),
+    "validate.hard.catalogue.UnknownCase": Recipe(
+        lambda *_: chosen(["arm-higest"]),
+        ("no hard case is called 'arm-higest'", "near names: ", "--list"),
+        {"name": "arm-higest"},
+    ),
+    "validate.reference.errors.TruthError": Recipe(
+        lambda *_: (
+            solve_truth({**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}).camber
+        ),
+        ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
+    ),
+    "validate.reference.errors.BadInputError": Recipe(
+        lambda *_: solve_truth(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),
+        ("side is 'middle'", "allowed is 'left' or 'right'"),
+        {"what": "side", "value": "middle", "allowed": bool},
+    ),
+    "validate.reference.errors.InfeasibleError": Recipe(
+        lambda *_: solve_truth(TABLE, {"arm_angle": (1.5, 0, 0), "rack": (500, 0, 0)}),
+        ("tie_rod closure misses by", "mm", "limit 0", "try less rack travel"),
+        {"closure": "tie_rod", "gap": lambda gap: gap > 0.0},
+    ),
+    "validate.reference.errors.AmbiguousAssemblyError": Recipe(
+        lambda *_: solve_truth(
+            {**TABLE, **TOP, "lower_ball_joint": (0, 0, -300)}, {"arm_angle": (3.0, 0, 0)}
+        ),
+        ("arm choice", "limit"),
+        {"what": bool, "value": np.isfinite, "limit": np.isfinite},
+    ),
+    "validate.reference.errors.NotDecidedError": Recipe(
+        lambda *_: uncertified(), ("limit",), {"what": bool, "value": bool, "limit": bool}
+    ),
+    "validate.reference.errors.SingularPoseError": Recipe(
+        lambda *_: solve_truth({**TABLE, **TOP}, {"arm_angle": (0, 1, 0)}),
+        ("no certificate with 400 digits", "dead point", "move an input"),
+        {"digits": 400, "reason": lambda reason: type(reason).__name__ == "NotDecidedError"},
+    ),
+}

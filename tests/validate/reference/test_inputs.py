@@ -1,0 +1,151 @@
+"""What may be given, and what is said when it may not."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from mpmath import mpf
+
+from validate.reference import BadInputError, TruthError, solve_truth, time_function_value
+from validate.reference.exact import as_fraction
+from validate.reference.jet import Jet
+
+Table = dict[str, tuple[Any, ...]]
+STILL = {"arm_angle": (1.5, 0, 0)}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [0.1, np.float64(0.1), np.float32(0.1), mpf(0.1), Fraction(1, 3), Decimal("0.1"), 3, -1e-320],
+)
+def test_every_kind_of_number_is_taken_exactly(value: Any) -> None:
+    assert as_fraction(value, "it") == Fraction(*(int(part) for part in value.as_integer_ratio()))
+    assert as_fraction(np.int64(3), "it") == 3
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, mpmath.inf, mpmath.nan, "1", None, 1j, Decimal("nan")])
+def test_what_is_not_a_finite_real_number_is_refused_by_name(value: object) -> None:
+    with pytest.raises(BadInputError, match=r"rack is .*; allowed is a finite real number"):
+        as_fraction(value, "rack")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"points": {}}, "exactly the names"),
+        ({"inputs": {"rack": (0, 0, 0)}}, "at least arm_angle"),
+        ({"inputs": {**STILL, "camber": (0, 0, 0)}}, "one of arm_angle, rack, heave"),
+        ({"inputs": {"arm_angle": (1.5, 0)}}, "value, rate, acceleration"),
+        ({"up": (0, 0, 2)}, "unit vectors"),
+        ({"up": (0, 0.6, 0.8)}, "right angles"),
+        ({"up": (0, 1)}, "three numbers"),
+        ({"side": "port"}, "'left' or 'right'"),
+        ({"digits": 1000}, "15 to 200"),
+        ({"guess": {"hub": (0, 0, 0)}}, "names among"),
+    ],
+)
+def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
+    table: Table, change: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(BadInputError, match=message):
+        solve_truth(**{"points": table, "inputs": STILL, **change}, closure="collinear")
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "message"),
+    [
+        ("strut_rod_end", (460, -180, 470), "length between points 8 and 4"),
+        ("lower_arm_rear", (270, -5, 90), "axis not along up"),
+        ("tie_rod_outer", (454, -310, 80), "a triangle 5, 6, 7"),
+        ("strut_top", (460, -180, math.inf), "finite real number"),
+    ],
+)
+def test_a_mechanism_without_extent_is_refused(
+    table: Table, name: str, place: tuple[float, ...], message: str
+) -> None:
+    with pytest.raises(BadInputError, match=message):
+        solve_truth({**table, name: place}, STILL, closure="collinear")
+
+
+def test_a_strut_top_in_the_ball_joint_is_an_error_and_never_a_number(table: Table) -> None:
+    with pytest.raises(TruthError):
+        solve_truth({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
+
+
+def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:
+    hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
+    truth = solve_truth(hub_in_axis, STILL, closure="collinear")
+    assert abs(truth.kingpin) < 1
+    with pytest.raises(TruthError, match="camber"):
+        _ = truth.camber
+
+
+def test_a_polynomial_of_floats_is_exact() -> None:
+    value, rate, acceleration = time_function_value({"polynomial": [0.1, 0.2, 0.3]}, 0.7, 15)
+    t, a, b, c = (Fraction(x) for x in (0.7, 0.1, 0.2, 0.3))
+    expected = (a + b * t + c * t * t, b + 2 * c * t, 2 * c)
+    assert tuple(as_fraction(x, "x") for x in (value, rate, acceleration)) == expected
+
+
+def test_a_constant_rests() -> None:
+    assert time_function_value({"constant": -2.5}, 1e9) == (-2.5, 0, 0)
+
+
+@pytest.mark.parametrize("t", [0, 0.3, 1e12, Fraction(1, 3)])
+@pytest.mark.parametrize("digits", [30, 60, 150])
+def test_the_sine_has_all_its_digits_even_at_late_times(t: Any, digits: int) -> None:
+    given = {"offset": 0.1, "amplitude": 2.5, "angular_frequency": 7.3, "phase": 0.4}
+    with mpmath.workdps(300):
+        w, a = mpf(7.3), mpf(2.5)
+        time = Fraction(t)
+        phase = w * mpf(time.numerator) / time.denominator + mpf(0.4)
+        sine, cosine = mpmath.sin(phase), mpmath.cos(phase)
+        expected = (mpf(0.1) + a * sine, a * w * cosine, -a * w**2 * sine)
+        for got, want in zip(time_function_value({"sine": given}, t, digits), expected, strict=True):
+            assert abs(got - want) <= abs(want) * mpf(10) ** -digits
+
+
+def test_a_sine_next_to_a_zero_keeps_its_relative_digits() -> None:
+    with mpmath.workdps(300):
+        t = Fraction(mpmath.nstr(mpmath.pi, 60))
+        expected = mpmath.sin(mpf(t.numerator) / t.denominator)
+        value, _, _ = time_function_value({"sine": {"amplitude": 1, "angular_frequency": 1}}, t, 60)
+        assert abs(expected) < mpf("1e-55")
+        assert abs(value - expected) <= abs(expected) * mpf("1e-60")
+
+
+def test_a_sine_that_vanishes_is_exactly_zero() -> None:
+    value, rate, acceleration = time_function_value({"sine": {"amplitude": 3, "angular_frequency": 2}}, 0)
+    assert (value, rate, acceleration) == (0, 6, 0)
+
+
+@pytest.mark.parametrize(
+    "definition",
+    [
+        {},
+        {"table": [1]},
+        {"constant": 1, "polynomial": [1]},
+        {"polynomial": []},
+        {"polynomial": "12"},
+        {"polynomial": [math.nan]},
+        {"sine": {"amplitude": 1}},
+        {"sine": {"amplitude": 1, "angular_frequency": 1, "frequency": 2}},
+        {"sine": 3},
+    ],
+)
+def test_a_time_function_that_makes_no_sense_is_refused(definition: dict[str, Any]) -> None:
+    with pytest.raises(BadInputError):
+        time_function_value(definition, 1.0)
+
+
+def test_jets_combine_with_plain_numbers_from_both_sides() -> None:
+    jet = Jet(3, 5, 7)
+    assert 2 * jet == jet * 2 == Jet(6, 10, 14)
+    assert 2 + jet == jet + 2 == Jet(5, 5, 7)
+    assert 2 - jet == Jet(-1, -5, -7)

@@ -1,0 +1,157 @@
+"""What the paper's own numbers say, and what they cannot."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import mpmath
+import pytest
+from mpmath import mpf
+
+from validate.reference import InfeasibleError, solve_truth, time_function_value
+from validate.reference.vectors import dot, minus
+
+Table = dict[str, tuple[int, int, int]]
+
+# (t, x10, y10, z10); the row printed as 2.2 s is t = 2.4 s.
+TABLE_2: list[tuple[float, float, float, float]] = [
+    (0.0, 451, -291, 315),
+    (0.2, 446, -305, 305),
+    (0.6, 440, -334, 277),
+    (1.0, 437, -364, 234),
+    (1.2, 436, -378, 208),
+    (1.6, 437, -401, 146),
+    (2.0, 440, -415, 71.6),
+    (2.4, 444, -412, -12),
+    (2.6, 447, -404, -57),
+]
+# (t, x10, y10, z10); the last z is printed -60 where the sequence needs +60.
+TABLE_3: list[tuple[float, float, float, float]] = [
+    (0.00, 440.4, -415, 63),
+    (0.05, 434, -415, 63.5),
+    (0.10, 427, -414, 63.5),
+    (0.15, 420, -413, 63.3),
+    (0.20, 413.7, -411, 63),
+    (0.25, 407, -409, 62.4),
+    (0.30, 400.4, -406, 62),
+    (0.35, 394, -402, 60.7),
+    (0.40, 389, -398, 60),
+]
+THETA = {"polynomial": [0.8, 0.25, 0.0625]}
+RACK = {"polynomial": [0, 150, 25]}
+
+
+def table_angle() -> mpf:
+    """theta from Table 1's own z5 - z1 = -30 and d51."""
+    return mpmath.acos(mpf(-30) / mpmath.sqrt(180**2 + 325**2 + 30**2))
+
+
+def test_table_1_is_reached_at_94_617_degrees_in_all_but_the_strut(table: Table) -> None:
+    assert mpmath.degrees(table_angle()) == pytest.approx(94.617, abs=5e-4)
+    truth = solve_truth(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    for name in ("lower_ball_joint", "tie_rod_inner"):
+        assert max(abs(x) for x in minus(truth.position[name], table[name])) < mpf("1e-57")
+    for name in ("strut_lower", "strut_rod_end", "tie_rod_outer"):
+        assert max(abs(x) for x in minus(truth.position[name], table[name])) > 0.5
+
+
+def test_table_1_bends_the_strut_by_7_94_degrees_and_the_assembly_does_not(table: Table) -> None:
+    def bend(p: dict[str, tuple[mpf, mpf, mpf]]) -> mpf:
+        a = minus(p["strut_lower"], p["lower_ball_joint"])
+        b = minus(p["strut_top"], p["strut_rod_end"])
+        return mpmath.degrees(mpmath.acos(dot(a, b) / mpmath.sqrt(dot(a, a) * dot(b, b))))
+
+    given = {name: (mpf(x), mpf(y), mpf(z)) for name, (x, y, z) in table.items()}
+    assert bend(given) == pytest.approx(7.94, abs=0.005)
+    truth = solve_truth(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    assert abs(bend(dict(truth.position))) < mpf("1e-35")
+
+
+def test_the_printed_wheel_centres_differ_from_table_1_by_10_3_mm_mostly_in_y(table: Table) -> None:
+    apart = []
+    for t, x, y, z in TABLE_2:
+        truth = solve_truth(table, {"arm_angle": time_function_value(THETA, t)}, closure="collinear")
+        apart.append([float(x) for x in minus((x, y, z), truth.position["wheel_centre"])])
+    for t, x, y, z in TABLE_3:
+        inputs = {"arm_angle": (math.pi / 2, 0, 0), "rack": time_function_value(RACK, t)}
+        truth = solve_truth(table, inputs, closure="collinear")
+        apart.append([float(x) for x in minus((x, y, z), truth.position["wheel_centre"])])
+    squares = [x * x for row in apart for x in row]
+    assert math.sqrt(sum(squares) / len(squares)) == pytest.approx(10.3, abs=0.1)
+    assert sum(row[1] for row in apart) / len(apart) == pytest.approx(-15, abs=2)
+
+
+def test_the_reachable_range_ends_where_a_closure_does(table: Table) -> None:
+    def reach(name: str, near: float, beyond: float) -> tuple[float, str]:
+        closure = ""
+        while abs(beyond - near) > 1e-4:
+            middle = (near + beyond) / 2
+            inputs = {"arm_angle": (math.pi / 2, 0, 0), name: (middle, 0, 0)}
+            try:
+                solve_truth(table, inputs, digits=15, closure="collinear")
+                near = middle
+            except InfeasibleError as error:
+                beyond, closure = middle, error.closure
+        return near, closure
+
+    for beyond, degrees in ((0.1, 32.228), (3.0, 152.013)):
+        angle, closure = reach("arm_angle", 1.5, beyond)
+        assert math.degrees(angle) == pytest.approx(degrees, abs=0.01)
+        assert closure == "arm"
+    for beyond, travel in ((-200.0, -89.066), (200.0, 130.101)):
+        rack, closure = reach("rack", 0.0, beyond)
+        assert rack == pytest.approx(travel, abs=0.01)
+        assert closure == "tie_rod"
+
+
+def test_angles_follow_equations_16_and_17_and_are_those_of_the_mirrored_right_wheel(table: Table) -> None:
+    inputs = {"arm_angle": (1.5, 0, 0), "rack": (20, 0, 0)}
+    left = solve_truth(table, inputs, closure="collinear")
+    names = ("lower_ball_joint", "strut_lower", "wheel_centre")
+    (y5, z5), (y7, z7), (y10, z10) = (left.position[name][1:] for name in names)
+    assert abs(left.kingpin - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
+    assert abs(left.camber - mpmath.atan((z7 - z10) / (y7 - y10))) < mpf("1e-58")
+    assert left.kingpin > 0  # point 5 lies outboard of 7
+
+    mirrored = {name: (x, -y, z) for name, (x, y, z) in table.items()}
+    right = solve_truth(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
+    assert abs(right.kingpin - left.kingpin) < mpf("1e-58")
+    assert abs(right.camber - left.camber) < mpf("1e-58")
+
+
+def test_a_wheel_that_leans_out_at_the_top_has_positive_camber(table: Table) -> None:
+    # The design's spin axis is level in the table; jounce (a smaller theta) leans this wheel out.
+    assert solve_truth(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").camber > 0
+    truth = solve_truth(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
+    outward = minus(truth.position["wheel_centre"], truth.position["strut_lower"])
+    assert outward[2] < 0  # the axle points down and out
+
+
+def test_the_knuckle_keeps_the_shape_and_handedness_of_the_table(table: Table) -> None:
+    truth = solve_truth(table, {"arm_angle": (2.2, 0, 0), "rack": (-40, 0, 0)}, closure="collinear")
+    names = ("lower_ball_joint", "tie_rod_outer", "strut_lower", "wheel_centre")
+    for i, a in enumerate(names):
+        for b in names[i + 1 :]:
+            now, then = minus(truth.position[a], truth.position[b]), minus(table[a], table[b])
+            assert abs(dot(now, now) - dot(then, then)) < mpf("1e-54")
+
+    def volume(p: dict[str, tuple[mpf, mpf, mpf]]) -> mpf:
+        a, b, c = (minus(p[name], p[names[0]]) for name in names[1:])
+        return (
+            a[0] * (b[1] * c[2] - b[2] * c[1])
+            - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+        )
+
+    assert abs(volume(dict(truth.position)) - volume(table)) < mpf("1e-50")
+
+
+def test_floats_are_the_nearest_to_the_truth(table: Table) -> None:
+    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    for value, number in zip(
+        truth.position_as_float("wheel_centre"), truth.position["wheel_centre"], strict=True
+    ):
+        error = abs(mpf(value) - number)
+        assert error <= min(abs(mpf(math.nextafter(value, to)) - number) for to in (-math.inf, math.inf))
+        assert error + truth.radius < Fraction(math.ulp(value)) / 2 + Fraction(1, 10**50)

@@ -1,0 +1,57 @@
+"""A number with its derivative by one parameter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from validate.reference.vectors import Scalar
+
+
+@dataclass(frozen=True)
+class Dual:
+    """(x, dx): sums, products and quotients follow the rules of differentiation."""
+
+    value: Scalar
+    slope: Scalar = 0
+
+    def __add__(self, other: Scalar) -> Dual:
+        return Dual(self.value + value_of(other), self.slope + slope_of(other))
+
+    def __sub__(self, other: Scalar) -> Dual:
+        return Dual(self.value - value_of(other), self.slope - slope_of(other))
+
+    def __mul__(self, other: Scalar) -> Dual:
+        x = value_of(other)
+        return Dual(self.value * x, self.slope * x + self.value * slope_of(other))
+
+    def __truediv__(self, other: Scalar) -> Dual:
+        x = value_of(other)
+        quotient = self.value / x
+        return Dual(quotient, (self.slope - quotient * slope_of(other)) / x)
+
+    def __neg__(self) -> Dual:
+        return Dual(-self.value, -self.slope)
+
+    def __rsub__(self, other: Scalar) -> Dual:
+        return self.__neg__().__add__(other)
+
+    def __rtruediv__(self, other: Scalar) -> Dual:
+        return Dual(other).__truediv__(self)
+
+    def sin_cos(self) -> tuple[Dual, Dual]:
+        """The sine and the cosine."""
+        sine, cosine = self.value.sin_cos()
+        return Dual(sine, cosine * self.slope), Dual(cosine, -sine * self.slope)
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+
+def value_of(number: Scalar) -> Scalar:
+    """x of a dual; any other number is itself."""
+    return number.value if isinstance(number, Dual) else number
+
+
+def slope_of(number: Scalar) -> Scalar:
+    """dx of a dual; any other number does not depend on the parameter."""
+    return number.slope if isinstance(number, Dual) else 0

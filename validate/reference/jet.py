@@ -1,0 +1,50 @@
+"""A number with its rate and acceleration: differentiating an equation is evaluating it with jets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from validate.reference.vectors import Scalar
+
+
+@dataclass(frozen=True)
+class Jet:
+    """(x, x', x''), the derivatives by time. Sums, differences and products follow Leibniz.
+
+    (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that eq. (23) of the paper drops cannot be
+    forgotten here, because no equation is differentiated by hand.
+    """
+
+    value: Scalar
+    rate: Scalar = 0
+    acceleration: Scalar = 0
+
+    def __add__(self, other: Scalar) -> Jet:
+        other = _jet(other)
+        return Jet(self.value + other.value, self.rate + other.rate, self.acceleration + other.acceleration)
+
+    def __sub__(self, other: Scalar) -> Jet:
+        other = _jet(other)
+        return Jet(self.value - other.value, self.rate - other.rate, self.acceleration - other.acceleration)
+
+    def __mul__(self, other: Scalar) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value * other, self.rate * other, self.acceleration * other)
+        return Jet(
+            self.value * other.value,
+            self.rate * other.value + self.value * other.rate,
+            self.acceleration * other.value + 2 * self.rate * other.rate + self.value * other.acceleration,
+        )
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, -self.rate, -self.acceleration)
+
+    def __rsub__(self, other: Scalar) -> Jet:
+        return self.__neg__().__add__(other)
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+
+def _jet(number: Scalar) -> Jet:
+    return number if isinstance(number, Jet) else Jet(number)

@@ -1,0 +1,164 @@
+r"""How every quantity of an instant depends on the inputs: exact derivatives, from the equations themselves.
+
+C(y, w) = 0 holds along a motion whose inputs w(t) are changed a little. With a dual number for each
+coefficient of the jets, evaluating C gives C(y(t), w(t)) with its derivatives by time and by the change; each
+coefficient of the change of y solves a linear equation with the one matrix C'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from flint import arb, arb_mat
+from mpmath import mpf
+
+from validate.reference.branches import CLEAR_SIGN, Choices, candidate, choices_of_table
+from validate.reference.closures import DEFAULT, equations_for
+from validate.reference.design import INPUTS, Design, Driven, balls, values_only
+from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.equations import Known
+from validate.reference.errors import NotDecidedError
+from validate.reference.exact import as_ball, centre_of
+from validate.reference.instant import Triple, prove_pose
+from validate.reference.jet import Jet
+from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets, wheel_directions
+from validate.reference.solve import Points, with_enough_digits
+from validate.reference.vectors import Scalar, Vector, times
+
+ORDERS = ("value", "rate", "acceleration")
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives by one number of one input, per rad (arm angle) or mm, or these per s or s^2.
+
+    Attributes:
+        position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
+        angular_velocity, angular_acceleration: of "knuckle" and "lower_arm".
+        angles: of "camber" and "kingpin"; one that is undefined (0/0) is left out.
+        error_bound: proven bound on the error of each quantity above.
+    """
+
+    position: Mapping[str, Triple]
+    velocity: Mapping[str, Triple]
+    acceleration: Mapping[str, Triple]
+    angular_velocity: Mapping[str, Triple]
+    angular_acceleration: Mapping[str, Triple]
+    angles: Mapping[str, mpf]
+    error_bound: Mapping[str, mpf]
+
+
+def sensitivities(
+    points: Points,
+    inputs: Mapping[str, Sequence[object]],
+    up: Sequence[object] = (0, 0, 1),
+    right: Sequence[object] = (0, 1, 0),
+    side: str = "left",
+    digits: int = 60,
+    closure: str = DEFAULT,
+    clearness: float = CLEAR_SIGN,
+) -> dict[tuple[str, str], Sensitivity]:
+    """The derivatives of an instant by the value, rate and acceleration of each input.
+
+    An input that is off by (e0, e1, e2) in value, rate and acceleration moves a quantity by the sum of
+    e_i times these, to first order.
+
+    Args:
+        points: as for `solve_truth`, mm; also inputs, up, right, side, digits, closure, clearness.
+    Returns:
+        By (input, "value" | "rate" | "acceleration").
+    Raises:
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+    """
+    design = Design.from_points(points, up, right, side, closure)
+    driven = Driven.from_mapping(inputs)
+    choices = choices_of_table(design.table, design.up, closure, clearness)
+    return with_enough_digits(partial(_attempt, design, driven, choices, digits), digits)
+
+
+def _attempt(
+    design: Design, driven: Driven, choices: Choices, digits: int, working: int
+) -> dict[tuple[str, str], Sensitivity]:
+    known = design.known(driven)
+    still = values_only(known)
+    chosen = candidate(still, choices)
+    chosen.require_feasible(float(design.unit))
+    start = equations_for(design.closure).unknown_of(chosen.points, still)
+    enclosure = prove_pose(still, start, choices, digits, working).enclosure
+    inverse, jets = inverse_jacobian(enclosure, still), unknown_jets(enclosure, known)
+    return {
+        (name, order): _by(design, _changed(design, driven, name, order), jets, inverse)
+        for name in INPUTS
+        for order in ORDERS
+    }
+
+
+def _changed(design: Design, driven: Driven, name: str, order: str) -> Known:
+    """What is given, with its slope by one number of one input."""
+
+    def dual(other: str) -> Jet:
+        jet = balls(getattr(driven, other))
+        return Jet(*(Dual(getattr(jet, o), arb(int((other, o) == (name, order)))) for o in ORDERS))
+
+    return design.known_for(dual("arm_angle"), dual("rack"), dual("heave"))
+
+
+def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> Sensitivity:
+    equations = equations_for(known.closure)
+    slopes: list[list[arb]] = [[arb(0)] * 3 for _ in jets]
+    for order, name in enumerate(ORDERS):
+        rows = equations.residual(_with_slopes(jets, slopes), known)
+        step = inverse * arb_mat(len(rows), 1, [-slope_of(getattr(row, name)) for row in rows])
+        for i, slope in enumerate(slopes):
+            slope[order] = step[i, 0]
+    solved = _with_slopes(jets, slopes)
+    points, unit = equations.points_of(solved, known), as_ball(design.unit)
+    turns = body_turns(solved, points, known)
+    vectors = {
+        quantity: {name: times(_slope(points[n], order), unit) for name, n in design.names.items()}
+        for quantity, order in zip(("position", "velocity", "acceleration"), ORDERS, strict=True)
+    }
+    for i, quantity in enumerate(("angular_velocity", "angular_acceleration")):
+        vectors[quantity] = {body: _slope_of(turn[i]) for body, turn in turns.items()}
+    if not all(x.is_finite() for named in vectors.values() for vector in named.values() for x in vector):
+        raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
+    angles = {name: _angle_slope(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
+    angles = {name: slope for name, slope in angles.items() if slope.is_finite()}
+    bounds = {
+        quantity: max(x.rad() for vector in named.values() for x in vector)
+        for quantity, named in vectors.items()
+    }
+    bounds["angles"] = max((slope.rad() for slope in angles.values()), default=arb(0))
+    return Sensitivity(
+        **{
+            quantity: {name: (centre_of(x), centre_of(y), centre_of(z)) for name, (x, y, z) in named.items()}
+            for quantity, named in vectors.items()
+        },
+        angles={name: centre_of(slope) for name, slope in angles.items()},
+        error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
+    )
+
+
+def _with_slopes(jets: Sequence[Jet], slopes: Sequence[Sequence[arb]]) -> list[Jet]:
+    return [
+        Jet(*(Dual(getattr(jet, order), one) for order, one in zip(ORDERS, slope, strict=True)))
+        for jet, slope in zip(jets, slopes, strict=True)
+    ]
+
+
+def _slope(point: Vector, order: str) -> Vector:
+    return _slope_of((getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)))
+
+
+def _slope_of(vector: Vector) -> Vector:
+    x, y, z = (arb(slope_of(number)) for number in vector)
+    return x, y, z
+
+
+def _angle_slope(y: Scalar, x: Scalar) -> arb:
+    """Of atan2(y, x)."""
+    across, along = value_of(y), value_of(x)
+    turning = along * slope_of(y) - across * slope_of(x)
+    return arb(turning / (along * along + across * across))
