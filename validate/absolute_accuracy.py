@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import absolute
-from pointcoord.scene import MechanismPart
+from pointcoord.scene.scene_file import MechanismPart
 from validate.formulation import Accuracy
 
 Array = NDArray[np.float64]

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.closing import ALLOWED
 from pointcoord.errors import SceneError
-from pointcoord.scene import MechanismPart, Scene
+from pointcoord.results.closing import ALLOWED
+from pointcoord.scene.scene_file import MechanismPart, Scene
 from validate.extras import MissingPackage
 from validate.formulation import AccuracyError, FormulationError, Solution
 from validate.inputs import rates

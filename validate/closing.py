@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord import PointcoordError, Scene
-from pointcoord.assembly import close_drawing
-from pointcoord.closing import Closing, closing
+from pointcoord.results.closing import Closing, closing
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import close_drawing
 
 
 def closing_of(scene: Scene) -> Closing | None:

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.scene import Scene
+from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from validate.formulation import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations import formulation

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.scene import Scene
+from pointcoord.scene.scene_file import Scene
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from pointcoord.scene import InputPart, SinePart
+from pointcoord.scene.scene_file import InputPart, SinePart
 from validate.extras import MissingPackage
 
 try:

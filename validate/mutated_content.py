@@ -9,7 +9,7 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from pointcoord.scene import MOST_SAMPLES
+from pointcoord.scene.scene_file import MOST_SAMPLES
 
 Content = dict[str, Any]
 

@@ -14,7 +14,7 @@ from importlib import resources
 from random import Random
 from typing import Any
 
-from pointcoord.scene import MOST_SAMPLES
+from pointcoord.scene.scene_file import MOST_SAMPLES
 from validate.mutated_content import CONTENT_CHANGES, Content, anything, size, word
 
 # Named here, so that a further built-in scene does not change what a number means.

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Scene
-from pointcoord.assembly import close_drawing
-from pointcoord.closing import Closing, closing
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.results.closing import Closing, closing
 from pointcoord.simulation import scene_mechanism
-from pointcoord.topology import Topology
+from pointcoord.solve.assembly import close_drawing
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
-from pointcoord.proof import Proof
+from pointcoord.bounds.proof import Proof
 from pointcoord.simulation import Method
 from validate.formulation import NUMBERS_OF, Accuracy, FormulationError, Solution
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.paper_car import PAPER, Points
 

@@ -18,8 +18,8 @@ import pointcoord
 from absolute.assemble import assemble
 from absolute.assembly import Mechanism
 from absolute.continuation import follow
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.rigid import body_rates
+from pointcoord.effects.rigid import body_rates
+from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
 from validate.deep_store import Store
@@ -152,7 +152,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "pointcoord.errors.MotionTooLong": Recipe(
         lambda _, pretend: (
-            pretend.setattr("pointcoord.chain.MOST_SEGMENTS", 5),
+            pretend.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 5),
             pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}})),
         ),
         ("from 0 to 2.6 s", "segments; allowed: 5", "reach t = ", "slow the inputs down", "'newton'"),

@@ -95,7 +95,7 @@ def test_every_pose_is_counted_once(small: Any) -> None:
 def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from pointcoord import proof
+    from pointcoord.bounds import proof
 
     honest = proof._reported_bound
     monkeypatch.setattr(proof, "_reported_bound", lambda *a: honest(*a) * 1e-6)

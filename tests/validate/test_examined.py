@@ -72,7 +72,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A motion of too many series: the other model and Newton's method take the instants alone."""
-    monkeypatch.setattr("pointcoord.chain.MOST_SEGMENTS", 2)
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 2)
     path = short_scene(tmp_path)
     assert main(["validate", path]) == 3
     out, err = capsys.readouterr()

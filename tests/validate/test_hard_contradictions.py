@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError
-from pointcoord.assembly import assemble
 from pointcoord.errors import AssemblyError
-from pointcoord.hardpoints import build_mechanism
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.solve.assembly import assemble
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.hard import contradictions
 from validate.hard.case import unexpected

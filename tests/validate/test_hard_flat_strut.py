@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, SceneError
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
 from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, any_rotation, car_content, rotation, turned
 from validate.hard.case import Case

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from pointcoord.scene import InputPart, SinePart
+from pointcoord.scene.scene_file import InputPart, SinePart
 from validate.inputs import rates
 
 EPS = float(np.finfo(float).eps)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Motion, Scene, SingularConfiguration
-from pointcoord.proof import Proof
+from pointcoord.bounds.proof import Proof
 from validate.compare import compare_solutions
 from validate.formulation import FormulationError
 from validate.formulations import formulation

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pointcoord.assembly import Pose, assemble
-from pointcoord.constraints import Link, Rise
-from pointcoord.drives import ArmAngle
 from pointcoord.errors import AssemblyError, PointcoordError
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.constraints.constraint import Link, Rise
+from pointcoord.linkage.drives import ArmAngle
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.suspensions.macpherson import COLLINEAR
-from pointcoord.topology import Topology
 from validate.hard.case import REFUSED, Answer, Case, Expected, Trial
 from validate.hard.content import decades
 from validate.hard.links import AXES, GROUP, by_absolute, by_pointcoord, strut

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pointcoord import MechanismError
-from pointcoord.body_axis import AxisInBody, Normal
-from pointcoord.constraints import Constraint, Link
-from pointcoord.hardpoints import build_mechanism
+from pointcoord.linkage.constraints.body_axis import AxisInBody, Normal
+from pointcoord.linkage.constraints.constraint import Constraint, Link
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.topology import Topology
 from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN
-from pointcoord.topology import Topology
 from validate.closed_form import Closure
 from validate.hard.cars import BESIDE
 from validate.hard.case import REFUSED, Answer, Case, Trial
