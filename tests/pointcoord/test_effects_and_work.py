@@ -14,7 +14,7 @@ from pointcoord.numerics import newton
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve import assembly
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.paper_car import PAPER
+from validate.cars.paper_car import PAPER
 
 SUBSETS = list(chain.from_iterable(combinations(EFFECTS, n) for n in range(len(EFFECTS) + 1)))
 SAMPLES = 7

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord.scene.scene_file import InputPart, SinePart
-from validate.inputs import rates
+from validate.formulations.input_rates import rates
 
 EPS = float(np.finfo(float).eps)
 

@@ -14,14 +14,14 @@ import pointcoord.results.readout
 import pointcoord.solve.dense_output
 import pointcoord.solve.pointwise
 import pointcoord.solve.taylor
-import validate.absolute_coordinates
+import validate.formulations.absolute_coordinates
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.results.motion import Channel, Samples
-from validate.compare import compare
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.paper_scenes import DEFAULT_SCENES
+from validate.comparison.compare import compare
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.paper.scenes import DEFAULT_SCENES
 
 # The module; the package's attribute of this name is the function.
 solver = import_module("pointcoord.simulation")
@@ -85,10 +85,12 @@ def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
 
 
 def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
-    rates = validate.absolute_coordinates.rates
+    rates = validate.formulations.absolute_coordinates.rates
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: change(rates(part, t)))
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: change(rates(part, t))
+        )
 
     return plant
 
@@ -134,10 +136,12 @@ def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
 
 def _shifted(by: float) -> Plant:
     """The absolute model sees its inputs a little late."""
-    rates = validate.absolute_coordinates.rates
+    rates = validate.formulations.absolute_coordinates.rates
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: rates(part, t - by))
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: rates(part, t - by)
+        )
 
     return plant
 
