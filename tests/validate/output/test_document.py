@@ -46,7 +46,7 @@ def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) ->
 
 def test_the_schema_is_in_the_wheel() -> None:
     """All files of the packages are, unless git ignores them."""
-    sources = Path(__file__).parents[2]
+    sources = Path(__file__).parents[3]
     settings = tomllib.loads((sources / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
     assert "validate" in settings["wheel"]["packages"]
     assert "exclude" not in settings["wheel"]

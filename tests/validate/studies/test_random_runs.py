@@ -27,7 +27,7 @@ from validate.formulations.registry import formulation
 from validate.studies import random_runs as deep
 from validate.studies.chunk_store import CHUNK, Chunk, Store, StoreError
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[3]
 
 
 def chunk(number: int, found: tuple[int, ...] = ()) -> Chunk:

@@ -20,7 +20,7 @@ def test_a_picture_is_written_where_it_was_asked_for(
 
 
 def test_the_readme_s_picture_is_what_its_command_makes(capsys: pytest.CaptureFixture[str]) -> None:
-    picture = Path(__file__).parents[2] / ".github" / "hardpoints.svg"
+    picture = Path(__file__).parents[3] / ".github" / "hardpoints.svg"
     assert main(["draw", "off-axis-strut"]) == 0
     made, kept = capsys.readouterr().out.splitlines(), picture.read_text().splitlines()
     # How far closing moves the points is rounding, which another machine rounds otherwise.
