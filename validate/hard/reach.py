@@ -24,7 +24,7 @@ from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import LastValue, car_called, home, last_value
 from validate.hard.trial import scene_case
 from validate.inputs import rates
-from validate.reference import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, NoReferenceError
 from validate.verdicts import inputs_at, true_instant
 
 GROUP = "9. Reachable range"
@@ -125,7 +125,7 @@ def _answered(name: str, scene: Scene) -> Answer:
         true_instant(scene, inputs_at(scene, scene.time.stop))
     except InfeasibleError as error:
         return Answer(name, "wrong", f"answers beyond the end: {error}")
-    except TruthError as error:
+    except NoReferenceError as error:
         return Answer(name, "unjudged", f"{type(error).__name__}: {error}")
     return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
 
