@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.hard.sides import drawn_choices
+from validate.adjudication.reference_solution import drawn_choices
 from validate.hard.trial import Facts, Tried
 
 Array = NDArray[np.float64]

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.adjudication.reference_solution import drawn_choices
 from validate.cars.paper_car import PAPER
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import unexpected
 from validate.hard.cases.branches import (
     CASES,
@@ -30,9 +32,7 @@ from validate.hard.cases.counting import (
     near_lowest_arm,
 )
 from validate.hard.cases.oriented import followed, sides
-from validate.hard.content import paper_car
-from validate.hard.sides import drawn_choices, try_on_side
-from validate.hard.trial import Tried
+from validate.hard.trial import Tried, try_scene
 from validate.reference import InfeasibleError, count_assemblies, solve_reference
 
 BY_NAME = {case.name: case for case in CASES}
@@ -141,7 +141,7 @@ def test_a_jump_to_the_mirror_image_is_wrong_and_its_side_is_negative(
             return other
 
     monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Jumping())
-    trial = try_on_side(1.0, content, ("absolute",), followed)
+    trial = try_scene(1.0, content, ("absolute",), followed)
     assert trial.answers[0].outcome == "wrong"
     assert float(trial.facts["tie side of absolute, least share"]) < 0.0
     assert float(trial.facts["arm side of absolute, least share"]) > 0.0
