@@ -11,6 +11,12 @@ from pointcoord import Scene
 from validate.adjudication.reference_solution import (
     drawn_choices,
     inputs_at,
+    on_drawn_side,
+    reference_instant,
+    reference_solution,
+)
+    drawn_choices,
+    inputs_at,
     reference_instant,
     reference_solution,
 )
