@@ -19,7 +19,7 @@ from pointcoord import (
     UnknownName,
     simulate,
 )
-from pointcoord.constraints import FARTHEST
+from pointcoord.linkage.constraints.constraint import FARTHEST
 
 Points = dict[str, tuple[float, float, float]]
 Make = Callable[..., Scene]
@@ -35,7 +35,7 @@ JUMP = {
 def test_a_motion_too_long_is_solved_by_newton_or_slower_or_shorter(
     make_scene: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pointcoord.chain.MOST_SEGMENTS", 20)
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 20)
 
     def scene(frequency: float, stop: float) -> Scene:
         law = {"sine": {"amplitude": 0.3, "angular_frequency": frequency, "offset": 1.5}}
@@ -61,7 +61,7 @@ def test_a_larger_tolerance_is_no_advice_where_none_is_left(
     make_scene: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rough = make_scene(JUMP, start=0.5 - 2e-8, stop=0.5 + 2e-9)
-    monkeypatch.setattr("pointcoord.chain.COARSEST", 1e-14)
+    monkeypatch.setattr("pointcoord.solve.taylor.COARSEST", 1e-14)
     with pytest.raises(MotionTooRough, match=r"smooth it there, or use the method 'newton'"):
         simulate(rough)
 

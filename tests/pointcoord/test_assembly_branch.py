@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, simulate
-from pointcoord.assembly import Pose, assemble, follow, proven_step
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.linear import factorise
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.linear import factorise
+from pointcoord.solve.assembly import Pose, assemble, follow, proven_step
 from pointcoord.suspensions.macpherson import COLLINEAR
 
 Array = NDArray[np.float64]

@@ -8,11 +8,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.body_axis import AxisInBody, HeldOnAxis, Normal
-from pointcoord.constraints import Link
-from pointcoord.drawing import Drawing, Placed
 from pointcoord.errors import MechanismError
-from pointcoord.layout import Layout
+from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal
+from pointcoord.linkage.constraints.constraint import Link
+from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.linkage.layout import Layout
 
 Array = NDArray[np.float64]
 Vector = list[Fraction]

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.certificate import Certificate, certify
-from pointcoord.linear import EPS, factorise
-from pointcoord.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.kantorovich import Certificate, certify
+from pointcoord.numerics.linear import EPS, factorise
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 
 Array = NDArray[np.float64]
 plain = settings(deadline=None)

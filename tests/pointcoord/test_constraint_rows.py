@@ -8,11 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord import body_axis, constraints
-from pointcoord.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
-from pointcoord.constraints import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
-from pointcoord.layout import Layout
-from pointcoord.quadratic import quadratic_map
+from pointcoord.linkage.constraints import body_axis
+from pointcoord.linkage.constraints import constraint as constraints
+from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
+from pointcoord.linkage.constraints.constraint import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
+from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.quadratic import quadratic_map
 
 Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2

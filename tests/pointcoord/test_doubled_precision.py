@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.doubled import doubled_residual, exact_product, exact_square, exact_sum
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.double_double import doubled_residual, exact_product, exact_square, exact_sum
 
 U = Fraction(1, 2**53)
 numbers = st.floats(-1e100, 1e100, allow_nan=False, allow_subnormal=False).filter(

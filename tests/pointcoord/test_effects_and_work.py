@@ -6,13 +6,15 @@ from itertools import chain, combinations
 import numpy as np
 import pytest
 
-import pointcoord.chain
-import pointcoord.instants
-from pointcoord import NotComputed, Scene, UnknownName, assembly, newton, simulate
-from pointcoord.effects import EFFECTS, plan_effects
-from pointcoord.linear import Factors, factorise
+import pointcoord.solve.pointwise
+import pointcoord.solve.taylor
+from pointcoord import NotComputed, Scene, UnknownName, simulate
+from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.numerics import newton
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.solve import assembly
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.paper_car import PAPER
+from validate.cars.paper_car import PAPER
 
 SUBSETS = list(chain.from_iterable(combinations(EFFECTS, n) for n in range(len(EFFECTS) + 1)))
 SAMPLES = 7
@@ -87,7 +89,7 @@ def test_counts_are_what_was_done(
         seen["factorisations"] += int(np.prod(matrix.shape[:-2]))
         return factorise(matrix)
 
-    for module in (newton, assembly, pointcoord.chain, pointcoord.instants):
+    for module in (newton, assembly, pointcoord.solve.taylor, pointcoord.solve.pointwise):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0
@@ -98,7 +100,7 @@ def test_proof_is_not_computed_until_it_is_read(
 ) -> None:
     called = []
     motion = simulate(make_scene(samples=SAMPLES))
-    monkeypatch.setattr("pointcoord.proof.factorise", lambda m: called.append(len(m)) or factorise(m))
+    monkeypatch.setattr("pointcoord.bounds.proof.factorise", lambda m: called.append(len(m)) or factorise(m))
     assert simulate(make_scene(samples=SAMPLES)).position["wheel_centre"].shape == (SAMPLES, 3)
     assert called == []
     motion.proof()

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.enclosure import Enclosed, cosine_sine, cross, dot, quotient
-from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
+from pointcoord.numerics.enclosure import Enclosed, cosine_sine, cross, dot, quotient
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 U = 2.0**-53
 NUMBERS = st.floats(-1e3, 1e3, allow_subnormal=False).filter(lambda x: x == 0.0 or abs(x) > 1e-3)

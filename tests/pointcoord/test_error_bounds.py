@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Scene, simulate
-from pointcoord.assembly import assemble
-from pointcoord.certificate import certify
-from pointcoord.linear import factorise
-from pointcoord.mechanism import Mechanism
-from pointcoord.newton import polish
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.kantorovich import certify
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.newton import polish
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import assemble
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]

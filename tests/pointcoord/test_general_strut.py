@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Motion, Scene, SceneError, simulate
-from pointcoord.closing import ALLOWED, NOTICED
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.linear import factorise
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.numerics.linear import factorise
+from pointcoord.results.closing import ALLOWED, NOTICED
 from pointcoord.suspensions.macpherson import DRAWN
 
 Array = NDArray[np.float64]

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.assembly import SMALLEST_STEP, follow
-from pointcoord.branch import NEAR, on_branch, orientation
-from pointcoord.linear import factorise
-from pointcoord.newton import Converged
-from pointcoord.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.work import Work
+from pointcoord.numerics.branch import NEAR, on_branch, orientation
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.newton import Converged
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.solve.assembly import SMALLEST_STEP, follow
 
 Array = NDArray[np.float64]
 

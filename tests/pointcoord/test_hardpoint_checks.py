@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pointcoord import MechanismError, Scene, UnknownName, simulate
-from pointcoord.constraints import Link
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.linear import null_directions
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.constraints.constraint import Link
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.linear import null_directions
 from pointcoord.suspensions.macpherson import COLLINEAR
-from pointcoord.topology import Topology
 
 Points = dict[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}

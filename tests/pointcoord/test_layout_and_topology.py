@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from pointcoord import UnknownName
-from pointcoord.layout import Layout
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.layout import Layout
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
-from pointcoord.topology import Topology
 
 EVERY = [
     topology

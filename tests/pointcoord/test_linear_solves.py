@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.linear import factorise, null_directions, weakest_balance
+from pointcoord.numerics.linear import factorise, null_directions, weakest_balance
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

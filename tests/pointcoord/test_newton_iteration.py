@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord import newton
-from pointcoord.assembly import Pose, assemble
-from pointcoord.mechanism import Mechanism
-from pointcoord.newton import polish
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics import newton
+from pointcoord.numerics.newton import polish
+from pointcoord.solve.assembly import Pose, assemble
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

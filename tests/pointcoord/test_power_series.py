@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.assembly import Pose, assemble
-from pointcoord.inputs import Polynomial, Sine
-from pointcoord.linear import factorise
-from pointcoord.mechanism import Mechanism
-from pointcoord.newton import polish
-from pointcoord.series import cross_series, expand
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.newton import polish
+from pointcoord.numerics.power_series import cross_series, expand
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.time_functions import Polynomial, Sine
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, simulate
-from pointcoord.proof import Proof
-from pointcoord.reported_bounds import Bounds
+from pointcoord.bounds.proof import Proof
+from pointcoord.bounds.reported_bounds import Bounds
 
 SINE = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
 HEAVE = {"sine": {"amplitude": 40.0, "angular_frequency": 3.1, "phase": -0.2}}
@@ -31,7 +31,7 @@ def test_a_proof_in_blocks_is_the_proof_in_one(
     made = make_scene(SINE, [0.0, 5.0], heave=HEAVE, samples=30) if closure == "collinear" else off_axis()
     motion = simulate(made, "newton")
     whole = motion.proof(rates=True)
-    monkeypatch.setattr("pointcoord.proof.BLOCK", block)
+    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", block)
     parts = motion.proof(rates=True)
     for field in fields(Proof):
         one, many = getattr(whole, field.name), getattr(parts, field.name)

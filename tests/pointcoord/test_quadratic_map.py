@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 
 Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2

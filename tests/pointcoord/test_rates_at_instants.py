@@ -8,13 +8,13 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, UnknownName, simulate
-from pointcoord.assembly import Pose, assemble
-from pointcoord.constraints import OnLine, PrintedParallel
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.instants import square_velocity_term
-from pointcoord.mechanism import Mechanism
-from pointcoord.newton import polish
+from pointcoord.linkage.constraints.constraint import OnLine, PrintedParallel
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.newton import polish
 from pointcoord.printed import printed_body_rates, printed_square_velocity_term
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.pointwise import square_velocity_term
 from pointcoord.suspensions.macpherson import COLLINEAR, PRINTED
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.motion import Channel, Motion
-from pointcoord.reported_bounds import Bounds
+from pointcoord.bounds.reported_bounds import Bounds
+from pointcoord.results.motion import Channel, Motion
 
 Array = NDArray[np.float64]
 QUANTITIES = tuple(field.name for field in fields(Bounds))
@@ -47,7 +47,7 @@ def test_two_methods_differ_by_no_more_than_both_prove_and_prove_no_more_than_th
 def test_a_proof_by_blocks_is_the_proof_of_each_instant(monkeypatch: pytest.MonkeyPatch) -> None:
     motion = simulate(short("bounce-on-a-heaving-chassis"))
     whole = motion.proof(rates=True)
-    monkeypatch.setattr("pointcoord.proof.BLOCK", 7)
+    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", 7)
     parts = motion.proof(rates=True)
     for bounds in ("proven", "expected"):
         one, other = named(getattr(whole, bounds)), named(getattr(parts, bounds))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Motion, Samples, Scene, built_in_scenes, simulate
-from pointcoord.motion import Channel
+from pointcoord.results.motion import Channel
 
 HEAVE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0}}
 TABLE = {"table": {"times": [0.0, 0.5, 1.0, 2.0], "values": [0.0, 5.0, 3.0, -4.0]}}

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from pointcoord import SingularConfiguration
-from pointcoord.rigid import body_rates, carried_series, stack_points
+from pointcoord.effects.rigid import body_rates, carried_series, stack_points
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

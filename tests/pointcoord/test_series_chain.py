@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
-from pointcoord.assembly import assemble
-from pointcoord.chain import Chain, Segment, Settings, build_chain
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction
-from pointcoord.mechanism import Mechanism
-from pointcoord.summation import evaluate
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
+from pointcoord.solve.assembly import assemble
+from pointcoord.solve.dense_output import evaluate
+from pointcoord.solve.taylor import Chain, Segment, Settings, build_chain
 from pointcoord.suspensions.macpherson import COLLINEAR
-from pointcoord.work import Work
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

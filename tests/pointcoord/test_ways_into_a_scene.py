@@ -17,11 +17,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
-from pointcoord.chain import COARSEST, FINEST
-from pointcoord.even_instants import even_instants
-from pointcoord.scene_text import LARGEST, read_stream
+from pointcoord.errors import visible
+from pointcoord.scene.even_instants import even_instants
+from pointcoord.scene.scene_text import LARGEST, read_stream
 from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
-from pointcoord.visible import visible
+from pointcoord.solve.taylor import COARSEST, FINEST
 
 BOUNCE = Scene.load("bounce")
 CONTENT = BOUNCE.model_dump(exclude_none=True)

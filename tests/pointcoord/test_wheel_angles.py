@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pointcoord.wheel import camber_angle, kingpin_angle
+from pointcoord.effects.wheel_angles import camber_angle, kingpin_angle
 
 EPS = np.finfo(float).eps
 UP, LEFT = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])

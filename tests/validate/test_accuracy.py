@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.compare import Outcome, compare
-from validate.formulation import Accuracy, AccuracyError, FormulationError, Solution
-from validate.formulations import formulation
+from validate.comparison.compare import Outcome, compare
+from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
+from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
 COUNT = len(SCENE.instants)

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import assume, given, note
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
-from validate.compare import Outcome, compare
-from validate.formulation import FormulationError
-from validate.paper_car import EFFECTS, PAPER
-from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
-from validate.strategies import make_scene, scenes
+from validate.cars.paper_car import EFFECTS, PAPER
+from validate.cars.strategies import make_scene, scenes
+from validate.comparison.compare import Outcome, compare
+from validate.formulations.protocol import FormulationError
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 
 PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
 

@@ -7,9 +7,13 @@ import pytest
 from hypothesis import assume, given, settings, target
 from hypothesis import strategies as st
 
-from validate.bound_checks import Check, Refusal, held_pose, moving_instants
-from validate.bounds import main, study
-from validate.bounds_report import (
+from validate.cars.input_limits import Linkage
+from validate.cars.near_singular import approach, near_pose
+from validate.cars.strategies import cars
+from validate.reference import InfeasibleError, solve_truth
+from validate.studies.bound_checks import Check, Refusal, held_pose, moving_instants
+from validate.studies.bounds import main, study
+from validate.studies.bounds_report import (
     STRUTS,
     bounds_data,
     bounds_text,
@@ -19,10 +23,6 @@ from validate.bounds_report import (
     looseness,
     of_strut,
 )
-from validate.input_ends import Linkage
-from validate.reference import InfeasibleError, solve_truth
-from validate.singular import approach, near_pose
-from validate.strategies import cars
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # A pose takes 40 ms, so the short profile searches briefly and the deep one as long as any.
@@ -95,7 +95,7 @@ def test_every_pose_is_counted_once(small: Any) -> None:
 def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from pointcoord import proof
+    from pointcoord.bounds import proof
 
     honest = proof._reported_bound
     monkeypatch.setattr(proof, "_reported_bound", lambda *a: honest(*a) * 1e-6)

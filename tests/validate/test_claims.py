@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from validate.claims import Held, main, study, study_text
-from validate.random_cars import random_car
+from validate.cars.random_scenes import random_car
+from validate.studies.claims import Held, main, study, study_text
 
 # Among the first two hundred scenes are some twenty that come close to a singular pose.
 SINGULAR = [n for n in range(120) if random_car(n).kind != "regular"][:12]

@@ -10,7 +10,7 @@ import pytest
 from pointcoord import Scene, built_in_scenes, simulate
 from validate import cli
 from validate.cli import main
-from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 
 
 def scene_file(folder: Path, *changes: tuple[str, str]) -> str:

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from validate.closed_form import ClosedForm
-from validate.input_ends import ARM, STRUT, TIE_ROD, Car, Linkage
-from validate.singular import random_car
-from validate.strategies import RIGHT, UP, cars
+from validate.cars.closed_form import ClosedForm
+from validate.cars.input_limits import ARM, STRUT, TIE_ROD, Car, Linkage
+from validate.cars.near_singular import random_car
+from validate.cars.strategies import RIGHT, UP, cars
 
 EPS = float(np.finfo(float).eps)
 LINKS = (

@@ -13,12 +13,19 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate import deep
-from validate.deep_store import CHUNK, Chunk, Store, StoreError
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.random_cars import CLOSURES, KINDS, SEED, RandomCar, random_car
-from validate.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, true_solution, unanswered
+from validate.adjudication.verdicts import (
+    NO_OBSTACLE,
+    judged,
+    judged_alone,
+    obstacle,
+    true_solution,
+    unanswered,
+)
+from validate.cars.random_scenes import CLOSURES, KINDS, SEED, RandomCar, random_car
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.studies import random_runs as deep
+from validate.studies.chunk_store import CHUNK, Chunk, Store, StoreError
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -196,7 +203,15 @@ def test_the_status_says_whether_any_disagreed(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize("workers", [1, 2])
 def test_nothing_is_lost_or_done_twice_when_a_run_is_killed(tmp_path: Path, workers: int) -> None:
     path = tmp_path / "store.jsonl"
-    program = [sys.executable, "-m", "validate.deep", "--count", str(2 * CHUNK), "--store", str(path)]
+    program = [
+        sys.executable,
+        "-m",
+        "validate.studies.random_runs",
+        "--count",
+        str(2 * CHUNK),
+        "--store",
+        str(path),
+    ]
     program += ["--workers", str(workers)]
     for _ in range(2):
         before = path.stat().st_size if path.exists() else 0

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from program import PAST_ITS_END, short_scene
 
-from validate import bounds
 from validate.cli import main
-from validate.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
-from validate.output import Console
-from validate.paper_scenes import DEFAULT_SCENES
+from validate.output.console import Console
+from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
+from validate.paper.scenes import DEFAULT_SCENES
+from validate.studies import bounds
 
 SCHEMA = json.loads(schema_text())
 CHECK = jsonschema.Draft202012Validator(SCHEMA)
@@ -51,7 +51,7 @@ def test_the_schema_is_in_the_wheel() -> None:
     assert "validate" in settings["wheel"]["packages"]
     assert "exclude" not in settings["wheel"]
     ignored = (sources / ".gitignore").read_text().split()
-    assert (resources.files("validate") / "schema.json").is_file()
+    assert (resources.files("validate.output") / "schema.json").is_file()
     assert not [pattern for pattern in ignored if "json" in pattern]
 
 
@@ -141,7 +141,7 @@ def test_writing_on_the_way_takes_a_small_part_of_the_time(
 ) -> None:
     """A clock that each writing moves by 1 s and each part by 0.5 s: of 100 parts some 8 are written."""
     clock = [0.0]
-    monkeypatch.setattr("validate.document.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("validate.output.document.time.monotonic", lambda: clock[0])
     target = tmp_path / "x.json"
     journal = Journal(str(target), Head.of("hard-list", ["pointcoord"]), Console())
     written = []

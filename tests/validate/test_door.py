@@ -254,7 +254,11 @@ def test_a_validate_of_another_distribution_is_told_by_name(kind: str, tmp_path:
 
 @pytest.mark.parametrize(
     ("program", "words"),
-    [("pointcoord", ["hard", "--list"]), ("validate.bounds", []), ("validate.deep", ["--store", "x"])],
+    [
+        ("pointcoord", ["hard", "--list"]),
+        ("validate.studies.bounds", []),
+        ("validate.studies.random_runs", ["--store", "x"]),
+    ],
 )
 def test_without_the_extra_one_line_names_it(program: str, words: list[str], tmp_path: Path) -> None:
     missing = 'raise ModuleNotFoundError("No module named \'flint\'", name="flint")\n'

@@ -14,16 +14,16 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
-from validate.closed_form import ClosedForm
-from validate.drawings import as_tuple
-from validate.formulation import FormulationError, Solution
-from validate.formulations import formulation
+from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.cars.closed_form import ClosedForm
+from validate.cars.input_limits import Car, Linkage
+from validate.cars.paper_car import mirrored
+from validate.cars.random_struts import as_tuple
+from validate.cars.strategies import cars, make_scene
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, PAPER_CAR, any_rotation, turned
-from validate.input_ends import Car, Linkage
-from validate.paper_car import mirrored
 from validate.reference import TruthError
-from validate.strategies import cars, make_scene
-from validate.verdicts import inputs_at, true_instant
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]

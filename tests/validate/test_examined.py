@@ -11,11 +11,11 @@ import pytest
 from program import PAST_ITS_END, complaints, short_scene
 
 from pointcoord import Scene
-from validate.absolute_coordinates import AbsoluteCoordinates
 from validate.cli import main
-from validate.examined import Examined, Once, examine
+from validate.comparison.examined import Examined, Once, examine
 from validate.exit_status import ExitStatus, combined
-from validate.point_coordinates import PointCoordinates
+from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+from validate.formulations.point_coordinates import PointCoordinates
 from validate.running import ROOT, asked_for, check_what_is_run, has_job, modules_with_a_job
 
 PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
@@ -72,7 +72,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A motion of too many series: the other model and Newton's method take the instants alone."""
-    monkeypatch.setattr("pointcoord.chain.MOST_SEGMENTS", 2)
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 2)
     path = short_scene(tmp_path)
     assert main(["validate", path]) == 3
     out, err = capsys.readouterr()
@@ -117,7 +117,7 @@ def test_a_scene_without_any_verdict_never_ends_with_0(monkeypatch: pytest.Monke
     assert found.status in (ExitStatus.NO_VERDICT, ExitStatus.NOT_FINISHED)
     assert "absolute" in found.complaint
     monkeypatch.undo()
-    monkeypatch.setattr("validate.examined.compare", lambda *_: 1 / 0)
+    monkeypatch.setattr("validate.comparison.examined.compare", lambda *_: 1 / 0)
     found = examine("bounce", scene, PAIRS[:1], False)
     assert found.status is ExitStatus.NOT_FINISHED
     assert "the comparison of pointcoord with absolute fails: ZeroDivisionError" in found.complaint
@@ -368,7 +368,9 @@ def test_a_module_that_is_run_does_its_job_or_is_refused(
 
 def test_every_module_with_a_job_ends_with_its_main(capsys: pytest.CaptureFixture[str]) -> None:
     jobs = modules_with_a_job()
-    assert {"validate", "validate.cli", "validate.bounds", "validate.deep"} <= set(jobs)
+    assert {"validate", "validate.cli", "validate.studies.bounds", "validate.studies.random_runs"} <= set(
+        jobs
+    )
     assert "validate.running" not in jobs
     for name in jobs:
         place = ROOT.joinpath(*name.split(".")[1:])

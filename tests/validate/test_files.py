@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 import pytest
 
-from validate.files import OutputError, require_writable, write_whole
+from validate.output.files import OutputError, require_writable, write_whole
 
 
 def put(content: bytes) -> object:

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.document import json_text
-from validate.formulation import FormulationError, Solution
-from validate.formulations import formulation
+from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
 from validate.hard.judged import judged_answer
 from validate.hard.report import case_text, results_data, summary_text
 from validate.hard.run import as_expected, examine
 from validate.hard.trial import decades, paper_car, scene_case, try_scene
-from validate.verdicts import inputs_at, true_instant, true_solution
+from validate.output.document import json_text
 
 OURS = ("pointcoord", "absolute")
 

@@ -8,13 +8,13 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.formulations import formulation
-from validate.hard import beside
+from validate.cars.input_limits import STRUT, Linkage
+from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE, BESIDE_CAR, WIDE_CAR
 from validate.hard.case import Case
+from validate.hard.cases import beside
 from validate.hard.catalogue import CASES, FEW_VALUES
 from validate.hard.run import as_expected, examine
-from validate.input_ends import STRUT, Linkage
 from validate.reference import InfeasibleError, solve_truth
 
 Array = NDArray[np.float64]

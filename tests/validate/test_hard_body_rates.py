@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from validate.hard.body_rates import CASES, across_the_plane, plane_angle
 from validate.hard.case import Case, Trial
+from validate.hard.cases.body_rates import CASES, across_the_plane, plane_angle
 from validate.hard.run import as_expected, examine
 
 BY_NAME = {case.name: case for case in CASES}

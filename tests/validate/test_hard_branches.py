@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.hard.branches import (
+from validate.cars.paper_car import PAPER
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.hard.case import unexpected
+from validate.hard.cases.branches import (
     CASES,
     SOLVERS,
     flat_car,
     from_a_flat_drawing,
     through_the_meeting,
 )
-from validate.hard.case import unexpected
-from validate.hard.content import paper_car
-from validate.hard.counting import (
+from validate.hard.cases.counting import (
     DEGREE,
     beside_meeting,
     counted,
@@ -29,10 +29,10 @@ from validate.hard.counting import (
     near_greatest_rack,
     near_lowest_arm,
 )
-from validate.hard.oriented import followed, sides
+from validate.hard.cases.oriented import followed, sides
+from validate.hard.content import paper_car
 from validate.hard.sides import drawn_choices, try_on_side
 from validate.hard.trial import Tried
-from validate.paper_car import PAPER
 from validate.reference import InfeasibleError, count_assemblies, solve_truth
 
 BY_NAME = {case.name: case for case in CASES}

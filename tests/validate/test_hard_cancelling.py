@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.hard.cancelling import (
+from validate.formulations.input_rates import rates
+from validate.hard.case import Answer, Trial
+from validate.hard.cases.cancelling import (
     AMPLITUDES,
     CASES,
     ORDINARY,
@@ -18,11 +20,9 @@ from validate.hard.cancelling import (
     expanded,
     right_from,
 )
-from validate.hard.case import Answer, Trial
-from validate.hard.far_and_mixed import heaved_back
-from validate.hard.laws import told_as_rough
+from validate.hard.cases.far_and_mixed import heaved_back
+from validate.hard.cases.laws import told_as_rough
 from validate.hard.run import as_expected, examine
-from validate.inputs import rates
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError
-from pointcoord.assembly import assemble
 from pointcoord.errors import AssemblyError
-from pointcoord.hardpoints import build_mechanism
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.solve.assembly import assemble
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.hard import contradictions
 from validate.hard.case import unexpected
-from validate.hard.contradictions import CASES, ROD, at_drawing, longest_rod, second_pivot, with_rod
-from validate.hard.links import AXES, by_absolute
-from validate.hard.near_points import assembled, drawn_angle
+from validate.hard.cases import contradictions
+from validate.hard.cases.contradictions import CASES, ROD, at_drawing, longest_rod, second_pivot, with_rod
+from validate.hard.cases.links import AXES, by_absolute
+from validate.hard.cases.near_points import assembled, drawn_angle
 
 BY_NAME = {case.name: case for case in CASES}
 
@@ -75,7 +75,7 @@ def test_a_refusal_that_does_not_name_the_third_link_is_wrong(monkeypatch: pytes
     def vague(*_: Any) -> None:
         raise MechanismError("over-determined", ["link lower_ball_joint - lower_arm_front"])
 
-    monkeypatch.setattr("validate.hard.links.build_mechanism", vague)
+    monkeypatch.setattr("validate.hard.cases.links.build_mechanism", vague)
     answer = contradictions.contradictory(1e-3).answers[0]
     assert answer.outcome == "wrong"
     assert "does not name link lower_ball_joint - second_pivot" in answer.reason

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from validate.hard.case import Case
-from validate.hard.dead_points import ARM_ANGLES, CARS, CASES, arm_ends, rack_ends
+from validate.hard.cases.dead_points import ARM_ANGLES, CARS, CASES, arm_ends, rack_ends
 from validate.hard.run import as_expected, examine
 from validate.reference import InfeasibleError, Instant, solve_truth
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.formulation import Solution
-from validate.formulations import formulation
+from validate.cars.paper_car import PAPER
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
 from validate.hard.case import unexpected
-from validate.hard.far_and_mixed import AWAY, CASES, SOLVERS, far, lengthened, moved_car, scaled_car
-from validate.hard.near_points import assembled
-from validate.paper_car import PAPER
+from validate.hard.cases.far_and_mixed import AWAY, CASES, SOLVERS, far, lengthened, moved_car, scaled_car
+from validate.hard.cases.near_points import assembled
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, SceneError
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
 from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, any_rotation, car_content, rotation, turned
 from validate.hard.case import Case
-from validate.hard.flat_strut import CASES, quarter_turn_less
+from validate.hard.cases.flat_strut import CASES, quarter_turn_less
 from validate.hard.run import as_expected, examine
 
 BY_NAME = {case.name: case for case in CASES}

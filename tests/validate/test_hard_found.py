@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import pointcoord.chain
+import pointcoord.solve.taylor
 from validate.hard.case import Case
-from validate.hard.found import CASES
+from validate.hard.cases.found import CASES
 
 BY_NAME = {case.name: case for case in CASES}
 
@@ -33,7 +33,7 @@ def test_a_turn_leads_to_another_branch_where_the_branch_is_not_followed(
     def blind(system: Any, side: Any, series: Any, s: float, reached: Any) -> Any:
         return np.ones(reached.y.shape[:-1], dtype=bool)
 
-    monkeypatch.setattr(pointcoord.chain, "on_branch", blind)
+    monkeypatch.setattr(pointcoord.solve.taylor, "on_branch", blind)
     assert "wrong" in outcomes(case, near)
 
 

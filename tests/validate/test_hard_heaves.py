@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.hard import heaves
+from validate.adjudication.verdicts import true_solution
+from validate.formulations.input_rates import rates
 from validate.hard.case import Answer, Trial, unexpected
+from validate.hard.cases import heaves
 from validate.hard.trial import solved
-from validate.inputs import rates
-from validate.verdicts import true_solution
 
 BY_NAME = {case.name: case for case in heaves.CASES}
 NOT_FINITE = BY_NAME["heave-not-finite"]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.hard import laws, spans
 from validate.hard.case import Case
+from validate.hard.cases import laws, spans
 from validate.hard.run import as_expected, examine
 
 BY_NAME = {case.name: case for case in (*laws.CASES, *spans.CASES)}
@@ -48,7 +48,7 @@ def test_a_million_swings_are_too_long_for_series_and_right_at_their_instants() 
 
 def test_the_same_way_at_any_rate_has_the_same_poses() -> None:
     """Time only scales: positions at the same shares of the duration are those of the rate of 1."""
-    from validate.formulations import formulation
+    from validate.formulations.registry import formulation
 
     fast, slow = (
         formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(rate)))

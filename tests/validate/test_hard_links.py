@@ -10,12 +10,12 @@ import pytest
 
 from pointcoord import MechanismError, Scene
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.formulations import formulation
-from validate.hard import links, numbers
+from validate.cars.paper_car import PAPER
+from validate.formulations.registry import formulation
 from validate.hard.case import REFUSED, unexpected
+from validate.hard.cases import links, numbers
 from validate.hard.content import paper_car
 from validate.hard.sides import try_on_side
-from validate.paper_car import PAPER
 
 LINK_CASES = {case.name: case for case in links.CASES}
 NUMBER_CASES = {case.name: case for case in numbers.CASES}
@@ -43,7 +43,7 @@ def test_free_coordinates_of_other_points_only_are_wrong(monkeypatch: pytest.Mon
     def elsewhere(*_: Any) -> None:
         raise MechanismError("free: x of strut_rod_end", ["x of strut_rod_end"])
 
-    monkeypatch.setattr("validate.hard.links.build_mechanism", elsewhere)
+    monkeypatch.setattr("validate.hard.cases.links.build_mechanism", elsewhere)
     tie_rod = links.NUMBERS[-1]
     answer = links.missing(tie_rod).answers[0]
     assert answer.outcome == "wrong"
@@ -54,14 +54,14 @@ def test_a_link_that_nobody_names_is_wrong(monkeypatch: pytest.MonkeyPatch) -> N
     def vague(*_: Any) -> None:
         raise MechanismError("something is not determined", ["link a - b"])
 
-    monkeypatch.setattr("validate.hard.links.build_mechanism", vague)
+    monkeypatch.setattr("validate.hard.cases.links.build_mechanism", vague)
     answer = links.redundant(1.0).answers[0]
     assert answer.outcome == "wrong"
     assert "does not name link" in answer.reason
 
 
 def test_what_is_taken_for_a_mechanism_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("validate.hard.links.build_mechanism", lambda *_: None)
+    monkeypatch.setattr("validate.hard.cases.links.build_mechanism", lambda *_: None)
     monkeypatch.setattr("absolute.solve", lambda *_: None)
     trial = links.exchanged(1.0)
     assert [answer.reason for answer in trial.answers] == ["takes it for a mechanism"] * 2

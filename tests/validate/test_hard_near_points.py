@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.cars.paper_car import PAPER
 from validate.hard.case import Case, wrong_without_warning
+from validate.hard.cases.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.content import paper_car
-from validate.hard.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
-from validate.paper_car import PAPER
 from validate.reference import AmbiguousAssemblyError, Choices
 from validate.reference.equations import LINKS, NUMBER_OF
-from validate.verdicts import inputs_at, true_instant, true_solution
 
 EPS = float(np.finfo(float).eps)
 NAMES = {number: name for name, number in NUMBER_OF.items()}

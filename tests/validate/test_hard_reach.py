@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Scene, simulate
-from validate.formulation import FormulationError
-from validate.formulations import formulation
-from validate.hard import blocked_ways
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
 from validate.hard.case import unexpected, wrong_without_warning
+from validate.hard.cases import blocked_ways
+from validate.hard.cases.reach import CASES, Drive, _refusal
 from validate.hard.content import paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import car_called, home, last_value, reachable
-from validate.hard.reach import CASES, Drive, _refusal
 
 BY_NAME = {case.name: case for case in CASES}
 PAPER_RACK = Drive("paper", "rack", True)

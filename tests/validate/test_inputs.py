@@ -6,8 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from pointcoord.scene import InputPart, SinePart
-from validate.inputs import rates
+from pointcoord.scene.scene_file import InputPart, SinePart
+from validate.formulations.input_rates import rates
 
 EPS = float(np.finfo(float).eps)
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from pointcoord import Scene, simulate
-from validate.compare import compare
-from validate.errata import findings
-from validate.paper import TABLE_2, TABLE_3, compare_with_paper, root_mean_square
+from validate.comparison.compare import compare
+from validate.paper.errata import findings
+from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper, root_mean_square
 
 ROWS = compare_with_paper()
 

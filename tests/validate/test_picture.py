@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.picture import svg
+from validate.output.picture import svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 import absolute
-import pointcoord.chain
-import pointcoord.instants
-import pointcoord.readout
-import pointcoord.rigid
-import pointcoord.summation
-import pointcoord.wheel
-import validate.absolute_coordinates
+import pointcoord.effects.rigid
+import pointcoord.effects.wheel_angles
+import pointcoord.results.readout
+import pointcoord.solve.dense_output
+import pointcoord.solve.pointwise
+import pointcoord.solve.taylor
+import validate.formulations.absolute_coordinates
 from pointcoord import Scene
-from pointcoord.mechanism import Mechanism
-from pointcoord.motion import Channel, Samples
-from validate.compare import compare
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.paper_scenes import DEFAULT_SCENES
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.results.motion import Channel, Samples
+from validate.comparison.compare import compare
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.paper.scenes import DEFAULT_SCENES
 
 # The module; the package's attribute of this name is the function.
 solver = import_module("pointcoord.simulation")
@@ -54,13 +54,13 @@ def _mirrored_wheel(mechanism: Mechanism) -> Mechanism:
 
 def _half_square_term(patch: pytest.MonkeyPatch) -> None:
     """The factor 2 of eq. (23) dropped in every row."""
-    term = pointcoord.instants.square_velocity_term
+    term = pointcoord.solve.pointwise.square_velocity_term
     patch.setattr(solver, "square_velocity_term", lambda s, v: 0.5 * term(s, v))
 
 
 def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
     """The second derivative of s^k taken as k^2 s^(k-2)."""
-    right = pointcoord.summation.derivative_tables
+    right = pointcoord.solve.dense_output.derivative_tables
 
     def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
         tables = right(coefficients, scale, derivatives)
@@ -68,25 +68,29 @@ def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
         tables[2][:-2] = (coefficients * k * k)[2:] / scale**2
         return tables
 
-    patch.setattr(pointcoord.summation, "derivative_tables", wrong)
+    patch.setattr(pointcoord.solve.dense_output, "derivative_tables", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
     """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
-    rates = pointcoord.rigid.body_rates
-    patch.setattr(pointcoord.rigid, "body_rates", lambda p, v, a: (rates(p, v, a)[0], rates(p, a, a)[0]))
+    rates = pointcoord.effects.rigid.body_rates
+    patch.setattr(
+        pointcoord.effects.rigid, "body_rates", lambda p, v, a: (rates(p, v, a)[0], rates(p, a, a)[0])
+    )
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
-    angle = pointcoord.wheel.kingpin_angle
-    patch.setattr(pointcoord.readout.wheel, "kingpin_angle", lambda *a: -angle(*a))
+    angle = pointcoord.effects.wheel_angles.kingpin_angle
+    patch.setattr(pointcoord.results.readout.wheel, "kingpin_angle", lambda *a: -angle(*a))
 
 
 def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
-    rates = validate.absolute_coordinates.rates
+    rates = validate.formulations.absolute_coordinates.rates
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: change(rates(part, t)))
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: change(rates(part, t))
+        )
 
     return plant
 
@@ -132,10 +136,12 @@ def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
 
 def _shifted(by: float) -> Plant:
     """The absolute model sees its inputs a little late."""
-    rates = validate.absolute_coordinates.rates
+    rates = validate.formulations.absolute_coordinates.rates
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(validate.absolute_coordinates, "rates", lambda part, t: rates(part, t - by))
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: rates(part, t - by)
+        )
 
     return plant
 
@@ -217,14 +223,14 @@ def _scaled(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _off_in_pointcoord(quantity: str) -> Plant:
     """What pointcoord reports, before it proves its own bounds of it."""
-    samples = pointcoord.readout.Readout.samples
+    samples = pointcoord.results.readout.Readout.samples
 
     def wrong(*args: object) -> Samples:
         right = samples(*args)
         channel = getattr(right, quantity)
         return replace(right, **{quantity: Channel(channel.quantity, channel.effect, _scaled(channel))})
 
-    return lambda patch: patch.setattr(pointcoord.readout.Readout, "samples", wrong)
+    return lambda patch: patch.setattr(pointcoord.results.readout.Readout, "samples", wrong)
 
 
 def _off_in_absolute(quantity: str) -> Plant:
@@ -266,13 +272,13 @@ def test_a_rate_that_is_summed_wrong_by_a_part_in_1e11_is_caught(
     order: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In the series themselves, so that what is proven and what is reported are off alike."""
-    right = pointcoord.summation.derivative_tables
+    right = pointcoord.solve.dense_output.derivative_tables
 
     def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
         tables = right(coefficients, scale, derivatives)
         return [table * (1.0 + NEAR * (k == order)) for k, table in enumerate(tables)]
 
-    monkeypatch.setattr(pointcoord.summation, "derivative_tables", wrong)
+    monkeypatch.setattr(pointcoord.solve.dense_output, "derivative_tables", wrong)
     outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "absolute")
     spoilt = {"velocity", "angular_velocity"} if order == 1 else {"acceleration", "angular_acceleration"}
     assert spoilt <= {row.quantity for row in outcome.disagreements}

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from pointcoord import Motion, Scene, SingularConfiguration
-from pointcoord.proof import Proof
-from validate.compare import compare_solutions
-from validate.formulation import FormulationError
-from validate.formulations import formulation
-from validate.input_ends import Car, Linkage
-from validate.paper_car import PAPER
+from pointcoord.bounds.proof import Proof
+from validate.cars.input_limits import Car, Linkage
+from validate.cars.paper_car import PAPER
+from validate.comparison.compare import compare_solutions
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
 
 STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), "collinear"))
 

@@ -13,9 +13,9 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.inputs import rates
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
 CAR = {name: np.array(p) for name, p in Scene.load("off-axis-strut").mechanism.points.items()}

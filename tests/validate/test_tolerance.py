@@ -7,11 +7,11 @@ import pytest
 
 import absolute
 from pointcoord import Scene
-from validate.compare import Comparison, compare_solutions
-from validate.formulation import Solution
-from validate.formulations import formulation
-from validate.inputs import rates
-from validate.tolerance import level, tolerance, untested
+from validate.comparison.compare import Comparison, compare_solutions
+from validate.comparison.tolerance import level, tolerance, untested
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
 EPS = 2.0**-52
