@@ -67,8 +67,8 @@ def count_assemblies(
     two numbers check each other.
 
     Args:
-        points: as for `solve_truth`, mm; also up, right, side, digits, closure.
-        inputs: as for `solve_truth`.
+        points: as for `solve_reference`, mm; also up, right, side, digits, closure.
+        inputs: as for `solve_reference`.
         starts: number of random starts.
         seed: of the random numbers.
     Raises:

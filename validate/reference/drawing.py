@@ -58,9 +58,9 @@ def closed_drawing(
     are, without the way through theta. A drawing that closes comes back within the radius.
 
     Args:
-        points: as for `solve_truth`, mm; also up, right, side, digits, closure, clearness.
+        points: as for `solve_reference`, mm; also up, right, side, digits, closure, clearness.
     Raises:
-        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
     design = Design.from_points(points, up, right, side, closure)
     table = design.table

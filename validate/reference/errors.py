@@ -8,11 +8,11 @@ from __future__ import annotations
 from flint import arb
 
 
-class TruthError(Exception):
+class NoReferenceError(Exception):
     """Base of every failure of `validate.reference`."""
 
 
-class BadInputError(TruthError):
+class BadInputError(NoReferenceError):
     """A point, input or setting cannot be used.
 
     Attributes:
@@ -26,7 +26,7 @@ class BadInputError(TruthError):
         super().__init__(f"{what} is {value!r}; allowed is {allowed}")
 
 
-class InfeasibleError(TruthError):
+class InfeasibleError(NoReferenceError):
     """The inputs ask for a pose that the links cannot reach, and that is proven.
 
     Attributes:
@@ -44,7 +44,7 @@ class InfeasibleError(TruthError):
         super().__init__(f"the {closure} closure misses by {gap:.6g} mm (limit 0); try {remedy}")
 
 
-class AmbiguousAssemblyError(TruthError):
+class AmbiguousAssemblyError(NoReferenceError):
     """Nothing says which of several assemblies is wanted.
 
     Attributes:
@@ -58,7 +58,7 @@ class AmbiguousAssemblyError(TruthError):
         super().__init__(f"{what}: {value:.3g}, limit {limit:.3g}; {remedy}")
 
 
-class NotDecidedError(TruthError):
+class NotDecidedError(NoReferenceError):
     """A certificate does not hold at the present number of digits; more digits may help.
 
     Attributes:
@@ -74,7 +74,7 @@ class NotDecidedError(TruthError):
         super().__init__(f"{what}: {value}, limit {limit}")
 
 
-class SingularPoseError(TruthError):
+class SingularPoseError(NoReferenceError):
     """No certificate at the greatest number of digits: the pose is singular, or all but singular.
 
     Attributes:

@@ -14,7 +14,7 @@ from validate.reference.certificate import Certificate, certify, refine
 from validate.reference.closures import equations_for
 from validate.reference.design import Design, ball_vector, values_only
 from validate.reference.equations import Known
-from validate.reference.errors import NotDecidedError, TruthError
+from validate.reference.errors import NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
 from validate.reference.kinematics import body_turns, unknown_jets, wheel_angles
 from validate.reference.vectors import Vector, plus, times
@@ -24,7 +24,7 @@ Triple = tuple[mpf, mpf, mpf]
 
 @dataclass(frozen=True)
 class Instant:
-    """The truth at one instant. Mappings go by point or body name; mm, s, rad.
+    """The reference at one instant. Mappings go by point or body name; mm, s, rad.
 
     The mpf numbers hold more digits than mpmath's default: set `mpmath.mp.dps` before computing with
     them, or mpmath rounds the result.
@@ -72,7 +72,7 @@ class Instant:
 
     def _angle(self, name: str) -> mpf:
         if name not in self.angles:
-            raise TruthError(
+            raise NoReferenceError(
                 f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg; "
                 "use the positions instead"
             )

@@ -66,11 +66,11 @@ def sensitivities(
     e_i times these, to first order.
 
     Args:
-        points: as for `solve_truth`, mm; also inputs, up, right, side, digits, closure, clearness.
+        points: as for `solve_reference`, mm; also inputs, up, right, side, digits, closure, clearness.
     Returns:
         By (input, "value" | "rate" | "acceleration").
     Raises:
-        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
     design = Design.from_points(points, up, right, side, closure)
     driven = Driven.from_mapping(inputs)

@@ -31,7 +31,7 @@ Answer = TypeVar("Answer")
 Points = Mapping[str, Sequence[object]]
 
 
-def solve_truth(
+def solve_reference(
     points: Points,
     inputs: Mapping[str, Sequence[object]],
     guess: Points | None = None,
@@ -92,7 +92,7 @@ def prove_assembly(
         given: what the equations take as given, with rates, at the present precision.
         choose: the closed form to start from.
     Raises:
-        InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+        InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
 
     def attempt(working: int) -> Instant:

@@ -10,7 +10,7 @@ import pytest
 from flint import arb, ctx
 from mpmath import mpf
 
-from validate.reference import Choices, InfeasibleError, NotDecidedError, SingularPoseError, solve_truth
+from validate.reference import Choices, InfeasibleError, NotDecidedError, SingularPoseError, solve_reference
 from validate.reference.branches import candidate
 from validate.reference.certificate import certify, refine
 from validate.reference.design import Design, Driven, values_only
@@ -79,7 +79,7 @@ def test_an_assembly_other_than_the_expected_one_is_rejected(table: Table) -> No
 
 
 @pytest.mark.parametrize("digits", [60, 200])
-def test_a_knuckle_all_but_on_one_line_costs_digits_and_no_truth(table: Table, digits: int) -> None:
+def test_a_knuckle_all_but_on_one_line_costs_digits_and_no_wrong_number(table: Table, digits: int) -> None:
     # The strut is straight, and point 6 lies 1e-20 mm beside its line: the wheel centre magnifies
     # every error of point 6. At the table's own angle the table is the answer.
     sliver = Fraction(1, 10**20)
@@ -90,14 +90,16 @@ def test_a_knuckle_all_but_on_one_line_costs_digits_and_no_truth(table: Table, d
         "tie_rod_outer": (452 + sliver, -300, 62),
     }
     theta = mpmath.acos(mpf(-30) / mpmath.sqrt(180**2 + 325**2 + 30**2))
-    truth = solve_truth(thin, {"arm_angle": (theta, 0, 0)}, guess=thin, digits=digits, closure="collinear")
-    assert truth.condition > 1e18
-    assert truth.digits > digits or digits == 200
+    reference = solve_reference(
+        thin, {"arm_angle": (theta, 0, 0)}, guess=thin, digits=digits, closure="collinear"
+    )
+    assert reference.condition > 1e18
+    assert reference.digits > digits or digits == 200
     for name, place in thin.items():
-        for got, want in zip(truth.position[name], place, strict=True):
+        for got, want in zip(reference.position[name], place, strict=True):
             q = as_fraction(want, name)
             exact = mpf(q.numerator) / q.denominator
-            assert abs(got - exact) <= truth.radius + mpf("1e-100")  # theta has 150 digits
+            assert abs(got - exact) <= reference.radius + mpf("1e-100")  # theta has 150 digits
 
 
 def test_newton_from_nonsense_never_ends_in_a_number_without_proof(table: Table) -> None:
@@ -110,8 +112,8 @@ def test_newton_from_nonsense_never_ends_in_a_number_without_proof(table: Table)
 def test_more_digits_stay_within_the_radius_of_fewer(table: Table, digits: int) -> None:
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (20.0, 150.0, 50.0), "heave": (3.0, 100.0, 10.0)}
     few, many = (
-        solve_truth(table, inputs, digits=digits, closure="collinear"),
-        solve_truth(table, inputs, digits=200, closure="collinear"),
+        solve_reference(table, inputs, digits=digits, closure="collinear"),
+        solve_reference(table, inputs, digits=200, closure="collinear"),
     )
     for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
         limit = few.error_bound[quantity] + many.error_bound[quantity]
@@ -128,7 +130,7 @@ def edge(table: Table, name: str) -> Fraction:
         middle = (near + beyond) / 2
         inputs = {"arm_angle": (Fraction(3, 2), 0, 0), name: (middle, 0, 0)}
         try:
-            solve_truth(table, inputs, digits=15, closure="collinear")
+            solve_reference(table, inputs, digits=15, closure="collinear")
             near = middle
         except InfeasibleError:
             beyond = middle
@@ -141,15 +143,15 @@ def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasib
     table: Table, name: str, distance: Fraction
 ) -> None:
     at = edge(table, name)
-    truth = solve_truth(
+    reference = solve_reference(
         table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at - distance, 1, 0)}, closure="collinear"
     )
     # A fold: the condition grows as the inverse square root of the distance.
-    assert truth.condition > 0.1 * float(distance) ** -0.5
-    assert truth.error_bound["velocity"] < mpf("1e-40")
-    assert truth.digits <= 120  # no more than it takes
+    assert reference.condition > 0.1 * float(distance) ** -0.5
+    assert reference.error_bound["velocity"] < mpf("1e-40")
+    assert reference.digits <= 120  # no more than it takes
     with pytest.raises(InfeasibleError) as caught:
-        solve_truth(
+        solve_reference(
             table, {"arm_angle": (Fraction(3, 2), 0, 0), name: (at + distance, 1, 0)}, closure="collinear"
         )
     assert caught.value.closure == {"arm_angle": "arm", "rack": "tie_rod"}[name]
@@ -165,7 +167,7 @@ def test_an_exactly_singular_pose_is_an_error_that_says_so(table: Table) -> None
         "lower_ball_joint": (0, -300, 0),
     }
     with pytest.raises(SingularPoseError, match="400 digits") as caught:
-        solve_truth(upright, {"arm_angle": (0, 1, 0)}, closure="collinear")
+        solve_reference(upright, {"arm_angle": (0, 1, 0)}, closure="collinear")
     assert isinstance(caught.value.reason, NotDecidedError)
 
 
@@ -177,8 +179,8 @@ def test_size_and_place_of_the_mechanism_cost_nothing(table: Table, power: int, 
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (20, 150, 50)}
     moved_inputs = {**inputs, "rack": tuple(size * x for x in inputs["rack"])}
     here, there = (
-        solve_truth(table, inputs, closure="collinear"),
-        solve_truth(far, moved_inputs, closure="collinear"),
+        solve_reference(table, inputs, closure="collinear"),
+        solve_reference(far, moved_inputs, closure="collinear"),
     )
     scale = mpf(size.numerator) / size.denominator
     for name in table:

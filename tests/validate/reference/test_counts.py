@@ -14,7 +14,7 @@ from validate.reference import (
     NotDecidedError,
     SingularPoseError,
     count_assemblies,
-    solve_truth,
+    solve_reference,
 )
 from validate.reference.branches import candidate
 from validate.reference.closures import equations_for
@@ -76,23 +76,23 @@ def test_the_condition_is_numpy_s_in_the_maximum_norm_of_the_scaled_rows(
     closure: str, arm_angle: float
 ) -> None:
     inputs = {"arm_angle": (arm_angle, 0, 0), "rack": (230, 0, 0)}
-    truth = solve_truth(DRAWN, inputs, closure=closure)
+    reference = solve_reference(DRAWN, inputs, closure=closure)
     design = Design.from_points(DRAWN, (0, 0, 1), (0, 1, 0), "left", closure)
     known = values_only(design.known(Driven.from_mapping(inputs)))
     equations = equations_for(closure)
-    y = equations.unknown_of(candidate(known, truth.choices).points, known)
+    y = equations.unknown_of(candidate(known, reference.choices).points, known)
     matrix = np.zeros((equations.SIZE, equations.SIZE))
     for row, column, entry in equations.jacobian(y, known):
         matrix[row, column] = float(entry)
     scaled = matrix / np.abs(matrix).sum(axis=1, keepdims=True)
     # numpy's inverse is off by about eps times the condition, which is below 1e4 here.
-    assert truth.condition == pytest.approx(float(np.linalg.cond(scaled, np.inf)), rel=1e-10)
+    assert reference.condition == pytest.approx(float(np.linalg.cond(scaled, np.inf)), rel=1e-10)
 
 
 def test_the_condition_of_a_knuckle_near_its_dead_point_grows_as_the_inverse_root() -> None:
     def condition(rack: Fraction) -> float:
         inputs = {"arm_angle": (1.5, 0, 0), "rack": (rack, 0, 0)}
-        return solve_truth(DRAWN, inputs, closure="drawn").condition
+        return solve_reference(DRAWN, inputs, closure="drawn").condition
 
     near, beyond = Fraction(230), Fraction(600)
     for _ in range(100):

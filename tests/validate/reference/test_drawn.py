@@ -24,7 +24,7 @@ from off_axis_cars import (
     size,
 )
 
-from validate.reference import InfeasibleError, Instant, closed_drawing, count_assemblies, solve_truth
+from validate.reference import InfeasibleError, Instant, closed_drawing, count_assemblies, solve_reference
 from validate.reference.equations import NUMBER_OF, Known
 from validate.reference.knuckle_equations import AXIS, residual
 from validate.reference.vectors import cross, dot, minus, plus, times
@@ -40,7 +40,7 @@ def apart(one: Points, other: Points) -> mpf:
 
 
 def solve(car: OffAxisCar, inputs: dict[str, tuple[object, ...]], **settings: object) -> Instant:
-    return solve_truth(car.points, inputs, **{**car.frame, "closure": "drawn", **settings})
+    return solve_reference(car.points, inputs, **{**car.frame, "closure": "drawn", **settings})
 
 
 travels = st.fractions(-30, 30, max_denominator=64)
@@ -59,10 +59,10 @@ def test_the_pose_is_the_closed_form_s_to_the_proven_radius(
         with pytest.raises(InfeasibleError):
             solve(car, inputs)
         return
-    truth = solve(car, inputs)
-    assert set(truth.position) == set(pose.points)
-    assert apart(truth.position, pose.points) <= truth.error_bound["position"] + WITHIN
-    assert truth.error_bound["position"] < truth.radius < mpf("1e-55")
+    reference = solve(car, inputs)
+    assert set(reference.position) == set(pose.points)
+    assert apart(reference.position, pose.points) <= reference.error_bound["position"] + WITHIN
+    assert reference.error_bound["position"] < reference.radius < mpf("1e-55")
 
 
 @given(car=off_axis_cars(), turn=angles, travel=travels)
@@ -174,7 +174,7 @@ def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
     for turn in (Fraction(0), Fraction(1, 5), Fraction(-1, 4)):
         theta = drawn_at.arm_angle + number(turn)
         inputs = {"arm_angle": (theta, 2, -3), "rack": (240, 100, 50), "heave": (10, 20, 30)}
-        drawn, collinear = (solve_truth(straight, inputs, closure=c) for c in ("drawn", "collinear"))
+        drawn, collinear = (solve_reference(straight, inputs, closure=c) for c in ("drawn", "collinear"))
         assert apart(drawn.position, collinear.position) <= drawn.radius + collinear.radius
         for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
             bound = drawn.error_bound[quantity] + collinear.error_bound[quantity]
@@ -187,7 +187,7 @@ def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
 
 def test_the_paper_s_strut_and_the_one_that_is_drawn_are_two_cars() -> None:
     inputs = {"arm_angle": (CAR.drawn[0], 0, 0), "rack": (230, 0, 0)}
-    drawn, collinear = (solve_truth(CAR.points, inputs, closure=c) for c in ("drawn", "collinear"))
+    drawn, collinear = (solve_reference(CAR.points, inputs, closure=c) for c in ("drawn", "collinear"))
     assert apart(drawn.position, collinear.position) > 10
     assert closed_drawing(CAR.points, closure="collinear").farthest[1] > 10
 
@@ -215,10 +215,10 @@ def test_the_side_stays_where_the_strut_top_passes_through_strut_lower() -> None
 def test_without_a_rack_centre_the_rack_line_passes_through_the_drawn_tie_rod_inner() -> None:
     short = {name: place for name, place in CAR.points.items() if name != "rack_centre"}
     for closure in ("drawn", "collinear"):
-        with_centre = solve_truth(
+        with_centre = solve_reference(
             CAR.points, {"arm_angle": (1.5, 1, 0), "rack": (240, 5, 6)}, closure=closure
         )
-        without = solve_truth(short, {"arm_angle": (1.5, 1, 0), "rack": (10, 5, 6)}, closure=closure)
+        without = solve_reference(short, {"arm_angle": (1.5, 1, 0), "rack": (10, 5, 6)}, closure=closure)
         moving = {name: place for name, place in without.position.items() if name != "rack_centre"}
         assert apart(moving, with_centre.position) <= with_centre.radius + without.radius
         assert without.position["rack_centre"] == CAR.points["tie_rod_inner"]
@@ -232,14 +232,14 @@ def test_camber_is_the_spin_axis_s_and_kingpin_the_steering_axis_s(closure: str,
     without = {name: place for name, place in CAR.points.items() if name != "wheel_axis_inner"}
     out = -1 if side == "left" else 1
     for points, inner in ((CAR.points, "wheel_axis_inner"), (without, "strut_lower")):
-        truth = solve_truth(points, inputs, side=side, closure=closure)
-        p = truth.position
+        reference = solve_reference(points, inputs, side=side, closure=closure)
+        p = reference.position
         assert set(p) == set(points)
         axis = minus(p["wheel_centre"], p[inner])
-        assert abs(mpmath.tan(truth.camber) + axis[2] / (out * axis[1])) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.camber) + axis[2] / (out * axis[1])) < mpf("1e-70")
         top = "strut_top" if closure == "drawn" else "strut_lower"
         steer = minus(p[top], p["lower_ball_joint"])
-        assert abs(mpmath.tan(truth.kingpin) + out * steer[1] / steer[2]) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.kingpin) + out * steer[1] / steer[2]) < mpf("1e-70")
         body = ("lower_ball_joint", "tie_rod_outer", "wheel_centre", inner)
         for a in body:
             for b in body:

@@ -17,7 +17,7 @@ from validate.reference import (
     BadInputError,
     NotDecidedError,
     closed_drawing,
-    solve_truth,
+    solve_reference,
 )
 from validate.reference.branches import candidate, choices_of_table
 from validate.reference.certificate import certify, refine
@@ -195,20 +195,20 @@ def test_a_box_that_holds_two_assemblies_is_rejected() -> None:
 )
 def test_a_strut_that_is_none_is_refused_by_name(change: Points, message: str) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth({**POINTS, **change}, STILL, closure="drawn")
+        solve_reference({**POINTS, **change}, STILL, closure="drawn")
 
 
 def test_a_closure_that_does_not_exist_is_refused() -> None:
     with pytest.raises(BadInputError, match="closure is 'bent'; allowed is 'drawn' or 'collinear'"):
-        solve_truth(POINTS, STILL, closure="bent")
+        solve_reference(POINTS, STILL, closure="bent")
 
 
 def test_a_point_that_the_car_does_not_have_is_no_guess() -> None:
     short = {name: place for name, place in POINTS.items() if name != "wheel_axis_inner"}
     with pytest.raises(BadInputError, match="names among"):
-        solve_truth(short, STILL, guess={"wheel_axis_inner": (0, 0, 0)}, closure="drawn")
-    found = solve_truth(POINTS, STILL, guess=POINTS, closure="drawn")
-    assert found.position == solve_truth(POINTS, STILL, closure="drawn").position
+        solve_reference(short, STILL, guess={"wheel_axis_inner": (0, 0, 0)}, closure="drawn")
+    found = solve_reference(POINTS, STILL, guess=POINTS, closure="drawn")
+    assert found.position == solve_reference(POINTS, STILL, closure="drawn").position
 
 
 def test_points_5_6_and_7_on_one_line_are_no_harm_to_a_strut_whose_axis_passes_beside_them() -> None:
@@ -217,14 +217,14 @@ def test_points_5_6_and_7_on_one_line_are_no_harm_to_a_strut_whose_axis_passes_b
     closed = closed_drawing(line, closure="drawn")
     assert closed.farthest[1] < 1e-75
     with pytest.raises(BadInputError, match="a triangle 5, 6, 7"):
-        solve_truth(line, STILL, closure="collinear")
+        solve_reference(line, STILL, closure="collinear")
 
 
 @pytest.mark.parametrize("small", [Fraction(1, 10**3), Fraction(1, 10**12), Fraction(1, 10**30)])
 def test_strut_lower_drawn_next_to_the_strut_top_costs_nothing(small: Fraction) -> None:
     top = POINTS["strut_top"]
     near = {**POINTS, "strut_lower": plus(top, times(minus(POINTS["strut_lower"], top), small))}
-    there, here = (solve_truth(p, STILL, closure="drawn") for p in (near, POINTS))
+    there, here = (solve_reference(p, STILL, closure="drawn") for p in (near, POINTS))
     assert there.digits == here.digits
     assert there.condition < 3 * here.condition
     same = set(POINTS) - {"strut_lower"}  # the axis is the same line

@@ -21,7 +21,7 @@ from off_axis_cars import (
     size,
 )
 
-from validate.reference import solve_truth
+from validate.reference import solve_reference
 from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 CAR = OffAxisCar(closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0)), (0, 0, 1), (0, 1, 0))
@@ -72,13 +72,13 @@ def test_velocities_and_accelerations_are_the_derivatives_of_the_closed_form(
 
     moments = {n: at(n * STEP) for n in range(-3, 4)}
     assume(None not in moments.values())
-    truth = solve_truth(car.points, values, **car.frame, closure="drawn", digits=100)
-    assume(truth.condition < 1e4)  # next to a dead point the eighth derivative is no longer small
+    reference = solve_reference(car.points, values, **car.frame, closure="drawn", digits=100)
+    assume(reference.condition < 1e4)  # next to a dead point the eighth derivative is no longer small
     for name in car.points:
         ahead, behind = ([moments[s * n][name] for n in (1, 2, 3)] for s in (1, -1))
         rate, bend = derivatives(ahead, moments[0][name], behind)
-        assert close(truth.velocity[name], rate, OFF)
-        assert close(truth.acceleration[name], bend, OFF)
+        assert close(reference.velocity[name], rate, OFF)
+        assert close(reference.acceleration[name], bend, OFF)
 
 
 @given(car=off_axis_cars(), law=st.tuples(*[rates] * 6))
@@ -88,7 +88,7 @@ def test_one_turn_explains_all_points_of_the_knuckle_and_the_slide_the_strut_top
 ) -> None:
     theta, rack = car.drawn
     inputs = {"arm_angle": (theta, *law[:2]), "rack": (rack, *law[2:4]), "heave": (0, *law[4:])}
-    now = solve_truth(car.points, inputs, **car.frame, closure="drawn")
+    now = solve_reference(car.points, inputs, **car.frame, closure="drawn")
     for body, points in {
         "knuckle": BODY,
         "lower_arm": ("lower_arm_front", "lower_arm_rear", "lower_ball_joint"),
@@ -112,7 +112,7 @@ def test_the_angular_acceleration_is_the_derivative_of_the_angular_velocity(t: s
         arm = (mpf("1.5") + sine / 10, 7 * cosine / 10, -49 * sine / 10)
         rack = (230 + 40 * moment, 40 - 300 * moment, -300)
         rack = (230 + 40 * moment - 150 * moment**2, rack[1], rack[2])
-        now = solve_truth(CAR.points, {"arm_angle": arm, "rack": rack}, closure="drawn", digits=100)
+        now = solve_reference(CAR.points, {"arm_angle": arm, "rack": rack}, closure="drawn", digits=100)
         return now.angular_velocity["knuckle"], now.angular_acceleration["knuckle"]
 
     turns = {n: at(mpf(t) + n * STEP) for n in range(-3, 4)}
@@ -122,7 +122,7 @@ def test_the_angular_acceleration_is_the_derivative_of_the_angular_velocity(t: s
 
 def test_steering_turns_the_knuckle_about_the_line_of_ball_joint_and_strut_top() -> None:
     inputs = {"arm_angle": (1.5, 0, 0), "rack": (230, 100, 0)}
-    now = solve_truth(CAR.points, inputs, closure="drawn")
+    now = solve_reference(CAR.points, inputs, closure="drawn")
     omega = now.angular_velocity["knuckle"]
     axis = minus(now.position["strut_top"], now.position["lower_ball_joint"])
     assert size(omega) > mpf("0.5")

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from validate.reference import Instant, solve_truth
+from validate.reference import Instant, solve_reference
 from validate.reference.equations import CHASSIS, LINKS, NUMBER_OF, SIZE, Known, jacobian, residual
 from validate.reference.jet import Jet
 
@@ -68,9 +68,11 @@ def exact(number: mpf) -> Fraction:
     return Fraction(*(int(part) for part in number.as_integer_ratio()))
 
 
-def printed_residual(truth: Instant, table: Table, theta: float, rack: float) -> list[tuple[Fraction, int]]:
+def printed_residual(
+    reference: Instant, table: Table, theta: float, rack: float
+) -> list[tuple[Fraction, int]]:
     """The printed equations (1)-(15) in exact arithmetic at the answer, each with its degree."""
-    x, y, z = ({NUMBER_OF[k]: exact(p[i]) for k, p in truth.position.items()} for i in range(3))
+    x, y, z = ({NUMBER_OF[k]: exact(p[i]) for k, p in reference.position.items()} for i in range(3))
     given = {NUMBER_OF[k]: p for k, p in table.items()}
     rows = []
     for i, j in LINKS:
@@ -88,19 +90,21 @@ def printed_residual(truth: Instant, table: Table, theta: float, rack: float) ->
 def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
     table: Table, theta: float, rack: float
 ) -> None:
-    truth = solve_truth(table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear")
-    bound = truth.error_bound["position"]
-    for value, degree in printed_residual(truth, table, theta, rack):
+    reference = solve_reference(
+        table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear"
+    )
+    bound = reference.error_bound["position"]
+    for value, degree in printed_residual(reference, table, theta, rack):
         # A row changes by at most 12 coordinates' errors times differences below 700 mm.
         assert abs(value) <= exact(bound) * (12 * 700 if degree == 2 else 3) + Fraction(1, 10**140)
 
 
 def test_the_printed_equations_expose_a_shifted_answer(table: Table) -> None:
-    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
-    shifted = dict(truth.position)
+    reference = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    shifted = dict(reference.position)
     x, y, z = shifted["tie_rod_outer"]
     shifted["tie_rod_outer"] = (x + mpf("1e-50"), y, z)
-    wrong = Instant(**{**vars(truth), "position": shifted})
+    wrong = Instant(**{**vars(reference), "position": shifted})
     assert max(abs(value) for value, _ in printed_residual(wrong, table, 1.5, 0.0)) > Fraction(1, 10**50)
 
 
@@ -108,10 +112,10 @@ def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equation
     table: Table,
 ) -> None:
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
-    upright = solve_truth(table, inputs, closure="collinear")
+    upright = solve_reference(table, inputs, closure="collinear")
     # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
     turned_table = {name: (x, -z, y) for name, (x, y, z) in table.items()}
-    turned = solve_truth(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
+    turned = solve_reference(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
     bound = upright.radius + turned.radius
     for name in table:
         x, y, z = upright.position[name]
@@ -119,8 +123,8 @@ def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equation
     assert turned.condition < 1.5 * upright.condition
     assert abs(turned.camber - upright.camber) < mpf("1e-60")
 
-    def printed_rank(truth: Instant, flat: bool) -> int:
-        p = {NUMBER_OF[k]: np.array([float(c) for c in v]) for k, v in truth.position.items()}
+    def printed_rank(reference: Instant, flat: bool) -> int:
+        p = {NUMBER_OF[k]: np.array([float(c) for c in v]) for k, v in reference.position.items()}
         if flat:  # lay the strut's line level, whatever it costs the other links: only its rows are asked
             p[8], p[7], p[5] = (p[4] + np.array([s, 2 * s, 0.0]) for s in (100.0, 200.0, 300.0))
         rows = np.zeros((4, 9))  # by the coordinates of 5, 7 and 8, eqs. (8)-(11)

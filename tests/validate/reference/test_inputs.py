@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from validate.reference import BadInputError, TruthError, solve_truth, time_function_value
+from validate.reference import BadInputError, NoReferenceError, solve_reference, time_function_value
 from validate.reference.exact import as_fraction
 from validate.reference.jet import Jet
 
@@ -54,7 +54,7 @@ def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
     table: Table, change: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth(**{"points": table, "inputs": STILL, **change}, closure="collinear")
+        solve_reference(**{"points": table, "inputs": STILL, **change}, closure="collinear")
 
 
 @pytest.mark.parametrize(
@@ -70,20 +70,20 @@ def test_a_mechanism_without_extent_is_refused(
     table: Table, name: str, place: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth({**table, name: place}, STILL, closure="collinear")
+        solve_reference({**table, name: place}, STILL, closure="collinear")
 
 
 def test_a_strut_top_in_the_ball_joint_is_an_error_and_never_a_number(table: Table) -> None:
-    with pytest.raises(TruthError):
-        solve_truth({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
+    with pytest.raises(NoReferenceError):
+        solve_reference({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
 
 
 def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:
     hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
-    truth = solve_truth(hub_in_axis, STILL, closure="collinear")
-    assert abs(truth.kingpin) < 1
-    with pytest.raises(TruthError, match="camber"):
-        _ = truth.camber
+    reference = solve_reference(hub_in_axis, STILL, closure="collinear")
+    assert abs(reference.kingpin) < 1
+    with pytest.raises(NoReferenceError, match="camber"):
+        _ = reference.camber
 
 
 def test_a_polynomial_of_floats_is_exact() -> None:

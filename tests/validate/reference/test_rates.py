@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from mpmath import mpf
 
-from validate.reference import Instant, solve_truth, time_function_value
+from validate.reference import Instant, solve_reference, time_function_value
 from validate.reference.vectors import cross, dot, minus, plus
 
 Table = dict[str, tuple[int, int, int]]
@@ -27,7 +27,7 @@ MOTIONS: dict[str, dict[str, dict[str, Any]]] = {
 
 
 def at(table: Table, motion: dict[str, dict[str, Any]], t: Fraction) -> Instant:
-    return solve_truth(
+    return solve_reference(
         table,
         {name: time_function_value(f, t, 100) for name, f in motion.items()},
         digits=90,
@@ -84,8 +84,10 @@ def test_one_turn_explains_all_points_of_a_body(
 
 
 def test_heave_alone_carries_everything_and_turns_nothing(table: Table) -> None:
-    rest = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
-    lifted = solve_truth(table, {"arm_angle": (1.5, 0, 0), "heave": (12.5, 3.0, -7.0)}, closure="collinear")
+    rest = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    lifted = solve_reference(
+        table, {"arm_angle": (1.5, 0, 0), "heave": (12.5, 3.0, -7.0)}, closure="collinear"
+    )
     for name in table:
         moved = minus(lifted.position[name], rest.position[name])
         assert max(abs(x) for x in minus(moved, (0, 0, 12.5))) <= 2 * rest.radius
@@ -95,7 +97,7 @@ def test_heave_alone_carries_everything_and_turns_nothing(table: Table) -> None:
 
 
 def test_a_car_at_rest_has_rates_of_exactly_zero(table: Table) -> None:
-    rest = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    rest = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
     assert {x for v in (*rest.velocity.values(), *rest.acceleration.values()) for x in v} == {0}
     assert set(rest.angular_velocity["knuckle"]) == {0}
 

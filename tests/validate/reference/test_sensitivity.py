@@ -8,7 +8,7 @@ import pytest
 from mpmath import mpf
 from off_axis_cars import BASE, closing
 
-from validate.reference import InfeasibleError, Instant, sensitivities, solve_truth
+from validate.reference import InfeasibleError, Instant, sensitivities, solve_reference
 from validate.reference.dual import Dual
 from validate.reference.vectors import minus, times
 
@@ -32,7 +32,7 @@ def test_sensitivities_are_the_derivatives_of_every_quantity(closure: str, name:
     def at(sign: int) -> Instant:
         moved = list(INPUTS[name])
         moved[order] += sign * STEP
-        return solve_truth(POINTS, {**INPUTS, name: moved}, side="right", digits=100, closure=closure)
+        return solve_reference(POINTS, {**INPUTS, name: moved}, side="right", digits=100, closure=closure)
 
     ahead, behind = at(1), at(-1)
     per = mpf(STEP.denominator) / 2

@@ -69,7 +69,7 @@ def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: Case) -> None
     assert not any(answer.outcome == "unjudged" for answer in trial.answers)
 
 
-def test_exact_signs_are_those_of_the_truth_where_the_truth_can_tell() -> None:
+def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
     for rack in (-40.0, 0.0, 60.0):
         scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
         expected = true_instant(scene, inputs_at(scene, 0.0))
@@ -105,7 +105,7 @@ def test_a_drawn_side_is_told_however_near_the_plane(lift: float) -> None:
 
 
 def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    # A tie rod of 1e-10 of its length: the truth cannot tell its side, the exact sign can. Told the
+    # A tie rod of 1e-10 of its length: the reference cannot tell its side, the exact sign can. Told the
     # opposite sign, what was right lies on the wrong side.
     case = next(case for case in CASES if case.name == "tie-rod-short")
     assert {a.outcome for a in case.examine(1e-10).answers if a.formulation != "absolute"} == {"right"}
@@ -119,7 +119,7 @@ def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> N
     assert {a.outcome for a in trial.answers if a.formulation != "absolute"} == {"wrong"}
 
 
-def test_a_scene_that_the_truth_can_judge_is_left_to_it() -> None:
+def test_a_scene_that_the_reference_can_judge_is_left_to_it() -> None:
     trial = try_on_side(1.0, paper_car(), ("pointcoord-newton",))
-    assert trial.facts["truth"] == "answers"
+    assert trial.facts["reference"] == "answers"
     assert trial.answers[0].outcome == "right"
