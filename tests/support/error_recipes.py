@@ -15,9 +15,9 @@ from flint import arb, ctx
 import absolute
 import absolute.backend
 import pointcoord
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
 from absolute.continuation import follow
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
@@ -210,7 +210,7 @@ RECIPES: dict[str, Recipe] = {
     "absolute.errors.BranchError": Recipe(
         lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
         ("no branch", "tie rod beside the kingpin"),
-        {"side": bool, "drawn": np.isfinite},
+        {"branch_sign": bool, "drawn": np.isfinite},
     ),
     "absolute.errors.UnreachableError": Recipe(
         lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.assembly import Mechanism
 from absolute.estimate import BodyMotion, Errors, estimate
-from absolute.finish import Finished
 from absolute.mapping import ReadOnly
+from absolute.mechanism import Mechanism
+from absolute.refine import Refined
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
@@ -48,18 +48,18 @@ class Record:
         self._residual = np.zeros(count)
         self.written = 0
 
-    def store(self, finished: Finished, count: int) -> None:
-        """Keep the first `count` of some finished instants, after those kept before."""
+    def store(self, refined: Refined, count: int) -> None:
+        """Keep the first `count` of some refined instants, after those kept before."""
         part = slice(self.written, self.written + count)
-        self._rotation[part] = finished.rotation[:count]
-        self._origin[part] = finished.origin[:count]
+        self._rotation[part] = refined.rotation[:count]
+        self._origin[part] = refined.origin[:count]
         if self._rates:
-            self._velocity[part, 1:] = finished.velocity[:count].reshape(self._velocity[part, 1:].shape)
-            self._acceleration[part, 1:] = finished.acceleration[:count].reshape(
+            self._velocity[part, 1:] = refined.velocity[:count].reshape(self._velocity[part, 1:].shape)
+            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(
                 self._velocity[part, 1:].shape
             )
-        self._iterations[part] = finished.corrections[:count]
-        self._residual[part] = finished.residual[:count]
+        self._iterations[part] = refined.corrections[:count]
+        self._residual[part] = refined.residual[:count]
         self.written += count
 
     def solution(self) -> Solution:
