@@ -15,11 +15,6 @@ from validate.adjudication.reference_solution import (
     reference_instant,
     reference_solution,
 )
-    drawn_choices,
-    inputs_at,
-    reference_instant,
-    reference_solution,
-)
 from validate.cars.paper_car import PAPER
 from validate.hard.cars import paper_car
 from validate.hard.case import Case, wrong_without_warning
