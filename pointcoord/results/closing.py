@@ -100,7 +100,7 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
         miss = float(np.linalg.norm(residual[first:last]))
         # Rows are sums of a few products of coordinates below 1.
         if constraint.is_length and miss > 64 * np.finfo(float).eps:
-            misses[constraint.labels[0].removesuffix(" (x)")] = unit * miss
+            misses[constraint.name] = unit * miss
         first = last
     size = unit * float(np.max(np.ptp(stack, axis=0)))
     return Closing(movements, misses, size)

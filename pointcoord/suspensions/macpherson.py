@@ -11,8 +11,16 @@ is then (0, 1, 0), and its three vectors drop out.
 
 from __future__ import annotations
 
-from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
-from pointcoord.linkage.constraints.constraint import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
+from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.drives import ArmAngle, Travel
 from pointcoord.linkage.topology import Topology
 
