@@ -14,8 +14,8 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, exact_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, Certificate, certify
-from pointcoord.numerics.linear import EPS, Factors, factorise
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 

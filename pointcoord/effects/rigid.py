@@ -19,10 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import SingularConfiguration
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
-
-EPS = float(np.finfo(float).eps)
 
 
 def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:

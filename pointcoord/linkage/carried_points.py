@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.numerics.linear import EPS
 from pointcoord.numerics.power_series import cross_series
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 

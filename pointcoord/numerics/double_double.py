@@ -14,7 +14,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, QuadraticMap
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Pair = tuple[Array, Array]

@@ -32,7 +32,8 @@ from pointcoord.numerics.double_double import (
     pair_product,
     pair_sum,
 )
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, Product, Row
+from pointcoord.numerics.quadratic import Product, Row
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,8 @@ from pointcoord.linkage.constraints.constraint import Constraint, dot, no_length
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import exact_square
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, Product, Row
+from pointcoord.numerics.quadratic import Product, Row
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 
 @dataclass(frozen=True)
