@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
 Drawing = dict[str, Array]
-Closure = Literal["drawn", "collinear"]
+Closure = str  # what closes a drawing, as a scene names it
 Uniform = Callable[[float, float], float]  # a number between two, drawn at random or looked for
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
