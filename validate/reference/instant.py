@@ -9,14 +9,13 @@ from fractions import Fraction
 from flint import arb
 from mpmath import mpf
 
-from validate.reference.branches import Choices, choices_of
+from validate.reference.candidates import choices_of
 from validate.reference.certificate import Certificate, certify, refine
-from validate.reference.closures import equations_for
 from validate.reference.design import Design, ball_vector, values_only
-from validate.reference.equations import Known
 from validate.reference.errors import NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
 from validate.reference.kinematics import body_turns, unknown_jets, wheel_angles
+from validate.reference.linkage import Choices, Known
 from validate.reference.vectors import Vector, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
@@ -101,10 +100,10 @@ def prove_instant(
     still = values_only(known)
     certificate = prove_pose(still, start, expected, digits, working)
     solved = unknown_jets(certificate.enclosure, known)
-    points = equations_for(known.closure).points_of(solved, known)
+    points = known.linkage.points_of(solved, known)
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    named = {name: points[number] for name, number in design.names.items()}
+    named = {name: points[name] for name in design.names}
     position = {name: plus(origin, times(_part(p, "value"), unit)) for name, p in named.items()}
     velocity = {name: times(_part(p, "rate"), unit) for name, p in named.items()}
     acceleration = {name: times(_part(p, "acceleration"), unit) for name, p in named.items()}
@@ -170,7 +169,7 @@ def prove_pose(
     # Extra digits go half into a smaller box, which keeps a close second assembly out, and half into
     # the arithmetic, which a nearly singular Jacobian wears down.
     certificate = certify(refine(start, known), known, Fraction(1, 10 ** ((digits + working) // 2)))
-    points = equations_for(known.closure).points_of(certificate.enclosure, known)
+    points = known.linkage.points_of(certificate.enclosure, known)
     choices = choices_of(points, known)
     if expected is not None and choices != expected:
         raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))

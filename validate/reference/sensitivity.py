@@ -14,17 +14,17 @@ from functools import partial
 from flint import arb, arb_mat
 from mpmath import mpf
 
-from validate.reference.branches import CLEAR_SIGN, Choices, candidate, choices_of_table
-from validate.reference.closures import DEFAULT, equations_for
-from validate.reference.design import INPUTS, Design, Driven, balls, values_only
+from validate.reference.candidates import CLEAR_SIGN, choices_of_table
+from validate.reference.design import Design, Driven, balls, values_only
 from validate.reference.dual import Dual, slope_of, value_of
-from validate.reference.equations import Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball, centre_of
 from validate.reference.instant import Triple, prove_pose
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets, wheel_directions
+from validate.reference.linkage import Choices, Known
 from validate.reference.solve import Points, with_enough_digits
+from validate.reference.suspensions import CLOSURE, SUSPENSION
 from validate.reference.vectors import Scalar, Vector, times
 
 ORDERS = ("value", "rate", "acceleration")
@@ -57,8 +57,9 @@ def sensitivities(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = DEFAULT,
+    closure: str = CLOSURE,
     clearness: float = CLEAR_SIGN,
+    suspension: str = SUSPENSION,
 ) -> dict[tuple[str, str], Sensitivity]:
     """The derivatives of an instant by the value, rate and acceleration of each input.
 
@@ -66,15 +67,16 @@ def sensitivities(
     e_i times these, to first order.
 
     Args:
-        points: as for `solve_reference`, mm; also inputs, up, right, side, digits, closure, clearness.
+        points: as for `solve_reference`, mm; also inputs, up, right, side, digits, closure, clearness,
+            suspension.
     Returns:
         By (input, "value" | "rate" | "acceleration").
     Raises:
         BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
-    design = Design.from_points(points, up, right, side, closure)
-    driven = Driven.from_mapping(inputs)
-    choices = choices_of_table(design.table, design.up, closure, clearness)
+    design = Design.from_points(points, up, right, side, closure, suspension)
+    driven = design.driven(inputs)
+    choices = choices_of_table(design.table, design.up, design.linkage, clearness)
     return with_enough_digits(partial(_attempt, design, driven, choices, digits), digits)
 
 
@@ -83,14 +85,14 @@ def _attempt(
 ) -> dict[tuple[str, str], Sensitivity]:
     known = design.known(driven)
     still = values_only(known)
-    chosen = candidate(still, choices)
+    chosen = design.linkage.candidate(still, choices)
     chosen.require_feasible(float(design.unit))
-    start = equations_for(design.closure).unknown_of(chosen.points, still)
+    start = design.linkage.unknown_of(chosen.points, still)
     enclosure = prove_pose(still, start, choices, digits, working).enclosure
     inverse, jets = inverse_jacobian(enclosure, still), unknown_jets(enclosure, known)
     return {
         (name, order): _by(design, _changed(design, driven, name, order), jets, inverse)
-        for name in INPUTS
+        for name in driven
         for order in ORDERS
     }
 
@@ -99,25 +101,24 @@ def _changed(design: Design, driven: Driven, name: str, order: str) -> Known:
     """What is given, with its slope by one number of one input."""
 
     def dual(other: str) -> Jet:
-        jet = balls(getattr(driven, other))
+        jet = balls(driven[other])
         return Jet(*(Dual(getattr(jet, o), arb(int((other, o) == (name, order)))) for o in ORDERS))
 
-    return design.known_for(dual("arm_angle"), dual("rack"), dual("heave"))
+    return design.known_for({other: dual(other) for other in driven})
 
 
 def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> Sensitivity:
-    equations = equations_for(known.closure)
     slopes: list[list[arb]] = [[arb(0)] * 3 for _ in jets]
     for order, name in enumerate(ORDERS):
-        rows = equations.residual(_with_slopes(jets, slopes), known)
+        rows = known.linkage.residual(_with_slopes(jets, slopes), known)
         step = inverse * arb_mat(len(rows), 1, [-slope_of(getattr(row, name)) for row in rows])
         for i, slope in enumerate(slopes):
             slope[order] = step[i, 0]
     solved = _with_slopes(jets, slopes)
-    points, unit = equations.points_of(solved, known), as_ball(design.unit)
+    points, unit = known.linkage.points_of(solved, known), as_ball(design.unit)
     turns = body_turns(solved, points, known)
     vectors = {
-        quantity: {name: times(_slope(points[n], order), unit) for name, n in design.names.items()}
+        quantity: {name: times(_slope(points[name], order), unit) for name in design.names}
         for quantity, order in zip(("position", "velocity", "acceleration"), ORDERS, strict=True)
     }
     for i, quantity in enumerate(("angular_velocity", "angular_acceleration")):

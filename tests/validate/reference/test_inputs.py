@@ -60,9 +60,9 @@ def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
 @pytest.mark.parametrize(
     ("name", "place", "message"),
     [
-        ("strut_rod_end", (460, -180, 470), "length between points 8 and 4"),
+        ("strut_rod_end", (460, -180, 470), "distance from strut_rod_end to strut_top"),
         ("lower_arm_rear", (270, -5, 90), "axis not along up"),
-        ("tie_rod_outer", (454, -310, 80), "a triangle 5, 6, 7"),
+        ("tie_rod_outer", (454, -310, 80), "a triangle of these points"),
         ("strut_top", (460, -180, math.inf), "finite real number"),
     ],
 )

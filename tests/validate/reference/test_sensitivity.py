@@ -6,13 +6,12 @@ from fractions import Fraction
 
 import pytest
 from mpmath import mpf
-from off_axis_cars import BASE, closing
+from reference_cars import OFF_AXIS as POINTS
 
 from validate.reference import InfeasibleError, Instant, sensitivities, solve_reference
 from validate.reference.dual import Dual
 from validate.reference.vectors import minus, times
 
-POINTS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
 INPUTS = {
     "arm_angle": (Fraction(3, 2), Fraction(2), Fraction(-3)),
     "rack": (Fraction(240), Fraction(150), Fraction(-400)),
