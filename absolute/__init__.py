@@ -1,7 +1,7 @@
 """Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
 from absolute.closing import ClosedDrawing, close_drawing
-from absolute.description import Axis, Carried, Input, Joint, Model, Side
+from absolute.description import Axis, BranchSign, Carried, Input, Joint, Model
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
@@ -13,15 +13,19 @@ from absolute.errors import (
     SingularError,
     UnreachableError,
 )
-from absolute.macpherson import macpherson
 from absolute.solution import Solution
 from absolute.solve import solve
+from absolute.suspensions import SUSPENSIONS, suspension
+from absolute.suspensions.macpherson import macpherson
+from absolute.suspensions.suspension import Suspension
 
 __all__ = [
+    "SUSPENSIONS",
     "AbsoluteError",
     "AssemblyError",
     "Axis",
     "BranchError",
+    "BranchSign",
     "Carried",
     "ClosedDrawing",
     "DescriptionError",
@@ -31,11 +35,12 @@ __all__ = [
     "MissingPinocchioError",
     "Model",
     "PoseError",
-    "Side",
     "SingularError",
     "Solution",
+    "Suspension",
     "UnreachableError",
     "close_drawing",
     "macpherson",
     "solve",
+    "suspension",
 ]

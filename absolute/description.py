@@ -75,7 +75,7 @@ class Carried:
 
 
 @dataclass(frozen=True)
-class Side:
+class BranchSign:
     """A product of vectors whose sign tells the assemblies of a linkage apart.
 
     Two vectors give a . b, three give (a x b) . c. Choose it so that it is zero where two assemblies
@@ -101,7 +101,7 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        sides: name -> Side, whose signs in the drawing every pose must keep; none by default.
+        branch_signs: name -> BranchSign, whose sign in the drawing every pose must keep; none by default.
     Raises:
         DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
             LARGEST_COORDINATE, an axis has no length, or joints and inputs do not give six rows per
@@ -113,7 +113,7 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    sides: Mapping[str, Side] = field(default_factory=dict)
+    branch_signs: Mapping[str, BranchSign] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = {name: point_of(name, value) for name, value in self.points.items()}
@@ -121,7 +121,7 @@ class Model:
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
         object.__setattr__(self, "inputs", ReadOnly(self.inputs))
-        object.__setattr__(self, "sides", ReadOnly(self.sides))
+        object.__setattr__(self, "branch_signs", ReadOnly(self.branch_signs))
         _check_bodies(self)
         for name, joint in self.joints.items():
             _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
@@ -139,8 +139,8 @@ class Model:
                     name,
                     drive.factor,
                 )
-        for name, side in self.sides.items():
-            _check_side(self, name, side)
+        for name, sign in self.branch_signs.items():
+            _check_branch_sign(self, name, sign)
         self._check_count()
 
     @property
@@ -230,22 +230,24 @@ def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs
         _check_direction(what, name, axis.toward)
 
 
-def _check_side(model: Model, name: str, side: Side) -> None:
-    if len(side.vectors) not in (2, 3):
+def _check_branch_sign(model: Model, name: str, sign: BranchSign) -> None:
+    if len(sign.vectors) not in (2, 3):
         raise DescriptionError(
-            f"side {name!r} has {len(side.vectors)} vectors; a product of two or three is needed", name, side
+            f"branch sign {name!r} has {len(sign.vectors)} vectors; a product of two or three is needed",
+            name,
+            sign,
         )
-    for vector in side.vectors:
+    for vector in sign.vectors:
         if isinstance(vector, Carried):
-            _check_choice(f"a body of side {name!r}", name, vector.body, model.bodies)
+            _check_choice(f"a body of branch sign {name!r}", name, vector.body, model.bodies)
             ends: tuple[object, ...] = (vector.start, vector.end)
         elif len(vector) == 2 and all(isinstance(end, str) for end in vector):
             ends = vector
         else:
-            _check_direction(f"side {name!r}", name, vector)
+            _check_direction(f"branch sign {name!r}", name, vector)
             continue
         for end in ends:
-            _check_choice(f"a point of side {name!r}", name, str(end), model.points)
+            _check_choice(f"a point of branch sign {name!r}", name, str(end), model.points)
 
 
 def _check_direction(what: str, name: str, value: object) -> None:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
         SingularConfiguration,
         UnknownName,
     )
-    from pointcoord.motion import Motion, Samples
-    from pointcoord.scene import Scene, built_in_scenes
+    from pointcoord.results.motion import Motion, Samples
+    from pointcoord.scene.scene_file import Scene, built_in_scenes
     from pointcoord.simulation import simulate
 
 __all__ = [
@@ -55,11 +55,11 @@ __all__ = [
 
 # Where names are that are no errors.
 _MODULES = {
-    "Motion": "motion",
-    "Samples": "motion",
-    "Scene": "scene",
+    "Motion": "results.motion",
+    "Samples": "results.motion",
+    "Scene": "scene.scene_file",
     "Standing": "drawing_stands",
-    "built_in_scenes": "scene",
+    "built_in_scenes": "scene.scene_file",
     "simulate": "simulation",
     "standing": "drawing_stands",
 }

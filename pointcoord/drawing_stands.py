@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.assembly import Path, close_drawing, follow
-from pointcoord.closing import Closing, closing
-from pointcoord.linear import weakest_balance
-from pointcoord.mechanism import Mechanism
-from pointcoord.readout import wheel_angles
-from pointcoord.scene import Scene
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.linear import weakest_balance
+from pointcoord.results.closing import Closing, closing
+from pointcoord.results.readout import wheel_angles
+from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
+from pointcoord.solve.assembly import Path, close_drawing, follow
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 
-from pointcoord.visible import visible
+
+def visible(text: str) -> str:
+    r"""The text with each character that does not print as its escape, such as \x1b, \n or \u202e.
+
+    These are the controls, the marks that turn the direction of writing, the separators but for the space,
+    and halves of characters, which file names may hold. What prints stays as it is.
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 class PointcoordError(Exception):

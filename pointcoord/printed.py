@@ -15,8 +15,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.instants import square_velocity_term
-from pointcoord.quadratic import QuadraticMap
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.pointwise import square_velocity_term
 from pointcoord.suspensions.macpherson import PRINTED
 
 Array = NDArray[np.float64]

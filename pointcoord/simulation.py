@@ -9,12 +9,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.assembly import Pose, assemble, close_drawing
-from pointcoord.chain import COARSEST, FINEST, Chain, Settings, build_chain
-from pointcoord.chassis import ChassisMotion
-from pointcoord.closing import ALLOWED, Closing, closing
-from pointcoord.effects import plan_effects
-from pointcoord.enclosed_rates import Summed
+from pointcoord.bounds.enclosed_rates import Summed
+from pointcoord.bounds.proof import Proof, prove
+from pointcoord.bounds.reported_bounds import Bounds, Reported, loss_of_least_squares
+from pointcoord.effects.effect import plan_effects
 from pointcoord.errors import (
     AssemblyError,
     InputNotKnown,
@@ -25,20 +23,22 @@ from pointcoord.errors import (
     SceneError,
     UnknownName,
 )
-from pointcoord.faults import shown
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.inputs import TimeFunction
-from pointcoord.instants import Solved, solve_instants, square_velocity_term
-from pointcoord.mechanism import Mechanism
-from pointcoord.motion import Motion, Prover, Samples
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
 from pointcoord.printed import printed_body_loss, printed_body_rates, printed_square_velocity_term
-from pointcoord.proof import Proof, prove
-from pointcoord.readout import Readout, least_squares_rates
-from pointcoord.reported_bounds import Bounds, Reported, loss_of_least_squares
-from pointcoord.scene import Scene
-from pointcoord.states import Sampler, solved_states
+from pointcoord.results.closing import ALLOWED, Closing, closing
+from pointcoord.results.motion import Motion, Prover, Samples
+from pointcoord.results.readout import Readout, least_squares_rates
+from pointcoord.results.states import Sampler, solved_states
+from pointcoord.scene.messages import shown
+from pointcoord.scene.scene_file import Scene
+from pointcoord.solve.assembly import Pose, assemble, close_drawing
+from pointcoord.solve.pointwise import Solved, solve_instants, square_velocity_term
+from pointcoord.solve.taylor import COARSEST, FINEST, Chain, Settings, build_chain
 from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
-from pointcoord.work import Work
+from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 Method = Literal["series", "newton", "printed"]

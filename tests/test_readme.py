@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.compare import compare
-from validate.paper_scenes import PAPER_SCENES
+from validate.comparison.compare import compare
+from validate.paper.scenes import PAPER_SCENES
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 

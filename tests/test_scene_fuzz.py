@@ -1,6 +1,6 @@
 """Thousands of broken and odd scene files: each gives a motion, or exit status 2 and one line that says why.
 
-`validate.mutation` makes the files by number, so a failing one can be made again. Each defect that they
+`mutation` makes the files by number, so a failing one can be made again. Each defect that they
 found stays as a named case.
 """
 
@@ -16,11 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from mutation import mutated_scene
 from program import complaints
 
 import pointcoord
 from validate.cli import main
-from validate.mutation import mutated_scene
 
 FILES = 10_000 if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else 300
 BLOCK = 25

@@ -4,8 +4,8 @@ from validate import compare
 outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
 """
 
-from validate.compare import Comparison, Outcome, compare
-from validate.formulation import Accuracy, Formulation, FormulationError, Solution
+from validate.comparison.compare import Comparison, Outcome, compare
+from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
 from validate.running import check_what_is_run
 
 __all__ = ["Accuracy", "Comparison", "Formulation", "FormulationError", "Outcome", "Solution", "compare"]

@@ -9,10 +9,10 @@ from typing import NoReturn
 
 from validate.commands import comparison, draw, hard, motion, scenes
 from validate.commands.usage import UsageError
-from validate.document import program_version, schema_text
 from validate.door import guarded
 from validate.exit_status import HELP, ExitStatus
-from validate.output import Console
+from validate.output.console import Console
+from validate.output.document import program_version, schema_text
 
 COMMANDS = (comparison, motion, scenes, draw, hard)
 

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 
 from pointcoord import PointcoordError
 from validate.commands.usage import UsageError
-from validate.examined import told_failure
+from validate.comparison.examined import told_failure
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
-from validate.files import OutputError, UnknownEnding
-from validate.formulation import FormulationError
-from validate.formulations import UnknownFormulation
-from validate.output import Console
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import UnknownFormulation
+from validate.output.console import Console
+from validate.output.files import OutputError, UnknownEnding
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (

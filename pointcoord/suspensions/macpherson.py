@@ -11,10 +11,10 @@ is then (0, 1, 0), and its three vectors drop out.
 
 from __future__ import annotations
 
-from pointcoord.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
-from pointcoord.constraints import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
-from pointcoord.drives import ArmAngle, Travel
-from pointcoord.topology import Topology
+from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
+from pointcoord.linkage.constraints.constraint import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
+from pointcoord.linkage.drives import ArmAngle, Travel
+from pointcoord.linkage.topology import Topology
 
 KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
 

@@ -11,8 +11,8 @@ from dead_points import ENDS
 from numpy.typing import NDArray
 
 import absolute
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.rounding import pose_doubt
 
 Array = NDArray[np.float64]

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.mechanism import Mechanism
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.paper_car import PAPER, Points
+from validate.cars.paper_car import PAPER, Points
 
 EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
 

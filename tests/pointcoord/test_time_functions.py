@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.inputs import Polynomial, Sine, Table, TimeFunction, cosine
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

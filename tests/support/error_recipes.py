@@ -15,23 +15,23 @@ from flint import arb, ctx
 import absolute
 import absolute.backend
 import pointcoord
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
 from absolute.continuation import follow
-from pointcoord.hardpoints import build_mechanism
-from pointcoord.rigid import body_rates
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
+from pointcoord.effects.rigid import body_rates
+from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
-from validate.deep_store import Store
-from validate.formulation import Accuracy
-from validate.formulations import formulation
+from validate.formulations.protocol import Accuracy
+from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
-from validate.motion_tables import write_motion
+from validate.output.motion_tables import write_motion
 from validate.reference import solve_reference
 from validate.reference.candidates import choices_of_table
 from validate.reference.certificate import certify, refine
 from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
+from validate.studies.chunk_store import Store
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
@@ -151,7 +151,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "pointcoord.errors.MotionTooLong": Recipe(
         lambda _, pretend: (
-            pretend.setattr("pointcoord.chain.MOST_SEGMENTS", 5),
+            pretend.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 5),
             pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}})),
         ),
         ("from 0 to 2.6 s", "segments; allowed: 5", "reach t = ", "slow the inputs down", "'newton'"),
@@ -196,7 +196,7 @@ RECIPES: dict[str, Recipe] = {
         ("the drawing cannot be assembled", "mm", "draw the points closer"),
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
     ),
-    "validate.formulation.AccuracyError": Recipe(
+    "validate.formulations.protocol.AccuracyError": Recipe(
         lambda *_: Accuracy(condition=np.ones(2), position={"wheel_centre": np.full((2, 3), -1.0)}),
         ("position of wheel_centre", "-1", "finite numbers from 0 up"),
         {"claim": "position of wheel_centre", "problem": bool, "allowed": bool},
@@ -209,7 +209,7 @@ RECIPES: dict[str, Recipe] = {
     "absolute.errors.BranchError": Recipe(
         lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
         ("no branch", "tie rod beside the kingpin"),
-        {"side": bool, "drawn": np.isfinite},
+        {"branch_sign": bool, "drawn": np.isfinite},
     ),
     "absolute.errors.UnreachableError": Recipe(
         lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),
@@ -234,32 +234,32 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
-    "validate.deep_store.StoreError": Recipe(
+    "validate.studies.chunk_store.StoreError": Recipe(
         lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
     ),
-    "validate.formulation.FormulationError": Recipe(
+    "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
         ("pointcoord: ", "rack = 500", "bring 'rack' back"),
         {"formulation": "pointcoord", "reason": lambda it: isinstance(it, pointcoord.AssemblyError)},
     ),
-    "validate.formulations.UnknownFormulation": Recipe(
+    "validate.formulations.registry.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
     ),
     "validate.extras.MissingPackage": Recipe(
         lambda _, pretend: (
-            pretend.delitem(sys.modules, "validate.absolute_coordinates", raising=False),
+            pretend.delitem(sys.modules, "validate.formulations.absolute_coordinates", raising=False),
             pretend.setitem(sys.modules, "absolute", None),
             formulation("absolute"),
         ),
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
         {"part": "absolute", "package": "absolute"},
     ),
-    "validate.files.OutputError": Recipe(
+    "validate.output.files.OutputError": Recipe(
         lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
         ("x.csv: cannot be written", "there is no folder"),
         {"target": lambda name: name.endswith("x.csv"), "problem": bool},
     ),
-    "validate.files.UnknownEnding": Recipe(
+    "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
         ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
         {"target": "motion.xlsx"},

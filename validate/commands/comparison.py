@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pointcoord import Scene, SceneError
-from validate import report
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -16,15 +15,16 @@ from validate.commands.usage import (
     load_scene,
     require_target,
 )
-from validate.document import Head, Journal
-from validate.errata import Finding, findings
-from validate.examined import Examined, examine
+from validate.comparison.examined import Examined, examine
 from validate.exit_status import ExitStatus, combined
-from validate.formulations import NAMES, formulation
-from validate.output import Console, shown
-from validate.paper import PaperRow, compare_with_paper
-from validate.paper_scenes import DEFAULT_SCENES, PAPER_SCENES
-from validate.refusals import Refusal
+from validate.formulations.refusals import Refusal
+from validate.formulations.registry import NAMES, formulation
+from validate.output import report
+from validate.output.console import Console, shown
+from validate.output.document import Head, Journal
+from validate.paper.errata import Finding, findings
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
+from validate.paper.tables import PaperRow, compare_with_paper
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.

@@ -6,7 +6,6 @@ import argparse
 from typing import BinaryIO
 
 from pointcoord import SceneError
-from validate.closing import closing_of, warnings_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -15,9 +14,10 @@ from validate.commands.usage import (
     require_target,
 )
 from validate.exit_status import ExitStatus
-from validate.files import require_known_ending, require_writable, write_whole
-from validate.output import Console, shown
-from validate.picture import svg
+from validate.output.closing import closing_of, warnings_of
+from validate.output.console import Console, shown
+from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.output.picture import svg
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.usage import UsageError, require_target
-from validate.document import Head, Journal
 from validate.exit_status import ExitStatus
-from validate.output import Console
+from validate.output.console import Console
+from validate.output.document import Head, Journal
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

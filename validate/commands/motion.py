@@ -14,7 +14,6 @@ from pointcoord import (
     simulate,
 )
 from pointcoord.simulation import Method
-from validate.closing import warnings_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -23,9 +22,10 @@ from validate.commands.usage import (
     require_target,
 )
 from validate.exit_status import ExitStatus
-from validate.files import require_known_ending, require_writable
-from validate.motion_tables import ENDINGS, write_csv, write_motion
-from validate.output import STANDARD_OUTPUT, Console, shown
+from validate.output.closing import warnings_of
+from validate.output.console import STANDARD_OUTPUT, Console, shown
+from validate.output.files import require_known_ending, require_writable
+from validate.output.motion_tables import ENDINGS, write_csv, write_motion
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -7,13 +7,13 @@ import argparse
 import numpy as np
 
 from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
-from pointcoord.closing import ALLOWED
 from pointcoord.drawing_stands import End, Standing
-from pointcoord.effects import EFFECTS, plan_effects
-from validate.closing import warnings_of
+from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.results.closing import ALLOWED
 from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
 from validate.exit_status import ExitStatus
-from validate.output import Console, shown
+from validate.output.closing import warnings_of
+from validate.output.console import Console, shown
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

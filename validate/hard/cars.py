@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.drawings import as_tuple
+from validate.cars.input_limits import Car
+from validate.cars.paper_car import PAPER, Points, mirrored
+from validate.cars.random_struts import as_tuple
 from validate.hard.content import Law, paper_car
-from validate.input_ends import Car
-from validate.paper_car import PAPER, Points, mirrored
 from validate.reference import solve_reference
 
 Array = NDArray[np.float64]

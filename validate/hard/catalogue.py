@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 
-from validate.hard import (
+from validate.hard.case import Case
+from validate.hard.cases import (
     beside,
     body_rates,
     branches,
@@ -23,7 +24,6 @@ from validate.hard import (
     reach,
     spans,
 )
-from validate.hard.case import Case
 
 CASES: tuple[Case, ...] = (
     *dead_points.CASES,

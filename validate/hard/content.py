@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from validate.closed_form import Closure
-from validate.paper_car import EFFECTS, PAPER
+from validate.cars.closed_form import Closure
+from validate.cars.paper_car import EFFECTS, PAPER
 
 Triple = tuple[float, float, float]
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.compare import Comparison, compare_solutions
-from validate.formulation import Solution
+from validate.comparison.compare import Comparison, compare_solutions
+from validate.formulations.protocol import Solution
 from validate.hard.case import Answer, Outcome
 
 Array = NDArray[np.float64]

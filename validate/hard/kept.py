@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
 from pointcoord.suspensions.macpherson import DRAWN
-from validate.inputs import rates
+from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.formulations.input_rates import rates
 from validate.reference import NoReferenceError
-from validate.verdicts import inputs_at, true_instant
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from validate.hard.case import Answer, Case, Expected, Outcome
 from validate.hard.run import Examined, as_expected, counts
-from validate.report import table
+from validate.output.report import table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table

@@ -12,7 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 from pointcoord import Scene
-from validate.formulation import Solution
+from validate.adjudication.true_solution import as_solution
+from validate.adjudication.verdicts import inputs_at
+from validate.formulations.protocol import Solution
 from validate.hard.case import Answer, Trial
 from validate.hard.judged import judged_answer
 from validate.hard.trial import Measure, Tried, solved, try_scene
@@ -22,8 +24,6 @@ from validate.reference.instant import prove_instant
 from validate.reference.macpherson import Choices
 from validate.reference.solve import with_enough_digits
 from validate.reference.vectors import cross, dot, minus
-from validate.true_solution import as_solution
-from validate.verdicts import inputs_at
 
 DIGITS = 60
 

@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Scene, SceneError
+from validate.adjudication.verdicts import true_solution
 from validate.extras import MissingPackage
-from validate.formulation import FormulationError, Solution
-from validate.formulations import formulation
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.registry import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
 from validate.hard.content import decades as decades
 from validate.hard.content import paper_car as paper_car
 from validate.hard.judged import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
-from validate.verdicts import true_solution
 
 Facts = Mapping[str, float | str]
 

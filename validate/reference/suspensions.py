@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from validate.reference import macpherson
 from validate.reference.errors import BadInputError
 from validate.reference.linkage import Linkage
+from validate.reference.macpherson import CLOSURES as MACPHERSON
 
 SUSPENSIONS: dict[str, Mapping[str, Linkage]] = {
-    "macpherson": macpherson.CLOSURES,
+    "macpherson": MACPHERSON,
 }
 SUSPENSION = "macpherson"
 CLOSURE = "drawn"

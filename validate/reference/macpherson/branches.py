@@ -27,11 +27,11 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from validate.reference import linkage
 from validate.reference.carried import carried_by
 from validate.reference.exact import as_ball
 from validate.reference.intersection import meet
 from validate.reference.linkage import Candidate, Known, Sides
+from validate.reference.linkage import Choices as AnyChoices
 from validate.reference.macpherson.collinear import KNUCKLE
 from validate.reference.macpherson.drawn import AXIS, points_of_knuckle, turning
 from validate.reference.macpherson.points import BALL, END, FRONT, INNER, LOWER, OUTER, RACK, REAR, TOP
@@ -39,7 +39,7 @@ from validate.reference.vectors import Vector, cross, dot, minus, plus, squares,
 
 
 @dataclass(frozen=True)
-class Choices(linkage.Choices):
+class Choices(AnyChoices):
     """The four choices that name an assembly, each +1 or -1.
 
     Attributes:

@@ -1,0 +1,1 @@
+"""What a scene may ask for beside positions."""

@@ -1,0 +1,1 @@
+"""A linkage as data: points, constraints, inputs and the map that they make."""

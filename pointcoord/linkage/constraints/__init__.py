@@ -1,0 +1,1 @@
+"""The kinds of constraint; each knows everything about itself."""

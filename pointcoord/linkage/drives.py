@@ -1,0 +1,177 @@
+"""How an input of the user becomes a known coordinate of the map, and back.
+
+Values are power series of shape (..., order + 1); lengths are in units of the mechanism.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import InputOutOfRange
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.numerics.double_double import exact_product, exact_square
+from pointcoord.numerics.enclosure import Enclosed, cosine_sine
+from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.time_functions import cosine
+
+Array = NDArray[np.float64]
+
+
+EXTREME = 8.0  # sizes of the mechanism
+
+
+class Drive(Protocol):
+    """One driven coordinate and the input that drives it."""
+
+    @property
+    def coordinate(self) -> str:
+        """Name of the known coordinate."""
+        ...
+
+    @property
+    def input(self) -> str:
+        """Name of the input."""
+        ...
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """The coordinate's series from the input's."""
+        ...
+
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
+        """What the computed coordinate of an input lacks, and how uncertain it is with that added.
+
+        Args:
+            law: how far the input's value may be off, rad or mm.
+        """
+        ...
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """Where the coordinate and its first and second derivative exactly are.
+
+        Args:
+            law: the input's value, rate and acceleration, each (N,), rad or mm per s^d.
+        """
+        ...
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """The coordinate at which the drawing itself stands."""
+        ...
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """The input that gives a coordinate."""
+        ...
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
+        ...
+
+
+@dataclass(frozen=True)
+class ArmAngle:
+    """rise = d cos(angle), d the drawn length from pivot to point (paper eq. 12); angle in rad.
+
+    The cosine tells angles apart between 0 and pi only, so only these are allowed.
+    """
+
+    coordinate: str
+    input: str
+    pivot: str
+    point: str
+    direction: str
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """d cos of the angle's series.
+
+        Raises:
+            InputOutOfRange: an angle outside 0 .. pi.
+        """
+        angle = value[..., 0]
+        outside = ~((angle >= 0.0) & (angle <= np.pi))
+        if outside.any():
+            worst = float(np.atleast_1d(angle[outside])[0])
+            raise InputOutOfRange(self.input, worst, "0 to pi rad, measured from the upward vertical")
+        with np.errstate(over="ignore", invalid="ignore"):
+            return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
+
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
+        """The length's rounding is known, so the rise lacks it in proportion.
+
+        The cosine is rounded to 1 unit in the last place at worst, which is 2 u, and the product by u; its
+        angle's uncertainty enters as the sine, at most 1.
+        """
+        length, lacking = self._length(drawing)
+        return coordinate * lacking, 3.01 * UNIT_ROUNDOFF * np.abs(coordinate) + 1.01 * length * law
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """d cos(angle), -d sin(angle) angle' and -d (sin(angle) angle'' + cos(angle) angle'^2)."""
+        angle, rate, acceleration = law
+        length, lacking = self._length(drawing)
+        # What is left of the length is of the order of u^2, and plain doubles round it once or twice.
+        arm = Enclosed.of(
+            length, length * lacking, 256 * UNIT_ROUNDOFF**2 * length, 2 * UNIT_ROUNDOFF * length
+        )
+        cosine, sine = cosine_sine(angle)
+        second = sine * acceleration + cosine * rate * rate
+        return arm * cosine, -(arm * sine * rate), -(arm * second)
+
+    def _length(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The drawn length and the part of it that it lacks."""
+        length = drawing.distance(self.pivot, self.point)
+        square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
+        own, own_rest = exact_product(length, length)
+        return length, ((square - own) + (rest - own_rest)) / (2.0 * length * length)
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """Height of the drawn point over its pivot."""
+        return drawing.along(self.pivot, self.point, self.direction)
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """arccos(rise / d)."""
+        ratio = coordinate / drawing.distance(self.pivot, self.point)
+        return np.asarray(np.arccos(np.clip(ratio, -1.0, 1.0)))
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The arm straight up and straight down."""
+        length = drawing.distance(self.pivot, self.point)
+        return length, -length
+
+
+@dataclass(frozen=True)
+class Travel:
+    """A displacement along a direction; mm."""
+
+    coordinate: str
+    input: str
+    origin: str
+    point: str
+    direction: str
+
+    def series(self, value: Array, drawing: Drawing) -> Array:
+        """The displacement in the mechanism's units."""
+        return value / np.asarray(drawing.unit)[..., None]
+
+    def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
+        """None of its own: a quotient by a power of two."""
+        return np.zeros_like(coordinate), np.broadcast_to(law / drawing.unit, coordinate.shape)
+
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
+        """The input's own, in the mechanism's units."""
+        value, rate, acceleration = (part.scaled(1.0 / drawing.unit) for part in law)
+        return value, rate, acceleration
+
+    def drawn(self, drawing: Drawing) -> Array:
+        """The travel at which the drawn point stands: against the direction is positive (eq. 14)."""
+        return -drawing.along(self.origin, self.point, self.direction)
+
+    def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
+        """The displacement in mm."""
+        return np.asarray(coordinate * drawing.unit)
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """Eight sizes to either side: no rod that is drawn within one size reaches as far."""
+        return -EXTREME * np.ones_like(drawing.unit), EXTREME * np.ones_like(drawing.unit)

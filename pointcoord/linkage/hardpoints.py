@@ -1,0 +1,156 @@
+"""Putting hardpoints on a topology, with every check that can be made before anything is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.errors import MechanismError, UnknownName
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.linear import EPS, factorise, null_directions
+
+Array = NDArray[np.float64]
+
+
+def build_mechanism(
+    topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
+) -> Mechanism:
+    """Hardpoints put on a topology, checked.
+
+    Args:
+        points: every point of the topology, shape (..., 3), mm; where one is left out that may be, the point
+            that stands in for it is taken.
+        directions: every direction of the topology, unit vectors, shape (..., 3).
+    Raises:
+        UnknownName: a point or direction is missing or not part of the topology.
+        MechanismError: a coordinate is not finite, a link has no length, or the mechanism is under- or
+            over-determined; the message names the free direction or the redundant rows.
+    """
+    _check_names(points, topology.points, "point")
+    _check_names(directions, topology.directions, "direction")
+    topology = topology.given(points)
+    standing = {name: points[other] for name, other in topology.stand_ins.items() if other in points}
+    taken = {name: place for name, place in standing.items() if name in topology.chassis}
+    located = _checked(taken | dict(points), topology.points, "point")
+    turned = _checked(directions, topology.directions, "direction")
+    stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
+    with np.errstate(over="ignore", invalid="ignore"):
+        extent = (stack.max(axis=-2) - stack.min(axis=-2)).max(axis=-1)
+    if not (np.isfinite(extent).all() and (extent > 1e-100).all() and (extent < 1e100).all()):
+        raise MechanismError(
+            f"the points span {np.max(extent):.3g} mm; allowed: more than 1e-100 and less than 1e100"
+        )
+    unit = np.ldexp(1.0, np.frexp(extent)[1])
+    # Truncated to a grid of four sizes, the origin is subtracted without rounding: a coordinate is
+    # never less than three quarters of a nonzero origin's, and never on the other side of zero.
+    grid = 4.0 * unit[..., None]
+    origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
+    vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
+    drawing = Drawing(vectors, unit)
+    drawn, lacks, doubt = _drawn(topology, drawing)
+    mechanism = Mechanism(
+        topology=topology,
+        origin=origin,
+        unit=unit,
+        drawing=drawing,
+        drawn=drawn,
+        drawn_lacks=lacks,
+        drawn_doubt=doubt,
+        carrier_weights={
+            name: _carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
+        },
+    )
+    _check_determined(mechanism)
+    return mechanism
+
+
+def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
+    for name in given:
+        if name not in names:
+            raise UnknownName(kind, name, names)
+
+
+def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
+    result: dict[str, Array] = {}
+    for name in names:
+        if name not in given:
+            raise MechanismError(f"{kind} {name!r} is missing; needed: {', '.join(names)}", [name])
+        array = np.array(given[name], dtype=float)
+        if array.shape[-1:] != (3,) or not np.isfinite(array).all():
+            raise MechanismError(
+                f"{kind} {name!r} is {array.tolist()}; allowed: three finite numbers", [name]
+            )
+        result[name] = array
+    return result
+
+
+def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
+    """The coordinates y at which the drawing stands, assembled or not, what they lack and their doubt."""
+    layout = topology.layout
+    batch = np.broadcast_shapes(*(v.shape[:-1] for v in drawing.vectors.values()))
+    y, lacks, doubt = (np.zeros((*batch, layout.size)) for _ in range(3))
+    y[..., layout.one] = 1.0
+    for name in (*layout.moving, *layout.chassis, *layout.directions):
+        y[..., list(layout.vector(name))] = drawing.vectors[name]
+    for constraint in topology.constraints:
+        for own in constraint.placed(layout, drawing):
+            places = list(own.places)
+            y[..., places], lacks[..., places], doubt[..., places] = own.values, own.lacks, own.doubt
+    for drive in topology.drives:
+        y[..., layout.scalar(drive.coordinate)] = drive.drawn(drawing)
+    return y, lacks, doubt
+
+
+def _carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str]) -> Array:
+    """(a, b, c) with p - p_0 = a e1 + b e2 + c e1 x e2 for the edges e of the carrying triangle."""
+    base, first, second = (drawing.vectors[point] for point in carriers)
+    e1, e2 = first - base, second - base
+    frame = np.stack(np.broadcast_arrays(e1, e2, np.cross(e1, e2)), axis=-1)
+    lengths = np.linalg.norm(e1, axis=-1) * np.linalg.norm(e2, axis=-1)
+    area = np.linalg.norm(np.cross(e1, e2), axis=-1)
+    if not (area > 8 * EPS * lengths).all():
+        raise MechanismError(
+            f"{', '.join(carriers)} lie in one line, so they cannot carry {name}; move one off the line",
+            carriers,
+        )
+    offset = np.broadcast_to(drawing.vectors[name] - base, frame.shape[:-1])
+    return np.asarray(np.linalg.solve(frame, offset[..., None])[..., 0])
+
+
+def _check_determined(mechanism: Mechanism) -> None:
+    topology, layout, system = mechanism.topology, mechanism.layout, mechanism.map
+    equations, unknowns = len(system.rows), system.unknowns
+    jacobian = system.jacobian(mechanism.drawn)
+    if equations == unknowns:
+        singular = factorise(jacobian).singular
+        if not singular.any():
+            return
+        jacobian = jacobian[tuple(np.argwhere(singular)[0])]
+    else:
+        jacobian = jacobian.reshape(-1, equations, unknowns)[0]
+    free, redundant = null_directions(jacobian)
+    problems = []
+    names: list[str] = []
+    if len(free):
+        names = [layout.describe(i) for i in _dominant(free)]
+        problems.append(f"free at the drawing: {', '.join(names)}")
+    if len(redundant):
+        rows = [topology.labels[i] for i in _dominant(redundant)]
+        names += rows
+        problems.append(f"redundant or contradictory at the drawing: {', '.join(rows)}")
+    state = "over" if equations > unknowns else "under" if equations < unknowns else "not"
+    raise MechanismError(
+        f"{topology.name} is {state}{'-' if state != 'not' else ' '}determined: {unknowns} unknowns, "
+        f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}",
+        names,
+    )
+
+
+def _dominant(directions: Array) -> list[int]:
+    """Indices of the components that take part in null directions, at least a tenth of the largest."""
+    weight = np.abs(directions).max(axis=0)
+    return [int(i) for i in np.flatnonzero(weight > 0.1 * weight.max())]

@@ -1,0 +1,136 @@
+r"""A mechanism: a topology and the hardpoints of one car or of a batch of cars.
+
+Lengths are measured from an origin near the mechanism in a power of two that is its size, so that
+neither the distance from the user's origin nor the size of the car costs a digit, and scaling by a
+power of two changes no bit of a result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.rigid import carried_series
+from pointcoord.errors import InputOutOfRange, UnknownName
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.linkage.layout import Layout
+from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.quadratic import QuadraticMap
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """A topology with hardpoints; build it with `hardpoints.build_mechanism`.
+
+    Attributes:
+        origin: where its coordinates are measured from, shape (..., 3), mm.
+        unit: the length that is 1 in its coordinates, a power of two, shape (...,), mm.
+        drawing: its drawn points and its directions in its own coordinates.
+        drawn: the coordinates y of the drawing, shape (..., size).
+        drawn_lacks: what the known ones of these lack by rounding, shape (..., size).
+        drawn_doubt: how uncertain they still are with that added, shape (..., size).
+        carrier_weights: place of each carried point in the frame of its three carriers, shape (..., 3).
+    """
+
+    topology: Topology
+    origin: Array
+    unit: Array
+    drawing: Drawing
+    drawn: Array
+    drawn_lacks: Array
+    drawn_doubt: Array
+    carrier_weights: Mapping[str, Array]
+
+    @property
+    def layout(self) -> Layout:
+        """The order of the coordinates."""
+        return self.topology.layout
+
+    @property
+    def map(self) -> QuadraticMap:
+        """The constraints."""
+        return self.topology.map
+
+    def places(self, y: Array) -> dict[str, Array]:
+        """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
+        topology = self.topology
+        found = {
+            name: y[..., list(self.layout.vector(name))] for name in (*topology.chassis, *topology.moving)
+        }
+        for name, carriers in topology.carried.items():
+            series = (found[carrier][..., None, :] for carrier in carriers)
+            found[name] = carried_series(self.carrier_weights[name], *series)[..., 0, :]
+        return found
+
+    def known_series(self, inputs: Mapping[str, Array]) -> Array:
+        """Series of all known coordinates from the series of the inputs.
+
+        Args:
+            inputs: coefficients of each input that drives a coordinate, shape (..., order + 1), rad or mm
+                per s**k. What moves the chassis is no part of the constraints (see `chassis`).
+        Returns:
+            Coefficients, shape (..., order + 1, known coordinates), in the mechanism's units.
+        Raises:
+            UnknownName: an input that drives nothing here, or one that is missing.
+            InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
+        """
+        topology, layout = self.topology, self.layout
+        for name in inputs:
+            if name not in topology.required_inputs:
+                raise UnknownName("driving input", name, topology.required_inputs)
+        for name in topology.required_inputs:
+            if name not in inputs:
+                raise UnknownName("given input", name, inputs)
+        batch = np.broadcast_shapes(*(s.shape[:-1] for s in inputs.values()), self.drawn.shape[:-1])
+        orders = inputs[topology.required_inputs[0]].shape[-1]
+        known = np.zeros((*batch, orders, layout.size - layout.unknowns))
+        known[..., 0, :] = self.drawn[..., layout.unknowns :]
+        for drive in topology.drives:
+            place = layout.scalar(drive.coordinate) - layout.unknowns
+            known[..., place] = drive.series(inputs[drive.input], self.drawing)
+        for name, series in inputs.items():
+            if not np.isfinite(series).all():
+                worst = float(series[~np.isfinite(series)][0])
+                raise InputOutOfRange(name, worst, "finite values and rates of every order")
+        if not np.isfinite(known).all():
+            largest = max(inputs, key=lambda name: float(np.abs(inputs[name]).max()))
+            worst = float(np.abs(inputs[largest]).max())
+            raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
+        return known
+
+    def input_values(self, known: Array) -> dict[str, Array]:
+        """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""
+        first = self.layout.unknowns
+        return {
+            drive.input: drive.input_value(
+                known[..., self.layout.scalar(drive.coordinate) - first], self.drawing
+            )
+            for drive in self.topology.drives
+        }
+
+    def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
+        """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
+
+        Drawn points and directions are exact. What a length or another constant of the drawing lacks was
+        kept when it was drawn; of a drive its kind knows (see `drives`).
+
+        Args:
+            laws: how far the value of each input may be off, shape (...,), rad or mm; nothing unless given.
+        Returns:
+            Two arrays of shape (..., size): y plus the first is right to within the second.
+        """
+        layout = self.layout
+        lacking, uncertainty = (
+            np.broadcast_to(drawn, y.shape).copy() for drawn in (self.drawn_lacks, self.drawn_doubt)
+        )
+        for drive in self.topology.drives:
+            place = layout.scalar(drive.coordinate)
+            lacking[..., place], uncertainty[..., place] = drive.rounding(
+                y[..., place], self.drawing, 0.0 if laws is None else laws[drive.input]
+            )
+        return lacking, uncertainty

@@ -1,0 +1,128 @@
+"""A topology: what is joined to what, as data; no numbers of a particular car."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.drives import Drive
+from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Topology:
+    """A linkage as points, bodies, constraints and inputs.
+
+    Attributes:
+        chassis: points that the chassis carries. moving: points to be solved for.
+        bodies: points of each body of three or more points whose rates are of interest.
+        carried: points that ride on a body and constrain nothing, with the three points that carry them.
+        directions: unit vectors that the chassis carries.
+        constraints: links, slides, rack, driven heights.
+        drives: the inputs that drive a coordinate.
+        steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
+        wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
+        stand_ins: points that a car need not give, each with the point that then stands in for it.
+        chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
+    """
+
+    name: str
+    chassis: tuple[str, ...]
+    moving: tuple[str, ...]
+    bodies: Mapping[str, tuple[str, ...]]
+    carried: Mapping[str, tuple[str, str, str]]
+    directions: tuple[str, ...]
+    constraints: tuple[Constraint, ...]
+    drives: tuple[Drive, ...]
+    steering_axis: tuple[str, str]
+    wheel_axis: tuple[str, str]
+    stand_ins: Mapping[str, str] = field(default_factory=dict)
+    chassis_motion: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Every point that a car of this kind has."""
+        return (*self.chassis, *self.moving, *self.carried)
+
+    @property
+    def required_points(self) -> tuple[str, ...]:
+        """Points that must be given."""
+        return tuple(name for name in self.points if name not in self.stand_ins)
+
+    def given(self, points: Collection[str]) -> Topology:
+        """The topology of a car that gives these points: what only rides on a body may be left out."""
+        left_out = {name for name in self.carried if name in self.stand_ins and name not in points}
+        if not left_out:
+            return self
+        inner, outer = (self.stand_ins[name] if name in left_out else name for name in self.wheel_axis)
+        riding = {name: carriers for name, carriers in self.carried.items() if name not in left_out}
+        return replace(self, carried=riding, wheel_axis=(inner, outer))
+
+    @property
+    def required_inputs(self) -> tuple[str, ...]:
+        """Inputs that must be given."""
+        return tuple(drive.input for drive in self.drives)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Every input that may be given."""
+        return (*self.required_inputs, *self.chassis_motion)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """A name for each row of the map."""
+        return tuple(label for constraint in self.constraints for label in constraint.labels)
+
+    def strongest(self, forces: Array) -> tuple[str, ...]:
+        """Names of the constraints that take part in a balance of forces.
+
+        What can lock, links and the strut's slide, comes first; what only says how a body is made, last.
+
+        Args:
+            forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
+                part from a tenth of the largest of all.
+        """
+        first = 0
+        sizes: dict[str, float] = {}
+        ranks: dict[str, int] = {}
+        for constraint in self.constraints:
+            last = first + len(constraint.labels)
+            name = constraint.labels[0].removesuffix(" (x)")
+            sizes[name] = float(np.abs(forces[first:last]).max())
+            ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
+            first = last
+        acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
+        return tuple(sorted(acting, key=lambda name: (ranks[name], -sizes[name])))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The order of the coordinates."""
+        return Layout(
+            moving=self.moving,
+            ratios=tuple(name for c in self.constraints for name in c.slides),
+            chassis=self.chassis,
+            directions=self.directions,
+            driven=tuple(drive.coordinate for drive in self.drives),
+            squared_lengths=tuple(ends for c in self.constraints for ends in c.squared_lengths),
+            vectors=tuple(name for c in self.constraints for name in c.vectors),
+            constants=tuple(name for c in self.constraints for name in c.constants),
+        )
+
+    @cached_property
+    def map(self) -> QuadraticMap:
+        """All constraints as one quadratic map; the same for every car of this topology."""
+        return _map(self.constraints, self.layout)
+
+
+@lru_cache(maxsize=64)
+def _map(constraints: tuple[Constraint, ...], layout: Layout) -> QuadraticMap:
+    rows = [row for constraint in constraints for row in constraint.rows(layout)]
+    return quadratic_map(rows, layout.unknowns, layout.size)

@@ -1,0 +1,105 @@
+r"""The residual in twice the working precision, from sums and products whose rounding is computed exactly.
+
+With fl(a + b) = s and fl(a b) = p, both rounding errors are numbers of the format and come out of a few
+more operations (Knuth's sum, Dekker's product):
+
+    a + b = s + e,      a b = p + f      exactly, but for overflow and underflow.
+
+A number is carried as a pair high + low. What `doubled_residual` leaves out are products of two rounding
+errors, so the proof of a pose sees what is left of C(y), not the rounding of looking at it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, QuadraticMap
+
+Array = NDArray[np.float64]
+
+SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves whose products are exact
+# Rounding of the low parts in units of u^2 times a term, by the bounds below: a factor's low part is at most
+# 6 u of it (its own rounding and that of a coordinate), a term's 13 u, a row's 21 u. Taking the two low
+# parts of factors rounds twice each (24), their products (12), their sum (26), what it leaves out (36), the
+# coefficient (26), the sums of up to 8 terms and of their carries (176): 300, with as much again to spare.
+LEFT_OUT = 600.0
+
+
+def exact_sum(a: Array, b: Array) -> tuple[Array, Array]:
+    """a + b as high and low."""
+    high = a + b
+    virtual = high - a
+    return high, (a - (high - virtual)) + (b - virtual)
+
+
+def exact_product(a: Array, b: Array) -> tuple[Array, Array]:
+    """a b as high and low; magnitudes between 1e-140 and 1e140, or zero."""
+    high = a * b
+    a_high, b_high = _upper_half(a), _upper_half(b)
+    a_low, b_low = a - a_high, b - b_high
+    return high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low
+
+
+def _upper_half(a: Array) -> Array:
+    scaled = SPLITTER * a
+    return np.asarray(scaled - (scaled - a))
+
+
+def exact_square(a: Array, b: Array) -> tuple[Array, Array]:
+    """|a - b|^2 over the last dimension as high and low, to some 100 u^2 of itself."""
+    difference, rest = exact_sum(a, -b)
+    square, square_rest = exact_product(difference, difference)
+    square_rest = square_rest + 2.0 * difference * rest
+    total, carry = exact_sum(square[..., 0], square[..., 1])
+    total, last = exact_sum(total, square[..., 2])
+    return total, carry + last + square_rest.sum(axis=-1)
+
+
+def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:
+    r"""C(y + low), and how far it may be from C of the coordinates that are meant, both (..., rows).
+
+    Each term c (y_a - y_b)(y_c - y_d) is a pair, and a row is summed as pairs. With D the uncertainties of
+    the two coordinates in a factor F,  |F G - F' G'| <= |F| D_G + D_F (|G| + D_G).
+
+    Args:
+        y: coordinates, shape (..., size).
+        low: what is known to be missing in y, |low| <= 5 u |y|, shape (..., size).
+        data: uncertainty of each coordinate of y + low, shape (..., size).
+    """
+    coefficients, starts, factors = system.terms
+    (f, f_low, f_doubt), (g, g_low, g_doubt) = (
+        _difference(y, low, data, first, second) for first, second in factors
+    )
+    high, rest = exact_product(f, g)
+    scaled, scaled_rest = exact_product(high, np.broadcast_to(coefficients, high.shape))
+    rest = (rest + f * g_low + f_low * g) * coefficients + scaled_rest
+    total, carry = _row_sums(scaled, starts)
+    value = total + (carry + np.add.reduceat(rest, starts, axis=-1))
+    size = np.abs(coefficients * f * g)
+    doubt = np.abs(coefficients) * (np.abs(f) * g_doubt + f_doubt * (np.abs(g) + g_doubt))
+    spread = np.add.reduceat(
+        doubt * (1.0 + 16 * UNIT_ROUNDOFF) + LEFT_OUT * UNIT_ROUNDOFF**2 * size, starts, -1
+    )
+    return value, spread + 2.0 * UNIT_ROUNDOFF * np.abs(value)
+
+
+def _difference(
+    y: Array, low: Array, data: Array, first: NDArray[np.intp], second: NDArray[np.intp]
+) -> tuple[Array, Array, Array]:
+    """y_first - y_second as high and low, and its uncertainty."""
+    high, rest = exact_sum(y.take(first, axis=-1), -y.take(second, axis=-1))
+    rest = rest + (low.take(first, axis=-1) - low.take(second, axis=-1))
+    return high, rest, data.take(first, axis=-1) + data.take(second, axis=-1)
+
+
+def _row_sums(terms: Array, starts: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Sums of runs of terms as high and low."""
+    lengths = np.diff(starts, append=terms.shape[-1])
+    total = terms.take(starts, axis=-1)
+    carry = np.zeros_like(total)
+    for place in range(1, int(lengths.max())):
+        rows = np.flatnonzero(lengths > place)
+        total[..., rows], rest = exact_sum(total[..., rows], terms.take(starts[rows] + place, axis=-1))
+        carry[..., rows] += rest
+    return total, carry

@@ -1,0 +1,171 @@
+r"""Numbers in twice the working precision that carry two bounds through every operation.
+
+An `Enclosed` is high + low with two radii:
+
+- *proven*: the exact number lies within it of high + low, whatever rounding did;
+- *expected*: what an evaluation of the same formula in plain doubles loses at most where nothing is wrong, by
+  running error analysis (Higham, Accuracy and Stability, section 3.3): each operation adds u of its result.
+
+Both follow the same rules, |x| s + r |y| + r s for a product, so they are carried as one array with a leading
+dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); with that a sum is rounded by
+3 u^2 of its operands and a product by 8 u^2 of itself, and underflow by less than TINY.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.numerics.double_double import exact_product, exact_sum
+from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+OF_A_SUM = 4.0 * UNIT_ROUNDOFF**2
+OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
+TINY = 1e-307  # a product loses less to underflow, by some 16 orders
+HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
+CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """high + low, with the proven and the expected radius; any shape, `radius` with 2 before it."""
+
+    high: Array
+    low: Array
+    radius: Array
+
+    @classmethod
+    def of(
+        cls, high: ArrayLike, low: ArrayLike = 0.0, proven: ArrayLike = 0.0, expected: ArrayLike = 0.0
+    ) -> Enclosed:
+        """From its parts, broadcast to one shape; an exact number unless radii are given."""
+        parts = np.broadcast_arrays(
+            *(np.asarray(part, dtype=float) for part in (high, low, proven, expected))
+        )
+        total, rest = exact_sum(parts[0], parts[1])
+        return cls(total, rest, np.stack(parts[2:]))
+
+    def __add__(self, other: Enclosed) -> Enclosed:
+        total, carry = exact_sum(self.high, other.high)
+        rest = carry + (self.low + other.low)
+        rounding = _both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
+        high, low = exact_sum(total, rest)
+        mine, its = _aligned(self.radius, other.radius)
+        return Enclosed(high, low, mine + its + rounding)
+
+    def __neg__(self) -> Enclosed:
+        return Enclosed(-self.high, -self.low, self.radius)
+
+    def __sub__(self, other: Enclosed) -> Enclosed:
+        return self + -other
+
+    def __mul__(self, other: Enclosed) -> Enclosed:
+        product, carry = exact_product(*np.broadcast_arrays(self.high, other.high))
+        rest = carry + (self.high * other.low + self.low * other.high)
+        size = np.abs(product)
+        mine, its = _aligned(self.radius, other.radius)
+        spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
+        high, low = exact_sum(product, rest)
+        return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
+
+    def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
+        """Times powers of two, which rounds nothing."""
+        factor = np.asarray(powers_of_two, dtype=float)
+        return Enclosed(self.high * factor, self.low * factor, self.radius * factor)
+
+    def _expecting(self, angle: Enclosed) -> Enclosed:
+        expected = 2.0 * UNIT_ROUNDOFF * np.abs(self.high) + angle.radius[1]
+        return Enclosed(self.high, self.low, np.stack([self.radius[0], expected]))
+
+    def take(self, places: Indices | list[int]) -> Enclosed:
+        """Elements of the last dimension."""
+        return Enclosed(*(part.take(places, axis=-1) for part in (self.high, self.low, self.radius)))
+
+    @property
+    def spread_out(self) -> Enclosed:
+        """With a last dimension of 1, to multiply vectors."""
+        return Enclosed(self.high[..., None], self.low[..., None], self.radius[..., None])
+
+    @property
+    def middle(self) -> Array:
+        """high + low, rounded once."""
+        return np.asarray(self.high + self.low)
+
+    def apart(self, reported: Array) -> Array:
+        """Largest distance of the exact number from a reported one that is close, same shape."""
+        distance = np.abs((reported - self.high) - self.low)
+        return np.asarray(distance * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.radius[0])
+
+
+def _aligned(a: Array, b: Array) -> tuple[Array, Array]:
+    """Radii that broadcast as the numbers do, with dimensions put in behind the first."""
+    rank = max(a.ndim, b.ndim)
+    first, second = (r.reshape(2, *(1,) * (rank - r.ndim), *r.shape[1:]) for r in (a, b))
+    return first, second
+
+
+def _both(proven: Array, expected: Array) -> Array:
+    radius = np.empty((2, *proven.shape))
+    radius[0], radius[1] = proven, expected
+    return radius
+
+
+def dot(a: Enclosed, b: Enclosed) -> Enclosed:
+    """Scalar product over the last dimension of three."""
+    products = a * b
+    x, y, z = (
+        Enclosed(products.high[..., i], products.low[..., i], products.radius[..., i]) for i in range(3)
+    )
+    return x + y + z
+
+
+def cross(a: Enclosed, b: Enclosed) -> Enclosed:
+    """Vector product over the last dimension of three."""
+    return a.take(CYCLE) * b.take(BACK) - a.take(BACK) * b.take(CYCLE)
+
+
+def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
+    """Cosine and sine of an angle between -pi and pi, by Taylor's series of a 64th of it and six doublings.
+
+    With c = cos - 1, which keeps its digits where the angle is small, a doubling is 2 c (2 + c). The expected
+    radius is that of functions right to a unit in the last place.
+    """
+    part = angle.scaled(2.0**-HALVINGS)
+    square = part * part
+    one, two = Enclosed.of(1.0), Enclosed.of(2.0)
+    even, odd = one, one
+    for k in range(TERMS, 0, -1):
+        # cos x = 1 - x^2/(1 2) (1 - x^2/(3 4) (...)) and sin x = x (1 - x^2/(2 3) (1 - x^2/(4 5) (...))).
+        odd = one - square * _inverse(2 * k * (2 * k + 1)) * odd
+        even = one - square * _inverse((2 * k + 1) * (2 * k + 2)) * even
+    sine, less = part * odd, -(square * even).scaled(0.5)
+    for _ in range(HALVINGS):
+        sine, less = (sine * (one + less)).scaled(2.0), (less * (two + less)).scaled(2.0)
+    values = (one + less, sine)
+    return values[0]._expecting(angle), values[1]._expecting(angle)
+
+
+def _inverse(number: int) -> Enclosed:
+    high = 1.0 / number
+    return Enclosed.of(high, float(Fraction(1, number) - Fraction(high)), UNIT_ROUNDOFF**2 * high)
+
+
+def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
+    """Of a small numerator and a positive divisor, in plain doubles; an infinite radius where that may be 0.
+
+    With n, r the numerator and its radius and d, s the divisor's, the exact quotient differs from n/d by at
+    most (r + |n/d| s) / (d - s); the two middles and the division are rounded by 4 u of it together.
+    """
+    n, d = numerator.middle, divisor.middle
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        value = n / d
+        left = d - divisor.radius
+        spread = (numerator.radius + np.abs(value) * divisor.radius) / left
+        radius = np.where(left > 0.0, spread, np.inf) + 4.0 * UNIT_ROUNDOFF * np.abs(value)
+    return Enclosed(np.where(d > 0.0, value, 0.0), np.zeros_like(value), radius)

@@ -1,0 +1,55 @@
+r"""Power series of the motion, from one factorisation.
+
+With y(t0 + s T) = sum_k y_k s^k in every coordinate, C(y(t)) = B(y, y) = 0 reads at order k
+
+    C_u u_k = -( C_w w_k + sum_{0<i<k} B(y_i, y_{k-i}) ),     k = 1, 2, 3, ...
+
+k = 1 is the paper's velocity equation (19), k = 2 half its acceleration equation (22).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.quadratic import QuadraticMap
+
+Array = NDArray[np.float64]
+
+
+def expand(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Array:
+    """Series of all coordinates about an assembled pose.
+
+    Args:
+        factors: factorisation of C_u at y.
+        y: assembled coordinates, shape (..., size).
+        known: series of the known coordinates, shape (..., order + 1, size - unknowns), in the
+            mechanism's units per power of the time unit.
+    Returns:
+        Coefficients, shape (..., order + 1, size).
+    """
+    n, orders = system.unknowns, known.shape[-2]
+    series = np.zeros((*y.shape[:-1], orders, y.shape[-1]))
+    series[..., 1:, n:] = known[..., 1:, :]
+    series[..., 0, :] = y
+    left, right = system.factors(series)
+    driven = np.any(known[..., 1:, :].reshape(-1, orders - 1, known.shape[-1]) != 0.0, axis=(0, 2))
+    for k in range(1, orders):
+        products = np.zeros_like(left[..., 0, :])
+        if driven[k - 1]:
+            products += left[..., 0, :] * right[..., k, :] + left[..., k, :] * right[..., 0, :]
+        if k > 1:
+            products += np.sum(left[..., 1:k, :] * right[..., k - 1 : 0 : -1, :], axis=-2)
+        series[..., k, :n] = -factors.solve(system.gather(products))
+        left[..., k, :], right[..., k, :] = system.factors(series[..., k, :])
+    return series
+
+
+def cross_series(a: Array, b: Array) -> Array:
+    """Series of a x b from the series of two vectors, shapes (..., order + 1, 3)."""
+    orders = a.shape[-2]
+    pairs = [(i, k - i) for k in range(orders) for i in range(k + 1)]
+    first, second = np.array(pairs).T
+    starts = np.cumsum([0, *range(1, orders)])
+    return np.add.reduceat(np.cross(a[..., first, :], b[..., second, :]), starts, axis=-2)

@@ -1,0 +1,1 @@
+"""What a solved scene is, and how it is made of states."""

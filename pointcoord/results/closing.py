@@ -1,0 +1,106 @@
+"""Closing a drawing: how far its points move when it is solved at its own inputs.
+
+A drawing that closes stays where it is, to rounding. One that does not is another car than the one that is
+solved, by as much as its points move: the user is told how far, which point, and what in the drawing misses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so more than that is no rounding
+NOTICED_SHARE = 2e-4  # of the size: that tenth of a car of half a metre, for cars in other units than mm
+ROUNDING = 1e-11  # of the size: a hundred roundings, 500 times as far where the pose is badly conditioned
+ALLOWED = 0.01  # of the car's size: more than that is another car
+
+
+@dataclass(frozen=True)
+class Closing:
+    """What closing a drawing moves.
+
+    Attributes:
+        movements: how far each point moves that is solved for or rides on a body, mm.
+        misses: how far the drawing misses each constraint that is a length, mm; only those above rounding.
+        size: longest side of the box around the points, mm.
+    """
+
+    movements: Mapping[str, float]
+    misses: Mapping[str, float]
+    size: float
+
+    def __post_init__(self) -> None:
+        for name in ("movements", "misses"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __reduce__(self) -> tuple[type[Closing], tuple[dict[str, float], dict[str, float], float]]:
+        # A read-only view of a dictionary does not pickle.
+        return type(self), (dict(self.movements), dict(self.misses), self.size)
+
+    @property
+    def point(self) -> str:
+        """The point that moves most."""
+        return max(self.movements, key=lambda name: self.movements[name])
+
+    @property
+    def largest(self) -> float:
+        """How far it moves, mm."""
+        return self.movements[self.point]
+
+    @property
+    def noticeable(self) -> bool:
+        """Whether the user should be warned."""
+        return self.largest > min(NOTICED, NOTICED_SHARE * self.size)
+
+    @property
+    def moves(self) -> bool:
+        """Whether a point moves by more than rounding."""
+        return self.largest > ROUNDING * self.size
+
+    @property
+    def changes_the_car(self) -> bool:
+        """Whether the closed car is another one than was drawn."""
+        return self.largest > ALLOWED * self.size
+
+    @property
+    def words(self) -> str:
+        """Largest movement and point, and what the drawing misses, in a line."""
+        if not self.moves:
+            return f"the drawing closes: no point moves by more than {self.largest:.1g} mm"
+        why = ", ".join(f"{name} by {miss:.3g} mm" for name, miss in self.misses.items())
+        missed = f"; the drawing misses {why}" if why else ""
+        return f"closing the drawing moves {self.point} by {self.largest:.3g} mm{missed}"
+
+
+def closing(mechanism: Mechanism, closed: Array) -> Closing:
+    """How far the points of a mechanism of one car are from where they are drawn.
+
+    Args:
+        closed: coordinates of the closed drawing, shape (size,).
+    """
+    topology, drawn, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
+    places = mechanism.places(closed)
+    movements = {
+        name: unit * float(np.linalg.norm(places[name] - drawn[name]))
+        for name in (*topology.moving, *topology.carried)
+    }
+    stack = np.array([drawn[name] for name in topology.points])
+    residual = np.abs(mechanism.map.residual(mechanism.drawn))
+    misses, first = {}, 0
+    for constraint in topology.constraints:
+        last = first + len(constraint.labels)
+        miss = float(np.linalg.norm(residual[first:last]))
+        # Rows are sums of a few products of coordinates below 1.
+        if constraint.is_length and miss > 64 * np.finfo(float).eps:
+            misses[constraint.labels[0].removesuffix(" (x)")] = unit * miss
+        first = last
+    size = unit * float(np.max(np.ptp(stack, axis=0)))
+    return Closing(movements, misses, size)

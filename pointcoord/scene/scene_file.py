@@ -1,0 +1,320 @@
+"""The scene file: which mechanism, which inputs, which instants, which effects, how accurate.
+
+A scene is checked when it is read. Every fault names the file, the key, the value and what is allowed.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from difflib import get_close_matches
+from importlib import resources
+from itertools import pairwise
+from pathlib import Path
+from typing import IO, Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from pointcoord.effects.effect import EFFECTS
+from pointcoord.errors import SceneError
+from pointcoord.linkage.topology import Topology
+from pointcoord.scene.drawing_doubts import drawing_doubts
+from pointcoord.scene.even_instants import even_instants
+from pointcoord.scene.messages import plain_number, shown
+from pointcoord.scene.scene_part import Part
+from pointcoord.scene.scene_text import parsed, read_file, read_stream
+from pointcoord.suspensions import TOPOLOGIES
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+
+Plain = BeforeValidator(plain_number)
+Number = Annotated[float, Plain, Field(strict=True, allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+
+# Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
+# power, the order of its series, it stays below the largest number, 2^1024.
+FARTHEST = 1e15
+# Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
+MOST_SAMPLES = 10_000_000
+
+
+class MechanismPart(Part):
+    """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes.
+
+    `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, `collinear`
+    puts the ball joint and the strut's points on one line, as the paper does. `points` has an entry for
+    rack_centre also where the file leaves it to the drawn tie_rod_inner.
+    """
+
+    type: Literal["macpherson"]
+    closure: Literal["drawn", "collinear"] = "drawn"
+    side: Literal["left", "right"] = "left"
+    up: Vector = (0.0, 0.0, 1.0)
+    right: Vector = (0.0, 1.0, 0.0)
+    points: dict[str, Vector]
+
+    @field_validator("points")
+    @classmethod
+    def _known_points(cls, points: dict[str, Vector]) -> dict[str, Vector]:
+        topology = TOPOLOGIES["macpherson"]["drawn"]
+        extra = [name for name in points if name not in topology.points]
+        missing = [name for name in topology.required_points if name not in points]
+        if extra:
+            near = get_close_matches(extra[0], topology.points, n=1)
+            meant = f" (did you mean {near[0]!r}?)" if near else ""
+            raise ValueError(
+                f"no point is called {shown(extra[0])}{meant}; allowed: {', '.join(topology.points)}"
+            )
+        if missing:
+            needed = ", ".join(topology.required_points)
+            raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
+        standing = {name: points[other] for name, other in topology.stand_ins.items()}
+        taken = {name: place for name, place in standing.items() if name in topology.chassis}
+        return taken | points
+
+    @model_validator(mode="after")
+    def _orthonormal(self) -> Self:
+        up, right = np.array(self.up), np.array(self.right)
+        # Components printed with 15 digits leave 1e-15 in each product; anything above is a slip.
+        with np.errstate(over="ignore", invalid="ignore"):
+            worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
+        if not worst <= 1e-12:
+            raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
+        return self
+
+    @model_validator(mode="after")
+    def _wheel_outboard(self) -> Self:
+        top, wheel = (np.array(self.points[name]) for name in ("strut_top", "wheel_centre"))
+        with np.errstate(over="ignore", invalid="ignore"):
+            inboard = float((top - wheel) @ self.outboard)
+        if inboard >= 0.0:
+            other = "right" if self.side == "left" else "left"
+            raise ValueError(
+                f"wheel_centre lies {inboard:.6g} mm inboard of strut_top for side = {self.side!r}; allowed: "
+                f"a wheel outboard of its strut top, here towards {'-' if self.side == 'left' else '+'}right "
+                f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
+                f"if it is a wheel of the other side, try side = {other!r}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _spin_axis(self) -> Self:
+        if self.points.get("wheel_axis_inner") == self.points["wheel_centre"]:
+            raise ValueError(
+                "wheel_axis_inner and wheel_centre are at the same place, so that the wheel's spin axis has "
+                "no direction; allowed: two points of the axis apart from each other"
+            )
+        return self
+
+    @property
+    def topology(self) -> Topology:
+        """The linkage that its points are put on."""
+        return TOPOLOGIES[self.type][self.closure].given(self.points)
+
+    @property
+    def defaults_taken(self) -> tuple[str, ...]:
+        """What the scene leaves to us and what is seen in the results, in words."""
+        if "wheel_axis_inner" in self.points:
+            return ()
+        return ("wheel_axis_inner is not given: the wheel's spin axis starts at strut_lower",)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What looks wrong with the drawing although it can be solved, in words."""
+        topology = self.topology
+        return drawing_doubts(
+            {name: np.array(place) for name, place in self.points.items()},
+            np.array(self.up),
+            self.outboard,
+            topology.wheel_axis,
+            topology.steering_axis,
+            {"wheel_axis_inner"},
+        )
+
+    @property
+    def outboard(self) -> NDArray[np.float64]:
+        """Unit vector away from the car's middle."""
+        return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
+
+
+class SinePart(Part):
+    """offset + amplitude sin(angular_frequency t + phase)."""
+
+    amplitude: Number
+    angular_frequency: Number
+    phase: Number = 0.0
+    offset: Number = 0.0
+
+
+class TablePart(Part):
+    """A cubic spline through values at increasing times."""
+
+    times: tuple[Number, ...] = Field(min_length=4)
+    values: tuple[Number, ...] = Field(min_length=4)
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        if len(self.times) != len(self.values):
+            raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
+        if not all(earlier < later for earlier, later in pairwise(self.times)):
+            raise ValueError("times do not increase; allowed: strictly increasing times")
+        if not Table(self.times, self.values).finite:
+            raise ValueError(
+                "the spline through the table is not finite; allowed: smaller values, or times further apart"
+            )
+        return self
+
+
+class InputPart(Part):
+    """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
+
+    constant: Number | None = None
+    polynomial: tuple[Number, ...] | None = Field(default=None, min_length=1)
+    sine: SinePart | None = None
+    table: TablePart | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        given = [
+            name for name in ("constant", "polynomial", "sine", "table") if getattr(self, name) is not None
+        ]
+        if len(given) != 1:
+            raise ValueError(
+                f"{' and '.join(given) or 'nothing'} given; "
+                "allowed: exactly one of constant, polynomial, sine, table"
+            )
+        return self
+
+    @property
+    def function(self) -> TimeFunction:
+        """The input as a function of time."""
+        if self.constant is not None:
+            return Polynomial((self.constant,))
+        if self.polynomial is not None:
+            return Polynomial(self.polynomial)
+        if self.sine is not None:
+            return Sine(self.sine.amplitude, self.sine.angular_frequency, self.sine.phase, self.sine.offset)
+        assert self.table is not None  # the validator has seen that one is given
+        return Table(self.table.times, self.table.values)
+
+
+class TimePart(Part):
+    """The instants: `samples` of them evenly from start to stop, both included; s."""
+
+    start: Number
+    stop: Number
+    samples: Annotated[int, Plain, Field(strict=True, ge=1, le=MOST_SAMPLES)]
+
+    @model_validator(mode="after")
+    def _forwards(self) -> Self:
+        for name, instant in (("start", self.start), ("stop", self.stop)):
+            if abs(instant) > FARTHEST:
+                raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
+        if self.samples == 1 and self.start != self.stop:
+            raise ValueError(
+                f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
+            )
+        if self.samples > 1 and not self.start < self.stop:
+            raise ValueError(f"start {self.start} is not before stop {self.stop}; allowed: start < stop")
+        return self
+
+
+class Scene(Part):
+    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`."""
+
+    title: str = ""
+    effects: tuple[str, ...] = ()
+    tolerance: Annotated[float, Plain, Field(strict=True, gt=0.0, allow_inf_nan=False)] = 1e-9
+    mechanism: MechanismPart
+    inputs: dict[str, InputPart]
+    time: TimePart
+
+    @field_validator("effects")
+    @classmethod
+    def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
+        for name in effects:
+            if name not in EFFECTS:
+                raise ValueError(f"no effect is called {shown(name)}; allowed: {', '.join(EFFECTS)}")
+        return effects
+
+    @model_validator(mode="after")
+    def _spin_axis_known(self) -> Self:
+        inner, centre = (self.mechanism.points[name] for name in self.mechanism.topology.wheel_axis)
+        if "wheel_angles" in self.effects and inner == centre:
+            raise ValueError(
+                "strut_lower and wheel_centre are at the same place, so that the wheel's spin axis has no "
+                "direction; give the axis a point of its own, wheel_axis_inner, or leave 'wheel_angles' out"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _inputs_fit(self) -> Self:
+        topology = self.mechanism.topology
+        for name in self.inputs:
+            if name not in topology.inputs:
+                raise ValueError(f"no input is called {shown(name)}; allowed: {', '.join(topology.inputs)}")
+        for name in topology.required_inputs:
+            if name not in self.inputs:
+                raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")
+        for name, part in self.inputs.items():
+            table = part.table
+            if table is not None and not (
+                table.times[0] <= self.time.start and self.time.stop <= table.times[-1]
+            ):
+                raise ValueError(
+                    f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
+                    f"allowed: all of time, {self.time.start} to {self.time.stop} s"
+                )
+        return self
+
+    @property
+    def instants(self) -> NDArray[np.float64]:
+        """The instants of the scene, shape (samples,), s."""
+        return even_instants(self.time.start, self.time.stop, self.time.samples)
+
+    @property
+    def functions(self) -> dict[str, TimeFunction]:
+        """Every input as a function of time."""
+        return {name: part.function for name, part in self.inputs.items()}
+
+    @classmethod
+    def from_mapping(cls, content: Mapping[str, Any], source: str = "scene") -> Scene:
+        """Check a scene given as plain data, as `tomllib` reads it.
+
+        Raises:
+            SceneError: the first fault, with its key; further ones are counted.
+        """
+        return cls.checked(content, source)
+
+    @classmethod
+    def load(cls, name: str | Path) -> Scene:
+        """Read a built-in scene by name, or a scene file by path.
+
+        Raises:
+            SceneError: there is no such scene, it is not written as it must be, or it is no regular file of
+                at most 64 MB.
+        """
+        if not isinstance(name, str | os.PathLike):
+            allowed = f"a path, or one of {', '.join(built_in_scenes())}"
+            raise SceneError(shown(name), "", f"is a {type(name).__name__}, and names no scene", allowed)
+        if str(name) in built_in_scenes():
+            text = resources.files("pointcoord").joinpath("scenes", f"{name}.toml").read_bytes()
+        else:
+            text = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
+        return cls.from_mapping(parsed(text, str(name)), str(name))
+
+    @classmethod
+    def read(cls, stream: IO[bytes], source: str = "standard input") -> Scene:
+        """Read a scene from an open binary stream, such as `sys.stdin.buffer`.
+
+        Raises:
+            SceneError: it is not written as it must be, or has no end within 64 MB.
+        """
+        return cls.from_mapping(parsed(read_stream(stream, source), source), source)
+
+
+def built_in_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with the package."""
+    folder = resources.files("pointcoord").joinpath("scenes")
+    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))

@@ -1,0 +1,288 @@
+r"""Assembly: from the drawing to a pose, along a path that cannot change branch.
+
+Between two sets of known coordinates the path is straight, and what is not yet assembled is taken back
+in proportion. One step goes along the tangent y1 to y + s y1, where, because C is quadratic,
+
+    C(y + s y1) - (1 - s) C(y) = s^2 B(y1, y1)      exactly.
+
+So Kantorovich's condition (see `certificate`) along the step needs only three constants at its start,
+
+    (1 - s z)^2 >= 2 omega q s^2,   z = |X C_u(y1)|,  q = |X B(y1, y1)|,  omega = Lipschitz(X C_u),
+
+and solves in closed form: up to s = 1 / (z + sqrt(2 omega q)) there is exactly one assembly in a tube
+about the tangent, and it is the continuation of the one that the step started from. The steps shrink on
+their own towards a pose where the path ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.proof import pose_bound
+from pointcoord.errors import AssemblyError
+from pointcoord.linkage.drawing_orientation import turned_over
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors, factorise, weakest_balance
+from pointcoord.numerics.newton import polish
+from pointcoord.numerics.quadratic import QuadraticMap
+
+Array = NDArray[np.float64]
+
+# Fraction of the proven step: at 1 Newton's convergence from the tangent would be only linear.
+SAFETY = 0.8
+# A path that advances less than this fraction in a step has met the end of what can be assembled: steps
+# shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
+# where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
+# rounding, which grows as the inverse of that root, is near 1e-10.
+SMALLEST_STEP = 1e-13
+STEPS = 2000
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One assembled configuration or a batch of them.
+
+    Attributes:
+        y: coordinates, shape (..., size), in the mechanism's units.
+        factors: factorisation of the Jacobian there.
+        residual: largest row of C(y), shape (...,), in the mechanism's units (squared for links).
+        iterations: Newton steps that the last correction took, shape (...,).
+        condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
+        bound: proven distance of every coordinate of the solved points to the exact assembly, shape
+            (...,), mm; infinite where nothing is proven. See `certificate` for what it covers.
+        work: what it cost.
+    """
+
+    y: Array
+    factors: Factors
+    residual: Array
+    iterations: NDArray[np.int64]
+    condition: Array
+    bound: Array
+    work: Work
+
+
+@dataclass(frozen=True)
+class Path:
+    """How far a batch of poses followed their paths: `done` is 1 where the end was reached."""
+
+    y: Array
+    factors: Factors
+    iterations: NDArray[np.int64]
+    done: Array
+    work: Work
+
+
+def proven_step(system: QuadraticMap, y: Array, factors: Factors, tangent: Array) -> Array:
+    """Largest s for which the tangent step is proven to stay on its branch, shape (...,).
+
+    The condition holds if it holds in any weighted maximum norm. Three are tried: plain, and two that
+    weigh each coordinate by the curvature of its own path, so that what hardly moves hardly counts.
+    """
+    inverse = factors.preconditioner
+    bend = np.abs(inverse @ system.residual(tangent)[..., None])[..., 0]
+    turn = np.abs(inverse @ system.jacobian(tangent))
+    largest = bend.max(axis=-1, keepdims=True)
+    best = np.zeros(y.shape[:-1])
+    for weights in (np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest):
+        omega = system.lipschitz(inverse, weights)
+        q = (bend / weights).max(axis=-1)
+        z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
+        best = np.fmax(best, 1.0 / (z + np.sqrt(2.0 * omega * q)))
+    return best
+
+
+def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | None = None) -> Path:
+    """Carry poses along straight paths to other known coordinates.
+
+    Args:
+        y: start, shape (..., size); what its residual is not zero by is taken back along the path.
+        target: known coordinates at the end, shape (..., size - unknowns).
+        factors: factorisation of C_u at y, if it is at hand.
+    Returns:
+        Poses at the ends of their paths, or where these stop.
+    """
+    n = system.unknowns
+    batch = np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
+    y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()
+    target = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
+    start, offset = y[:, n:].copy(), system.residual(y)
+    change = target - start
+    remaining = np.ones(len(y))
+    iterations = np.zeros(len(y), dtype=np.int64)
+    work = Work(residuals=len(y))
+    if factors is None:
+        factors = factorise(system.jacobian(y))
+        work += Work(factorisations=len(y))
+    factors = factors.reshaped((len(y),))
+    active = np.flatnonzero(~factors.singular)
+    for _ in range(STEPS):
+        if not active.size:
+            break
+        left, local = remaining[active], factors.taken(active)
+        tangent = np.zeros((len(active), y.shape[-1]))
+        tangent[:, n:] = change[active] * left[:, None]
+        with np.errstate(all="ignore"):
+            drive = 2.0 * system.polar(y[active], tangent) + offset[active] * left[:, None]
+            tangent[:, :n] = -local.solve(drive)
+            step = np.minimum(SAFETY * proven_step(system, y[active], local, tangent), 1.0)
+        # False for a NaN as well; a step that completes the path may be as short as it likes.
+        able = (step * left >= SMALLEST_STEP) | (step >= 1.0)
+        active, tangent, step, left = active[able], tangent[able], step[able], left[able]
+        left = np.where(step >= 1.0, 0.0, left * (1.0 - step))
+        guess = y[active] + step[:, None] * tangent
+        ahead = start[active] + change[active] * (1.0 - left)[:, None]
+        guess[:, n:] = np.where((left == 0.0)[:, None], target[active], ahead)
+        if not active.size:
+            break
+        reached = polish(system, guess, offset[active] * left[:, None])
+        work = work + reached.work
+        # In exact arithmetic every correction converges; one that does not has run out of digits.
+        good = reached.converged
+        active, left = active[good], left[good]
+        y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
+        factors = factors.replaced(active, reached.factors.taken(np.flatnonzero(good)))
+        active = active[left > 0.0]
+    return Path(
+        y=y.reshape(*batch, -1),
+        factors=factors.reshaped(batch),
+        iterations=iterations.reshape(batch),
+        done=(1.0 - remaining).reshape(batch),
+        work=work,
+    )
+
+
+def as_pose(
+    mechanism: Mechanism, y: Array, factors: Factors, iterations: NDArray[np.int64], work: Work
+) -> Pose:
+    """A pose with its residual, condition number and proven bound."""
+    return Pose(
+        y=y,
+        factors=factors,
+        residual=np.abs(mechanism.map.residual(y)).max(axis=-1),
+        iterations=iterations,
+        condition=factors.condition,
+        bound=pose_bound(mechanism, y, factors),
+        work=work,
+    )
+
+
+def close_drawing(mechanism: Mechanism, instant: float | None = None) -> Path:
+    """The drawing assembled at its own inputs.
+
+    Raises:
+        AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
+    """
+    own = mechanism.drawn[..., mechanism.map.unknowns :]
+    path = follow(mechanism.map, mechanism.drawn, own)
+    _require(mechanism, path, own, "the drawing cannot be assembled", instant)
+    _require_sense(mechanism, path, instant)
+    return path
+
+
+def assemble(
+    mechanism: Mechanism,
+    inputs: Mapping[str, Array],
+    instant: float | None = None,
+    closed: Path | None = None,
+) -> Pose:
+    """The pose for given inputs on the branch of the drawing.
+
+    The drawing is first assembled at its own inputs, then the inputs are taken from there to the wanted
+    ones along a straight line of the driven coordinates.
+
+    Args:
+        inputs: value of each input, shape (...,), rad or mm.
+        instant: for messages, s.
+        closed: the closed drawing, if it is at hand.
+    Raises:
+        AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
+    """
+    target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
+    target = target[..., 0, :]
+    drawing = close_drawing(mechanism, instant) if closed is None else closed
+    path = follow(mechanism.map, drawing.y, target)
+    _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
+    return as_pose(mechanism, path.y, path.factors, path.iterations, drawing.work + path.work)
+
+
+def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
+    unfinished = path.done < 1.0
+    if unfinished.any():
+        raise stopped(mechanism, problem, path.y, target, path.factors, unfinished, instant)
+
+
+def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -> None:
+    bad, pair = turned_over(mechanism, drawing.y)
+    if pair is None:
+        return
+    one, other = (" - ".join(piece) for piece in pair)
+    problem = f"the drawing has no one meaning, {one} turns over against {other} where it closes"
+    known = mechanism.drawn[..., mechanism.map.unknowns :]
+    raise stopped(mechanism, problem, drawing.y, known, drawing.factors, bad, instant)
+
+
+def stopped(
+    mechanism: Mechanism,
+    problem: str,
+    y: Array,
+    goal: Array,
+    factors: Factors,
+    unfinished: NDArray[np.bool_],
+    instant: float | None,
+    change: Array | None = None,
+) -> AssemblyError:
+    """The error for paths that end at y on their way to `goal`, told for the first unfinished one.
+
+    Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
+    each other in balance: the rows that take part are what limits the motion.
+
+    Args:
+        y: coordinates, shape (..., size).
+        goal: known coordinates, shape (..., known coordinates).
+        unfinished: shape (...).
+        change: how far each known coordinate would still go, with its sign; from y to the goal unless given.
+    """
+    member = tuple(np.argwhere(unfinished)[0])
+    known = y[..., mechanism.map.unknowns :]
+
+    def told(coordinates: Array) -> dict[str, float]:
+        values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
+        return {name: float(value[member]) for name, value in values.items()}
+
+    balance = weakest_balance(factors.matrix[member])
+    left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
+    pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
+    return AssemblyError(
+        problem,
+        reached=told(known),
+        wanted=told(goal),
+        condition=float(factors.condition[member]),
+        reduce=max(pushes, key=pushes.__getitem__) if any(pushes.values()) else "",
+        limits=mechanism.topology.strongest(balance),
+        instant=instant,
+    )
+
+
+def _pushes(mechanism: Mechanism, y: Array, forces: Array, left: Array) -> dict[str, float]:
+    """How far each input pushes across the end of a path.
+
+    There C_u loses rank: forces that hold each other in balance do no work on any motion of the unknowns, so
+    what is left of the inputs' way, C_w dw, works against them alone.
+
+    Args:
+        forces: the balance, one per unscaled row. left: of every known coordinate, with its sign.
+    """
+    work = {}
+    for drive in mechanism.topology.drives:
+        place = mechanism.layout.scalar(drive.coordinate)
+        along = np.zeros_like(y)
+        along[place] = left[place - mechanism.map.unknowns]
+        work[drive.input] = float(forces @ (2.0 * mechanism.map.polar(y, along)))
+    total = sum(work.values())
+    return {name: part * (1.0 if total >= 0.0 else -1.0) for name, part in work.items()}

@@ -1,0 +1,116 @@
+r"""The paper's own algorithm: Newton at every instant, then two linear solves.
+
+    C(u, w) = 0,    C_u u' = -C_w w',    C_u u'' = -C_w w'' - 2 B(y', y')      (eqs. 1, 19, 22)
+
+Each instant starts from the one before it, so time is a loop; the rates are solved for many instants
+at once. This is what the series are measured against.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import AssemblyError
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.assembly import Pose, follow, stopped
+from pointcoord.time_functions import TimeFunction
+
+Array = NDArray[np.float64]
+SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """States at instants: y and its time derivatives, each of shape (N, size); what it cost."""
+
+    times: Array
+    states: tuple[Array, ...]
+    work: Work
+
+    def coordinates(self, instants: Array) -> list[Array]:
+        """The states at some of the times, each of shape (..., size)."""
+        places = np.searchsorted(self.times, instants)
+        return [state[places] for state in self.states]
+
+
+def square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:
+    """(C_q q')_q q' = 2 B(y', y'), the paper's eq. (23) as it should be, shape (..., rows)."""
+    return 2.0 * system.residual(velocity)
+
+
+def solve_instants(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    times: Array,
+    derivative: int,
+    square_term: SquareVelocityTerm = square_velocity_term,
+) -> Solved:
+    """Solve at each instant, each from the one before.
+
+    Args:
+        pose: assembled at the first instant.
+        times: increasing instants, shape (N,), s.
+        derivative: highest time derivative to solve for, 0 to 2.
+    Raises:
+        AssemblyError: an instant cannot be reached; `partial` is what was solved before it.
+    """
+    system, n = mechanism.map, mechanism.map.unknowns
+    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
+    y = np.empty((len(times), system.size))
+    here, factors, work = pose.y, pose.factors, Work()
+    for i in range(len(times)):
+        if i > 0:
+            path = follow(system, here, known[i, 0], factors)
+            work += path.work
+            if path.done < 1.0:
+                partial = _with_rates(system, y[:i], known[:i], times[:i], derivative, square_term, work)
+                raise _unreached(mechanism, path.y, known[i, 0], path.factors, times[i], partial)
+            here, factors = path.y, path.factors
+        y[i] = here
+    y[:, n:] = known[:, 0]
+    return _with_rates(system, y, known, times, derivative, square_term, work)
+
+
+def _with_rates(
+    system: QuadraticMap,
+    y: Array,
+    known: Array,
+    times: Array,
+    derivative: int,
+    square_term: SquareVelocityTerm,
+    work: Work,
+) -> Solved:
+    states = [y]
+    if derivative >= 1:
+        # Newton's factors are of the place before its last step, which may be farther off than the bound.
+        factors = factorise(system.jacobian(y))
+        work = work + Work(factorisations=len(times))
+        states.append(_rate(system, factors, y, known[:, 1], 0.0))
+    if derivative >= 2:
+        states.append(_rate(system, factors, y, 2.0 * known[:, 2], square_term(system, states[1])))
+    return Solved(times, tuple(states), work + Work(rate_solves=derivative * len(times)))
+
+
+def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:
+    """Solve C_u u^(d) = -(C_w w^(d) + quadratic term)."""
+    rate = np.zeros_like(y)
+    rate[:, system.unknowns :] = driven
+    rate[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
+    return rate
+
+
+def _unreached(
+    mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float, partial: Solved
+) -> AssemblyError:
+    problem, unfinished = "the mechanism cannot be assembled", np.array(True)
+    error = stopped(mechanism, problem, y, goal, factors, unfinished, float(instant))
+    error.partial = partial
+    return error

@@ -1,0 +1,272 @@
+r"""Inputs as functions of time, given by their power series about any instant.
+
+A time function f answers one question: the coefficients f_k of
+
+    f(t + h) = sum_k f_k h^k,      f_0 = f(t), f_1 = f'(t), f_2 = f''(t) / 2, ...
+
+which is all that positions, velocities, accelerations and whole motions need.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import comb, factorial, perm
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+
+from pointcoord.numerics.double_double import exact_product, exact_sum
+from pointcoord.numerics.enclosure import Enclosed, cosine_sine
+from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+
+Array = NDArray[np.float64]
+
+# rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
+SMALL_ANGLE = 2.0**-27
+# Two pi and what its double lacks; the rest is below the radius.
+TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
+
+
+class TimeFunction(Protocol):
+    """A scalar function of time that is analytic between its breaks.
+
+    A coefficient too large for the arithmetic comes out infinite; whoever uses it must check.
+    """
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
+        ...
+
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
+        ...
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The law's own value, rate and acceleration, each rounded once, (N,).
+
+        A series of the law does not round its value, so that is expected beside what `rounding` says.
+        """
+        ...
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Instants where a derivative jumps, s; a power series must not be used across them."""
+        ...
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """f(t) = sum_j coefficients[j] t^j."""
+
+    coefficients: tuple[float, ...]
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k).
+
+        Horner's rule in twice the working precision: terms may cancel, as where a motion comes to rest.
+        """
+        t = np.asarray(instants, dtype=float)
+        result = np.zeros((*t.shape, order + 1))
+        with np.errstate(over="ignore", invalid="ignore"):
+            for k in range(min(order + 1, len(self.coefficients))):
+                factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
+                terms = np.array(self.coefficients[k:])
+                plain = np.polynomial.polynomial.polyval(t, factors * terms)
+                doubled = _doubled_horner(exact_product(np.array(factors), terms), t)
+                # Splitting a number above 1e300 overflows; there only the plain sum is left.
+                result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
+        return result
+
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
+        law = np.polynomial.polynomial.polyder(np.abs(self.coefficients), derivative)
+        count = len(law)
+        with np.errstate(over="ignore"):
+            terms = np.polynomial.polynomial.polyval(np.abs(instants), law)
+        return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """Horner's rule in twice the working precision, with the bound of its rounding."""
+        t, found = Enclosed.of(instants), []
+        for derivative in range(3):
+            total = Enclosed.of(np.zeros_like(instants))
+            for j in range(len(self.coefficients) - 1, derivative - 1, -1):
+                factor = Enclosed.of(float(perm(j, derivative)))
+                total = total * t + factor * Enclosed.of(self.coefficients[j])
+            found.append(_rounded_once(self, total, instants, derivative))
+        return found
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: a polynomial is analytic everywhere."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Sine:
+    """f(t) = offset + amplitude sin(angular_frequency t + phase); rad/s and rad."""
+
+    amplitude: float
+    angular_frequency: float
+    phase: float = 0.0
+    offset: float = 0.0
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            angle, *rests = self._angle(np.asarray(instants, dtype=float))
+            sine, cosine = np.sin(angle), np.cos(angle)
+            for low in rests:
+                across, along = np.sin(low), np.cos(low)
+                sine, cosine = sine * along + cosine * across, cosine * along - sine * across
+            quarter_turns = (sine, cosine, -sine, -cosine)
+            powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
+            factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
+            result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
+            # The offset may all but cancel a large swing: product and sum are rounded once together.
+            swing, rest = exact_product(np.array(self.amplitude), sine)
+            value, carry = exact_sum(swing, np.array(self.offset))
+            exact = value + (carry + rest)
+            result[..., 0] = np.where(np.isfinite(exact), exact, swing + self.offset)
+        return result
+
+    def _angle(self, instants: Array) -> tuple[Array, ...]:
+        """The angle as a sum of three numbers, without rounding.
+
+        A large phase would swallow the digits of time, and the values would no longer change as the rates
+        say; a large frequency would swallow the phase.
+        """
+        turned, rest = exact_product(np.array(self.angular_frequency), instants)
+        angle, low = exact_sum(turned, np.array(self.phase))
+        return angle, *(np.where(np.isfinite(part), part, 0.0) for part in (rest, low))
+
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """Of the sine 4 u: functions right to a unit in the last place, a sum; for each further part of the
+        angle that is more than a rounding of it 6 u more, for two products more. A derivative's factor
+        adds 4 u: a power, two products.
+
+        Next to a tie that may round the value the other way, by a unit in its last place.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            _, *rests = self._angle(np.asarray(instants, dtype=float))
+            parts = sum((np.abs(low) > SMALL_ANGLE).astype(float) for low in rests)
+            count = (8.0 if derivative else 4.0) + 6.0 * parts
+            swing = abs(self.amplitude) * np.abs(np.float64(self.angular_frequency)) ** derivative * count
+            computed = factorial(derivative) * self.series(instants, derivative)[..., derivative]
+            turned = np.where(swing > 0.0, 2.0 * np.abs(computed), 0.0)
+        return np.asarray(UNIT_ROUNDOFF * (swing + turned))
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
+        speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
+        angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
+        turns = np.rint(angle.high / TURN.high)
+        cosine, sine = cosine_sine(angle - Enclosed.of(turns) * TURN)
+        values = (
+            Enclosed.of(self.offset) + swing * sine,
+            swing * speed * cosine,
+            -(swing * speed * speed * sine),
+        )
+        return [_rounded_once(self, value, instants, d) for d, value in enumerate(values)]
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: a sine is analytic everywhere."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Table:
+    """The cubic spline through (times, values), not-a-knot at its ends.
+
+    Its value, rate and acceleration are continuous; its third derivative jumps at the times. What it means
+    is what scipy's CubicSpline computes: the rounding of the spline's own equations is not told apart.
+    """
+
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """The cubic piece that starts at or before each instant, shifted to the instant."""
+        t = np.asarray(instants, dtype=float)
+        result = np.zeros((*t.shape, order + 1))
+        for k in range(min(order, 3) + 1):
+            result[..., k] = self._spline(t, nu=k) / factorial(k)
+        return result
+
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """None: the computed spline is the law."""
+        return np.zeros_like(instants)
+
+    def enclosed(self, instants: Array) -> list[Enclosed]:
+        """The computed spline, which is the law."""
+        values = (self._spline(instants, nu=derivative) for derivative in range(3))
+        return [Enclosed.of(value, 0.0, 0.0, UNIT_ROUNDOFF * np.abs(value)) for value in values]
+
+    @property
+    def finite(self) -> bool:
+        """Whether the spline exists in floating point: huge values or close times overflow its slopes."""
+        try:
+            return bool(np.isfinite(self._spline.c).all())
+        except ValueError:
+            return False
+
+    @cached_property
+    def _spline(self) -> CubicSpline:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return CubicSpline(self.times, self.values, bc_type="not-a-knot", extrapolate=False)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The inner times of the table."""
+        return self.times[1:-1]
+
+
+def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
+    """A law's value rounded to the nearest double: which one is certain, unless it lies next to a tie.
+
+    Next to a tie it may be either neighbour. Where twice the working precision tells less than the computed
+    value does, that is taken, and it may be a neighbour as well.
+    """
+    nearest, doubt = exact.high, exact.radius[0]
+    gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
+    proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
+    computed = factorial(derivative) * law.series(instants, derivative)[..., derivative]
+    coarse = law.rounding(instants, derivative)
+    neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
+    sharp = proven <= neighbours
+    values = np.where(sharp, nearest, computed)
+    expected = coarse + UNIT_ROUNDOFF * np.abs(values)
+    return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
+
+
+def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:
+    """sum_j (high_j + low_j) t^j, rounded about once."""
+    high, low = np.zeros_like(t), np.zeros_like(t)
+    for c, c_low in zip(coefficients[0][::-1], coefficients[1][::-1], strict=True):
+        product, rest = exact_product(high, t)
+        rest = rest + low * t
+        high, carry = exact_sum(product, c)
+        low = carry + (rest + c_low)
+    return high + low
+
+
+def cosine(angle: Array) -> Array:
+    r"""Series of cos(a) from the series of a, both of shape (..., order + 1).
+
+    c' = -s a' and s' = c a' give, term by term,
+    c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
+    """
+    orders = angle.shape[-1]
+    c = np.zeros_like(angle)
+    s = np.zeros_like(angle)
+    c[..., 0], s[..., 0] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
+    weighted = angle * np.arange(orders)
+    for k in range(1, orders):
+        head = weighted[..., 1 : k + 1]
+        c[..., k] = -np.sum(head * s[..., k - 1 :: -1][..., :k], axis=-1) / k
+        s[..., k] = np.sum(head * c[..., k - 1 :: -1][..., :k], axis=-1) / k
+    return c

@@ -1,0 +1,100 @@
+"""A bound for every number that a motion reports: rates, body rates and angles as well as positions."""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+from pointcoord.bounds.reported_bounds import Bounds
+from pointcoord.results.motion import Channel, Motion
+
+Array = NDArray[np.float64]
+QUANTITIES = tuple(field.name for field in fields(Bounds))
+SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut")
+
+
+def short(name: str, **changes: object) -> Scene:
+    scene = Scene.load(name)
+    time = scene.time.model_copy(update={"samples": 30})
+    return scene.model_copy(update={"time": time, **changes})
+
+
+def named(bounds: Bounds) -> dict[tuple[str, str], Array]:
+    parts: dict[str, Mapping[str, Array]] = {quantity: getattr(bounds, quantity) for quantity in QUANTITIES}
+    return {(quantity, name): array for quantity, part in parts.items() for name, array in part.items()}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_two_methods_differ_by_no_more_than_both_prove_and_prove_no_more_than_they_expect(name: str) -> None:
+    series, newton = (simulate(short(name), method) for method in ("series", "newton"))
+    one, other = series.proof(rates=True), newton.proof(rates=True)
+    for (quantity, part), bound in named(one.proven).items():
+        gap = np.abs(getattr(series, quantity)[part] - getattr(newton, quantity)[part])
+        assert (gap <= bound + getattr(other.proven, quantity)[part]).all(), (quantity, part)
+        largest = max(float(np.abs(array).max()) for array in getattr(series, quantity).values())
+        assert (bound <= 1e-13 * largest).all(), (quantity, part)
+    for motion, proof in ((series, one), (newton, other)):
+        expected = named(proof.expected)
+        for (quantity, part), bound in named(proof.proven).items():
+            largest = max(float(np.abs(array).max()) for array in getattr(motion, quantity).values())
+            # A number that is exact is proven to be so up to the rounding of the proof, some u^2.
+            assert (bound <= expected[quantity, part] + 1e-27 * largest).all(), (quantity, part)
+
+
+def test_a_proof_by_blocks_is_the_proof_of_each_instant(monkeypatch: pytest.MonkeyPatch) -> None:
+    motion = simulate(short("bounce-on-a-heaving-chassis"))
+    whole = motion.proof(rates=True)
+    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", 7)
+    parts = motion.proof(rates=True)
+    for bounds in ("proven", "expected"):
+        one, other = named(getattr(whole, bounds)), named(getattr(parts, bounds))
+        assert one.keys() == other.keys()
+        for key, bound in one.items():
+            # A product of matrices may be summed in another order: two roundings of a rounding.
+            assert other[key] == pytest.approx(bound, rel=1e-3, abs=1e-28), key
+
+
+def test_only_what_is_asked_for_is_bounded() -> None:
+    motion = simulate(short("bounce-and-steer", effects=("wheel_angles",)))
+    assert not named(motion.proof().proven)
+    assert {quantity for quantity, _ in named(motion.proof(rates=True).proven)} == {"position", "wheel"}
+
+
+@pytest.mark.parametrize("quantity", ["velocity", "acceleration", "angular_velocity", "wheel"])
+def test_a_wrong_number_is_proven_to_be_off_and_is_not_expected_to_be(quantity: str) -> None:
+    motion = simulate(short("bounce-and-steer"))
+
+    def spoilt(wrong: Motion) -> Motion:
+        channel = getattr(wrong, quantity)
+        arrays = {name: array * (1.0 + 1e-9) for name, array in channel.items()}
+        return replace(wrong, **{quantity: Channel(channel.quantity, channel.effect, arrays)})
+
+    right, wrong = motion.proof(rates=True), spoilt(motion).proof(rates=True)
+    for name, numbers in getattr(motion, quantity).items():
+        off = 1e-9 * np.abs(numbers)
+        proven = getattr(wrong.proven, quantity)[name]
+        before = getattr(right.proven, quantity)[name]
+        assert (proven >= (1.0 - 1e-6) * off - before).all()
+        assert (proven <= (1.0 + 1e-5) * off + 1.1 * before).all()
+        expected = getattr(wrong.expected, quantity)[name]
+        assert expected == pytest.approx(getattr(right.expected, quantity)[name], rel=1e-6, abs=1e-300)
+
+
+def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are() -> None:
+    """Time counts in units of its own, so a motion that takes 1e-100 of the time has the same bounds."""
+
+    def proven(speed: float) -> dict[tuple[str, str], Array]:
+        scene = Scene.load("bounce").model_dump(mode="json", exclude_none=True)
+        scene["inputs"] = {"arm_angle": {"polynomial": [1.2, 0.3 * speed]}, "rack": {"constant": 5.0}}
+        scene["time"] = {"start": 0.0, "stop": 0.0, "samples": 1}
+        return named(simulate(Scene.from_mapping(scene), "newton").proof(rates=True).proven)
+
+    plain, slow, fast = proven(1.0), proven(2.0**-300), proven(2.0**300)
+    for (quantity, name), bound in plain.items():
+        power = {"velocity": 1, "angular_velocity": 1, "acceleration": 2, "angular_acceleration": 2}
+        factor = 2.0 ** (300 * power.get(quantity, 0))
+        for other, scale in ((slow, 1.0 / factor), (fast, factor)):
+            assert other[quantity, name] == pytest.approx(scale * bound, rel=1e-3, abs=scale * 1e-25)

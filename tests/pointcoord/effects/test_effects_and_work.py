@@ -1,0 +1,141 @@
+"""What a scene does not ask for is not computed: shown by counts of work, never by time."""
+
+from collections.abc import Callable
+from itertools import chain, combinations
+
+import numpy as np
+import pytest
+
+import pointcoord.solve.pointwise
+import pointcoord.solve.taylor
+from pointcoord import NotComputed, Scene, UnknownName, simulate
+from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.numerics import newton
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.solve import assembly
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.cars.paper_car import PAPER
+
+SUBSETS = list(chain.from_iterable(combinations(EFFECTS, n) for n in range(len(EFFECTS) + 1)))
+SAMPLES = 7
+POINTS = COLLINEAR.given(PAPER).points
+MOVING = len(POINTS) - len(COLLINEAR.chassis)
+KNUCKLE = len(COLLINEAR.bodies["knuckle"])
+NEEDED = {"velocity": 1, "acceleration": 2, "knuckle_rates": 2, "wheel_angles": 0}
+READ = {
+    "velocity": lambda m: m.velocity["wheel_centre"],
+    "acceleration": lambda m: m.acceleration["wheel_centre"],
+    "knuckle_rates": lambda m: m.angular_velocity["knuckle"] + m.angular_acceleration["knuckle"],
+    "wheel_angles": lambda m: m.wheel["camber"] + m.wheel["kingpin"],
+}
+
+
+def of_every_point(effects: tuple[str, ...]) -> int:
+    """Highest derivative of every point: what the lists of velocities and accelerations need."""
+    return max((NEEDED[e] for e in effects if e in ("velocity", "acceleration")), default=0)
+
+
+@pytest.mark.parametrize("effects", SUBSETS, ids="+".join)
+@pytest.mark.parametrize("method", ["series", "newton"])
+def test_only_the_derivatives_that_are_asked_for_are_evaluated(
+    make_scene: Callable[..., Scene], effects: tuple[str, ...], method: str
+) -> None:
+    motion = simulate(make_scene(samples=SAMPLES, effects=effects), method)
+    highest = max((NEEDED[e] for e in effects), default=0)
+    everything = of_every_point(effects)
+    assert motion.work.derivatives_evaluated == highest + 1
+    # Positions always; then each derivative of every point, or of the knuckle's three points only.
+    points = MOVING if method == "series" else len(POINTS)
+    wanted = 3 * points * (everything + 1)
+    more = 3 * KNUCKLE * (highest - everything)
+    # One product gives all derivatives of a group of points, so the series sum the knuckle's from position.
+    spare = 3 * KNUCKLE * (everything + 1) if more and method == "series" else 0
+    assert wanted + more <= motion.work.coordinates_evaluated <= wanted + more + spare
+
+
+@pytest.mark.parametrize("effects", SUBSETS, ids="+".join)
+def test_newton_solves_for_no_rate_that_is_not_needed(
+    make_scene: Callable[..., Scene], effects: tuple[str, ...]
+) -> None:
+    motion = simulate(make_scene(samples=SAMPLES, effects=effects), "newton")
+    assert motion.work.rate_solves == SAMPLES * max((NEEDED[e] for e in effects), default=0)
+    assert motion.work.segments == motion.work.series_orders == 0
+
+
+def test_wheel_angles_alone_cost_nothing_but_positions(make_scene: Callable[..., Scene]) -> None:
+    for method in ("series", "newton"):
+        bare = simulate(make_scene(samples=SAMPLES, effects=()), method).work
+        assert simulate(make_scene(samples=SAMPLES, effects=("wheel_angles",)), method).work == bare
+
+
+def test_series_solve_once_for_any_number_of_instants(make_scene: Callable[..., Scene]) -> None:
+    few, many = (simulate(make_scene(samples=n)).work for n in (2, 5000))
+    assert (few.factorisations, few.rate_solves, few.segments) == (
+        many.factorisations,
+        many.rate_solves,
+        many.segments,
+    )
+    assert few.series_orders == few.rate_solves
+    assert few.series_orders % few.segments == 0
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+def test_counts_are_what_was_done(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, method: str
+) -> None:
+    seen = {"factorisations": 0}
+
+    def counted(matrix: np.ndarray) -> Factors:
+        seen["factorisations"] += int(np.prod(matrix.shape[:-2]))
+        return factorise(matrix)
+
+    for module in (newton, assembly, pointcoord.solve.taylor, pointcoord.solve.pointwise):
+        monkeypatch.setattr(module, "factorise", counted)
+    motion = simulate(make_scene(samples=SAMPLES), method)
+    assert motion.work.factorisations == seen["factorisations"] > 0
+
+
+def test_proof_is_not_computed_until_it_is_read(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    called = []
+    motion = simulate(make_scene(samples=SAMPLES))
+    monkeypatch.setattr("pointcoord.bounds.proof.factorise", lambda m: called.append(len(m)) or factorise(m))
+    assert simulate(make_scene(samples=SAMPLES)).position["wheel_centre"].shape == (SAMPLES, 3)
+    assert called == []
+    motion.proof()
+    assert sum(called) == SAMPLES
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+@pytest.mark.parametrize("method", ["series", "newton"])
+def test_reading_what_was_not_asked_for_names_the_effect(
+    make_scene: Callable[..., Scene], effect: str, method: str
+) -> None:
+    others = tuple(name for name in EFFECTS if name != effect)
+    motion = simulate(make_scene(samples=2, effects=others), method)
+    with pytest.raises(NotComputed, match=f"add '{effect}' to the scene's effects") as caught:
+        READ[effect](motion)
+    assert caught.value.effect == effect
+    for other in others:
+        assert np.isfinite(READ[other](motion)).all()
+
+
+@pytest.mark.parametrize("effects", SUBSETS, ids="+".join)
+def test_effects_together_give_what_each_gives_alone(
+    make_scene: Callable[..., Scene], effects: tuple[str, ...]
+) -> None:
+    together = simulate(make_scene(samples=3, effects=effects), "newton")
+    for effect in effects:
+        alone = simulate(make_scene(samples=3, effects=(effect,)), "newton")
+        # The same poses and the same solves: the same bits.
+        assert np.array_equal(READ[effect](together), READ[effect](alone))
+
+
+def test_a_plan_names_what_it_leaves_out_and_refuses_unknown_effects() -> None:
+    plan = plan_effects(("wheel_angles", "velocity"))
+    assert set(plan.effects) == {"velocity", "wheel_angles"}
+    assert set(plan.left_out) == {"acceleration", "knuckle_rates"}
+    with pytest.raises(UnknownName, match="did you mean 'velocity'") as caught:
+        plan_effects(("velocty",))
+    assert set(caught.value.valid) == set(EFFECTS)

@@ -1,0 +1,73 @@
+"""Sums, products and residuals in twice the working precision, against rational arithmetic."""
+
+from fractions import Fraction
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.double_double import doubled_residual, exact_product, exact_square, exact_sum
+
+U = Fraction(1, 2**53)
+numbers = st.floats(-1e100, 1e100, allow_nan=False, allow_subnormal=False).filter(
+    lambda x: x == 0.0 or abs(x) > 1e-100
+)
+
+
+@given(a=numbers, b=numbers)
+def test_high_and_low_are_exactly_the_sum_and_the_product(a: float, b: float) -> None:
+    for pair, exact in (
+        (exact_sum(np.array(a), np.array(b)), Fraction(a) + Fraction(b)),
+        (exact_product(np.array(a), np.array(b)), Fraction(a) * Fraction(b)),
+    ):
+        assert Fraction(float(pair[0])) + Fraction(float(pair[1])) == exact
+
+
+@given(seed=st.integers(0, 2**32 - 1), shift=st.sampled_from([0.0, 1.0, 1e6]))
+def test_squares_of_distances_are_right_to_the_square_of_the_rounding_unit(seed: int, shift: float) -> None:
+    a, b = np.random.default_rng(seed).normal(size=(2, 3)) + shift
+    high, low = exact_square(a, b)
+    exact = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in zip(a.tolist(), b.tolist(), strict=True))
+    assert abs(Fraction(float(high)) + Fraction(float(low)) - exact) <= 256 * U**2 * exact
+
+
+@given(seed=st.integers(0, 2**32 - 1), moved=st.booleans())
+def test_doubled_residual_is_right_to_within_what_it_says_itself(
+    strut: Mechanism, seed: int, moved: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    system, n = strut.map, strut.map.unknowns
+    y = strut.drawn + np.concatenate([rng.normal(size=n), np.zeros(system.size - n)])
+    low = np.zeros_like(y)
+    low[n:] = rng.uniform(-4.0, 4.0, size=system.size - n) * float(U) * y[n:]
+    data = np.abs(y) * 1e-10 * moved
+    value, doubt = doubled_residual(system, y, low, data)
+    meant = [
+        Fraction(a) + Fraction(b) + Fraction(c)
+        for a, b, c in zip(
+            y.tolist(), low.tolist(), (data * rng.uniform(-1.0, 1.0, size=len(y))).tolist(), strict=True
+        )
+    ]
+    for row, found, least in zip(system.rows, value.tolist(), doubt.tolist(), strict=True):
+        exact = sum(
+            Fraction(p.coefficient)
+            * (meant[p.left[0]] - meant[p.left[1]])
+            * (meant[p.right[0]] - meant[p.right[1]])
+            for p in row
+        )
+        assert abs(Fraction(found) - exact) <= Fraction(least)
+        if not moved:
+            # One rounding of the result is all that is left of it, and squares of roundings.
+            assert least <= 3 * float(U) * abs(found) + 1e-28
+
+
+def test_squared_lengths_lack_what_they_have_rounded(strut: Mechanism) -> None:
+    lacking, uncertainty = strut.known_data(strut.drawn)
+    for start, end in strut.layout.squared_lengths:
+        place = strut.layout.squared_length(start, end)
+        a, b = (strut.drawing.vectors[name].tolist() for name in (start, end))
+        exact = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in zip(a, b, strict=True))
+        found = Fraction(float(strut.drawn[place])) + Fraction(float(lacking[place]))
+        assert abs(found - exact) <= Fraction(float(uncertainty[place]))
+        assert abs(lacking[place]) <= 5 * float(U) * strut.drawn[place]

@@ -1,0 +1,117 @@
+"""Numbers in twice the working precision: the exact result lies within the proven radius, which is small."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pointcoord.numerics.enclosure import Enclosed, cosine_sine, cross, dot, quotient
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+
+U = 2.0**-53
+NUMBERS = st.floats(-1e3, 1e3, allow_subnormal=False).filter(lambda x: x == 0.0 or abs(x) > 1e-3)
+
+
+def exact(number: Enclosed, place: tuple[int, ...] = ()) -> Fraction:
+    return Fraction(float(number.high[place])) + Fraction(float(number.low[place]))
+
+
+@st.composite
+def enclosed(draw: st.DrawFn) -> Enclosed:
+    high = draw(NUMBERS)
+    return Enclosed.of(high, high * draw(st.floats(-U, U)), abs(high) * draw(st.sampled_from([0.0, 1e-20])))
+
+
+@given(enclosed(), enclosed(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_sums_and_products_of_any_numbers_within_the_radii_lie_within_theirs(
+    a: Enclosed, b: Enclosed, s: float, t: float
+) -> None:
+    x = exact(a) + Fraction(s) * Fraction(float(a.radius[0]))
+    y = exact(b) + Fraction(t) * Fraction(float(b.radius[0]))
+    for made, true in ((a + b, x + y), (a - b, x - y), (a * b, x * y), (a.scaled(0.25), x / 4)):
+        assert abs(exact(made) - true) <= Fraction(float(made.radius[0])) * (1 + Fraction(1, 10**6))
+        assert abs(float(made.low)) <= U * abs(float(made.high))
+    # Nothing but the radii of the operands and some roundings of twice the working precision.
+    own = abs(a.high) * b.radius[0] + a.radius[0] * (abs(b.high) + b.radius[0])
+    assert (a * b).radius[0] <= 1.001 * own + 17 * U**2 * abs(float(a.high * b.high)) + 2e-300
+
+
+@given(st.lists(NUMBERS, min_size=6, max_size=6))
+def test_vector_products_keep_their_digits_where_they_cancel(parts: list[float]) -> None:
+    a, b = np.array(parts[:3]), np.array(parts[3:])
+    x, y = ([Fraction(v) for v in vector.tolist()] for vector in (a, b))
+    product = dot(Enclosed.of(a), Enclosed.of(b))
+    true = sum((p * q for p, q in zip(x, y, strict=True)), Fraction(0))
+    assert abs(exact(product) - true) <= Fraction(float(product.radius[0]))
+    assert product.radius[0] <= 100 * U**2 * float(np.abs(a) @ np.abs(b)) + 1e-298
+    turned = cross(Enclosed.of(a), Enclosed.of(b))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        assert abs(exact(turned, (i,)) - (x[j] * y[k] - x[k] * y[j])) <= Fraction(float(turned.radius[0, i]))
+
+
+def test_a_quotient_by_what_may_be_zero_is_not_bounded() -> None:
+    divisor = Enclosed.of(np.array([2.0, 1e-9]), 0.0, np.array([0.1, 1e-8]))
+    found = quotient(Enclosed.of(np.array([1.0, 1.0]), 0.0, 0.01), divisor)
+    assert np.isfinite(found.radius[0]).tolist() == [True, False]
+    assert found.high[0] + found.radius[0, 0] >= 1.01 / 1.9
+    assert found.high[0] - found.radius[0, 0] <= 0.99 / 2.1
+
+
+def test_cosine_and_sine_are_right_to_twice_the_working_precision() -> None:
+    rng = np.random.default_rng(1)
+    angles = np.concatenate([rng.uniform(-np.pi, np.pi, 60), 10.0 ** rng.uniform(-12.0, 0.0, 30), [0.0]])
+    with mpmath.workdps(50):
+        for found, function in zip(cosine_sine(Enclosed.of(angles)), (mpmath.cos, mpmath.sin), strict=True):
+            for i, angle in enumerate(angles.tolist()):
+                error = abs(
+                    function(mpmath.mpf(angle)) - float(found.high[i]) - mpmath.mpf(float(found.low[i]))
+                )
+                assert error <= float(found.radius[0, i])
+            assert (found.radius[0] <= 1e-28).all()
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        Polynomial((0.8, 0.25, 0.0625)),
+        Polynomial((0.3, -7.0, 11.0, 0.01)),
+        Sine(0.37, 5.3, 1.1, 1.6),
+        Sine(30.0, 1e4, 0.3),
+        Table((0.0, 0.2, 0.5, 1.0), (1.0, 1.2, 0.9, 1.1)),
+    ],
+)
+def test_a_law_is_its_own_value_rounded_once_whatever_its_series_gives(law: TimeFunction) -> None:
+    instants = np.random.default_rng(2).uniform(0.0, 1.0, 40)
+    for derivative, found in enumerate(law.enclosed(instants)):
+        for i, t in enumerate(instants.tolist()):
+            # A rounding of a rounded number is itself.
+            true = float(exact_law(law, t, derivative))
+            assert abs(Fraction(float(found.high[i])) - Fraction(true)) <= Fraction(float(found.radius[0, i]))
+        computed = law.series(instants, 2)[:, derivative] * (2.0 if derivative == 2 else 1.0)
+        assert (np.abs(found.high - computed) <= found.radius[1] + 4 * U * np.abs(computed)).all()
+
+
+def exact_law(law: TimeFunction, t: float, derivative: int) -> mpmath.mpf | Fraction:
+    if isinstance(law, Polynomial):
+        parts = [Fraction(c) for c in law.coefficients]
+        for _ in range(derivative):
+            parts = [k * c for k, c in enumerate(parts)][1:]
+        return sum((c * Fraction(t) ** k for k, c in enumerate(parts)), Fraction(0))
+    if isinstance(law, Sine):
+        with mpmath.workdps(60):
+            w, a = mpmath.mpf(law.angular_frequency), mpmath.mpf(law.amplitude)
+            angle = w * t + mpmath.mpf(law.phase)
+            values = (law.offset + a * mpmath.sin(angle), a * w * mpmath.cos(angle))
+            return (*values, -a * w * w * mpmath.sin(angle))[derivative]
+    factor = (1.0, 1.0, 2.0)[derivative]
+    return Fraction(float(law.series(np.array([t]), 2)[0, derivative] * factor))
+
+
+def test_a_law_that_lies_on_a_tie_may_be_either_neighbour() -> None:
+    """150 t + 25 t^2 at the double next to 0.2 lies within 1e-30 of the middle of two doubles near 31."""
+    (value, *_) = Polynomial((0.0, 150.0, 25.0)).enclosed(np.array([0.2]))
+    assert np.spacing(31.0) <= value.radius[0, 0] <= 1.01 * np.spacing(31.0)

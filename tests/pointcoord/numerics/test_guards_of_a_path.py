@@ -1,0 +1,94 @@
+"""What keeps a path and a series on their branch, on the parabola u^2 = w, whose branches meet at w = 0.
+
+There C_u = 2 u, X = 1 / (2 u) and the Lipschitz constant of X C_u is 1 / u, so everything is known by hand.
+"""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord.numerics.branch import NEAR, on_branch, orientation
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.newton import Converged
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.solve.assembly import SMALLEST_STEP, follow
+
+Array = NDArray[np.float64]
+
+# y = (u, w, 0, 1)
+PARABOLA: QuadraticMap = quadratic_map(
+    [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4
+)
+S = 0.5
+
+
+def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float = 1.0) -> bool:
+    """A series of order 3 that ends at (u, u^2): Newton's first step and its last terms at the end."""
+    y = np.array([u, u * u, 0.0, 1.0])
+    series = np.zeros((4, 4))
+    series[2, 0], series[3, 0] = last_but_one / S**2, last / S**3
+    factors = factorise(PARABOLA.jacobian(y))
+    reached = Converged(
+        y=y,
+        factors=factors,
+        converged=np.array(True),
+        iterations=np.array(2),
+        first_step=np.array(first_step),
+        noise=np.array(0.0),
+        work=Work(),
+    )
+    return bool(on_branch(PARABOLA, np.array(1.0), series, S, reached, factors))
+
+
+# The other branch is 2 u = 2 / omega away; of that distance NEAR may lie between the series and its end.
+LIMIT = 2.0 * NEAR
+
+
+@pytest.mark.parametrize(
+    "shares",
+    [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, -0.5, 0.5), (0.25, 0.25, -0.5)],
+    ids=str,
+)
+@pytest.mark.parametrize("u", [1.0, 1e-3])
+def test_what_a_series_left_out_and_newtons_step_count_together(
+    shares: tuple[float, float, float], u: float
+) -> None:
+    # Just below and just above by far more than the ten roundings of the sum.
+    below, above = (LIMIT * u * factor for factor in (1.0 - 1e-12, 1.0 + 1e-12))
+    assert ends_on_branch(*(share * below for share in shares), u=u)
+    assert not ends_on_branch(*(share * above for share in shares), u=u)
+
+
+def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
+    assert ends_on_branch(0.0, 0.0, 0.0, u=1.0)
+    assert not ends_on_branch(0.0, 0.0, 0.0, u=-1.0)
+    assert orientation(factorise(PARABOLA.jacobian(np.array([-1.0, 1.0, 0.0, 1.0])))) == -1.0
+
+
+def path_to(w: float) -> tuple[float, float]:
+    """The share done of the path from w = 1, and u at its end."""
+    path = follow(PARABOLA, np.array([1.0, 1.0, 0.0, 1.0]), np.array([w, 0.0, 1.0]))
+    return float(path.done), float(path.y[0])
+
+
+def test_the_last_step_of_a_path_may_be_shorter_than_any_other() -> None:
+    # z = q omega sqrt(2) = left / (2 w) here, so a step is 0.8 of what is left until less than 4 w is: after
+    # 19 of them 5.2e-14 is left, which is less than the smallest step, and the path can be completed at once.
+    w = 2e-14
+    assert 0.2**18 * 0.8 > SMALLEST_STEP > 0.2**19
+    done, u = path_to(w)
+    assert done == 1.0
+    # Newton's last step has shrunk to rounding: u^2 = w to a few of them.
+    assert abs(u * u - w) <= 8 * np.finfo(float).eps * w
+
+
+@pytest.mark.parametrize("beyond", [1.0, 1e-3, 1e-9])
+def test_a_path_into_a_fold_stops_where_its_steps_are_the_smallest(beyond: float) -> None:
+    done, u = path_to(-beyond)
+    # Left of the way to the fold, as a share of the path. A step is at most the way to the fold and at
+    # least a tenth of it, so the last one that is taken leaves at most ten smallest steps and at least a
+    # tenth of one. u^2 says the same as long as the path's own rounding, 1e-16 of it, is far smaller.
+    left = 1.0 / (1.0 + beyond) - done
+    assert 0.1 * SMALLEST_STEP <= left <= 10.0 * SMALLEST_STEP
+    assert abs(u * u / (1.0 + beyond) - left) <= 1e-15

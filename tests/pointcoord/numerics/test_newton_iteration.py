@@ -1,0 +1,111 @@
+"""Newton's method on the strut: its rate, where it stops, and what a failing member does to others."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics import newton
+from pointcoord.numerics.newton import polish
+from pointcoord.solve.assembly import Pose, assemble
+
+Array = NDArray[np.float64]
+EPS = np.finfo(float).eps
+
+
+@pytest.fixture(scope="module")
+def pose(strut: Mechanism) -> Pose:
+    return assemble(strut, {"arm_angle": np.array(1.3), "rack": np.array(20.0)})
+
+
+def displaced(pose: Pose, seed: int, by: float) -> Array:
+    y = pose.y.copy()
+    y[:17] += by * np.random.default_rng(seed).uniform(-1.0, 1.0, size=17)
+    return y
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_error_of_a_step_is_the_square_of_the_error_before(
+    strut: Mechanism, pose: Pose, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(newton, "LIMIT", 1)
+    omega = float(strut.map.lipschitz(pose.factors.preconditioner, np.ones(17)))
+    before, after = [], []
+    for power in range(8, 14):
+        start = displaced(pose, seed, 2.0**-power / omega)
+        before.append(np.abs(start - pose.y).max())
+        after.append(np.abs(polish(strut.map, start).y - pose.y).max())
+    # Newton and Kantorovich: e' <= omega e^2 / (2 (1 - omega e)), here with 1 - omega e > 1/2.
+    assert omega * before[0] < 0.5
+    assert (np.array(after) <= omega * np.array(before) ** 2).all()
+    # The direction is the same each time, so e' = c e^2 (1 + a e + ...) with |a| e below 3 * 2^-8: over a
+    # factor of 2^5 in e the fitted order is off two by less than log2(1 + 3 / 256) / 5 twice.
+    assert min(after) > 1000 * EPS
+    assert abs(np.polyfit(np.log(before), np.log(after), 1)[0] - 2.0) < 0.01
+
+
+@settings(deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), power=st.floats(-16.0, -3.0))
+def test_it_stops_at_rounding_wherever_it_starts_nearby(
+    strut: Mechanism, pose: Pose, seed: int, power: float
+) -> None:
+    reached = polish(strut.map, displaced(pose, seed, 10.0**power))
+    assert reached.converged
+    # The pose's points lie within their proven bound of the one assembly nearby, the other's within what
+    # rounding makes of a Newton step, the condition number times eps of coordinates near 1.
+    points = 3 * len(strut.layout.moving)
+    own = float(pose.bound / strut.unit)
+    assert np.abs(reached.y - pose.y)[:points].max() <= own + EPS * pose.condition
+    # From 1e-3 the errors are 1e-6 C, 1e-12 C^2, noise: with C below 1e3 five steps, the last of noise.
+    assert reached.iterations <= 6
+
+
+def test_polishing_a_polished_pose_takes_one_step_of_noise(strut: Mechanism, pose: Pose) -> None:
+    again = polish(strut.map, pose.y)
+    assert again.converged
+    assert again.iterations == 1
+    assert again.first_step <= float(pose.bound / strut.unit)
+
+
+def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:
+    offset = 1e-4 * np.random.default_rng(2).uniform(-1.0, 1.0, size=17)
+    reached = polish(strut.map, pose.y, offset)
+    assert reached.converged
+    # The residual is as far off as rounding of the coordinates makes it: below 16 eps of products up to 4.
+    assert np.abs(strut.map.residual(reached.y) - offset).max() <= 16 * EPS * 4
+    assert np.array_equal(reached.y[17:], pose.y[17:])
+
+
+BAD = {"not a number": np.nan, "infinite": np.inf, "huge": 1e200, "zero": 0.0}
+
+
+@pytest.mark.parametrize("value", BAD.values(), ids=BAD.keys())
+def test_member_that_fails_is_marked_and_disturbs_no_other(
+    strut: Mechanism, pose: Pose, value: float
+) -> None:
+    batch = np.stack([displaced(pose, seed, 1e-3) for seed in range(4)]).reshape(2, 2, -1)
+    batch[0, 1, :17] = value
+    reached = polish(strut.map, batch)
+    assert not reached.converged[0, 1]
+    for member in ((0, 0), (1, 0), (1, 1)):
+        alone = polish(strut.map, batch[member])
+        assert reached.converged[member]
+        assert reached.iterations[member] == alone.iterations
+        # The same operations on each member: at most the order of a sum differs.
+        assert np.abs(reached.y[member] - alone.y).max() <= 2 * float(pose.bound / strut.unit)
+
+
+def test_work_counts_every_member_at_every_step(strut: Mechanism, pose: Pose) -> None:
+    batch = np.stack([displaced(pose, 1, 1e-3), pose.y, pose.y])
+    reached = polish(strut.map, batch)
+    assert reached.work.factorisations == reached.work.residuals == int(reached.iterations.sum())
+
+
+def test_known_coordinates_stay_as_they_are(strut: Mechanism, pose: Pose) -> None:
+    start = displaced(pose, 3, 1e-3)
+    kept = start.copy()
+    reached = polish(strut.map, start)
+    assert np.array_equal(start, kept)
+    assert np.array_equal(reached.y[17:], kept[17:])

@@ -1,0 +1,320 @@
+"""Every way into a scene is checked, ends, and shows what a user called things as text."""
+
+import io
+import os
+import pickle
+import socket
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
+from pointcoord.errors import visible
+from pointcoord.scene.even_instants import even_instants
+from pointcoord.scene.scene_text import LARGEST, read_stream
+from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
+from pointcoord.solve.taylor import COARSEST, FINEST
+
+BOUNCE = Scene.load("bounce")
+CONTENT = BOUNCE.model_dump(exclude_none=True)
+plain = settings(deadline=None)
+
+# Red, the start of a line, a turned line, no width at all, a line that is none, half a character.
+STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80"
+STEERED = r"\x1b[31m\r\n\u202etxt\u200b\u2028\udc80"
+
+
+def bounce_text() -> str:
+    return resources.files("pointcoord").joinpath("scenes", "bounce.toml").read_text("utf-8")
+
+
+# ------------------------------------------------------------------------------------------- tolerance
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), 0.0, -1e-9, "small", None, True])
+def test_no_public_way_leads_to_a_scene_of_a_meaningless_tolerance(bad: Any) -> None:
+    ways: tuple[Callable[[], object], ...] = (
+        lambda: Scene.from_mapping({**CONTENT, "tolerance": bad}),
+        lambda: BOUNCE.model_copy(update={"tolerance": bad}),
+        lambda: BOUNCE.model_copy(update={"tolerance": bad}, deep=True),
+        lambda: Scene.model_construct(**{**CONTENT, "tolerance": bad}),
+    )
+    for way in ways:
+        with pytest.raises(SceneError, match="tolerance: Input should be") as caught:
+            way()
+        assert caught.value.key == "tolerance"
+
+
+def test_a_copy_with_other_values_is_checked_in_every_part() -> None:
+    with pytest.raises(SceneError, match="tolerence: there is no such key; allowed: title, effects"):
+        BOUNCE.model_copy(update={"tolerence": 1e-9})
+    with pytest.raises(SceneError, match=r"samples: .*greater than or equal to 1, not 0"):
+        BOUNCE.time.model_copy(update={"samples": 0})
+    with pytest.raises(SceneError, match=r"step: there is no such key; allowed: start, stop, samples"):
+        BOUNCE.time.model_copy(update={"step": 0.1})
+    with pytest.raises(SceneError, match=r"constant: .*finite"):
+        BOUNCE.inputs["rack"].model_copy(update={"constant": float("nan")})
+    shorter = BOUNCE.model_copy(update={"time": BOUNCE.time.model_copy(update={"samples": 3})})
+    assert (len(shorter.instants), shorter.title, shorter.inputs) == (3, BOUNCE.title, BOUNCE.inputs)
+    assert BOUNCE.model_copy() == BOUNCE
+
+
+def test_a_scene_whose_dictionaries_were_written_later_is_refused_when_it_is_solved() -> None:
+    scene = Scene.from_mapping(CONTENT)
+    scene.mechanism.points["strut_top"] = (1.0, float("nan"), 2.0)
+    with pytest.raises(SceneError, match=r"mechanism\.points\.strut_top\.1: .*finite number, not nan"):
+        simulate(scene)
+
+
+def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_held() -> None:
+    unit = float(scene_mechanism(BOUNCE).unit)
+    finest, coarsest = (limit * unit / TRUNCATION_SHARE for limit in (FINEST, COARSEST))
+    for tolerance, words in (
+        (1e-9, None),
+        (finest * 1.01, None),
+        (finest * 0.99, f"{finest:.3g} mm was used"),
+        (1e-300, f"finer than the rounding of a sum of series: {finest:.3g} mm was used"),
+        (coarsest * 0.99, None),
+        (coarsest * 1.01, f"{coarsest:.3g} mm was used"),
+        (50.0, f"tolerance of 50 mm is too coarse to keep to one branch: {coarsest:.3g} mm was used"),
+    ):
+        motion = simulate(BOUNCE.model_copy(update={"tolerance": tolerance}))
+        notes = [note for note in motion.notes if note != motion.closing.words]
+        assert len(notes) == (words is not None)
+        assert words is None or words in notes[0]
+    # Newton's method goes on until rounding stops it, whatever the tolerance.
+    motion = simulate(BOUNCE.model_copy(update={"tolerance": 50.0}), "newton")
+    assert motion.notes == (motion.closing.words,)
+
+
+# --------------------------------------------------------------------------------------------- numbers
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.int32, np.uint8, np.float64, np.float32, np.longdouble])
+def test_a_number_of_numpy_is_a_number(kind: Callable[[int], Any]) -> None:
+    points = {name: tuple(place) for name, place in BOUNCE.mechanism.points.items()}
+    content = {
+        **CONTENT,
+        "tolerance": kind(1),
+        "mechanism": {
+            "type": "macpherson",
+            "points": {**points, "strut_top": [kind(46), -180.0, 470.0]},
+            "up": [kind(0), kind(0), kind(1)],
+        },
+        "inputs": {"arm_angle": {"polynomial": [kind(1), kind(2)]}, "rack": {"constant": kind(3)}},
+        "time": {"start": kind(0), "stop": kind(2), "samples": np.int64(5)},
+    }
+    scene = Scene.from_mapping(content)
+    assert scene.mechanism.points["strut_top"] == (46.0, -180.0, 470.0)
+    assert scene.inputs["arm_angle"].polynomial == (1.0, 2.0)
+    assert (scene.inputs["rack"].constant, scene.tolerance) == (3.0, 1.0)
+    assert scene.instants.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    # Python's own numbers are what is kept, so that a scene is written and compared as any other.
+    assert type(scene.tolerance) is type(scene.inputs["rack"].constant) is float
+    assert type(scene.time.samples) is int
+
+
+@pytest.mark.parametrize("bad", [np.bool_(True), np.complex128(1.0), np.array([1.0]), np.float64("nan")])
+def test_what_is_no_number_of_numpy_is_none_here(bad: Any) -> None:
+    with pytest.raises(SceneError, match=r"inputs\.rack\.constant"):
+        Scene.from_mapping({**CONTENT, "inputs": {**CONTENT["inputs"], "rack": {"constant": bad}}})
+
+
+# --------------------------------------------------------------------------------------------- instants
+
+
+@plain
+@given(
+    start=st.decimals(-1000, 1000, places=3),
+    length=st.decimals("0.001", 1000, places=3),
+    steps=st.integers(1, 2000),
+)
+def test_instants_are_the_decimal_numbers_that_a_person_would_write(
+    start: Decimal, length: Decimal, steps: int
+) -> None:
+    stop = start + length
+    instants = even_instants(float(start), float(stop), steps + 1).tolist()
+    assert len(instants) == steps + 1
+    for i, instant in enumerate(instants):
+        exact = Fraction(start) + Fraction(length) * i / steps
+        assert instant == exact.numerator / exact.denominator  # rounded once
+    assert (instants[0], instants[-1]) == (float(start), float(stop))
+
+
+def test_instants_of_a_scene_are_printed_short() -> None:
+    assert max(len(repr(t)) for t in BOUNCE.instants.tolist()) == len("0.02")
+    assert repr(even_instants(0.0, 2.6, 131)[47].item()) == "0.94"  # 0.02 * 47 is 0.9400000000000001
+
+
+@plain
+@given(
+    start=st.floats(-1e15, 1e15), stop=st.floats(-1e15, 1e15), samples=st.integers(2, 300) | st.just(100_000)
+)
+def test_instants_of_any_times_lie_between_them_and_do_not_go_back(
+    start: float, stop: float, samples: int
+) -> None:
+    start, stop = min(start, stop), max(start, stop)
+    instants = even_instants(start, stop, samples)
+    assert (instants[0], instants[-1]) == (start, stop)
+    assert (np.diff(instants) >= 0.0).all()
+    # The even numbers to some roundings of the larger end, in two ways.
+    even = np.linspace(start, stop, samples)
+    spare = 4 * np.finfo(float).eps * max(abs(start), abs(stop)) + samples * 5e-324
+    assert np.abs(instants - even).max() <= spare
+
+
+def test_instants_of_the_shortest_motions_do_not_pass_their_stop() -> None:
+    # Steps below the smallest normal number are rounded to whole units of 5e-324.
+    instants = even_instants(0.0, 1e-320, 131)
+    assert (instants <= 1e-320).all()
+    assert instants[-1] == 1e-320
+
+
+# ------------------------------------------------------------------------------------------------- text
+
+
+@pytest.mark.parametrize("source", ["file", "stream"])
+def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path: Path, source: str) -> None:
+    text = b"\xef\xbb\xbf" + bounce_text().encode()
+    path = tmp_path / "scene.toml"
+    path.write_bytes(text)
+    assert (Scene.load(path) if source == "file" else Scene.read(io.BytesIO(text))) == BOUNCE
+
+
+def test_a_stream_is_read_to_its_end_in_pieces_and_told_by_its_name() -> None:
+    text = bounce_text().encode()
+    reader, writer = os.pipe()
+    with os.fdopen(reader, "rb", buffering=0) as pipe:
+        os.write(writer, text[:100])
+        os.write(writer, text[100:])
+        os.close(writer)
+        assert Scene.read(pipe) == BOUNCE
+    with pytest.raises(SceneError, match=r"^standard input: is not TOML"):
+        Scene.read(io.BytesIO(b"= 1"))
+    with pytest.raises(SceneError, match=r"^mine: is not TOML"):
+        Scene.read(io.BytesIO(b"= 1"), "mine")
+
+
+class Endless(io.RawIOBase):
+    """A stream without end, which counts what it gives."""
+
+    given = 0
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        assert size >= 0
+        size = min(size, 10_000_000)
+        self.given += size
+        return b"#" * size
+
+
+def test_reading_stops_at_64_megabytes() -> None:
+    endless = Endless()
+    with pytest.raises(SceneError, match="standard input: has no end within 64 MB; allowed: at most 64 MB"):
+        Scene.read(endless)
+    assert endless.given == LARGEST + 1
+    assert len(read_stream(io.BytesIO(b"#" * LARGEST), "")) == LARGEST
+
+
+def test_a_file_of_more_than_64_megabytes_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    with path.open("wb") as stream:
+        stream.truncate(LARGEST + 1)  # takes no room on the disk
+    with pytest.raises(SceneError, match="at most 64 MB"):
+        Scene.load(path)
+
+
+def test_devices_pipes_and_sockets_are_refused_and_never_waited_for(tmp_path: Path) -> None:
+    pipe, door = tmp_path / "pipe", tmp_path / "door"
+    os.mkfifo(pipe)
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(str(door))
+        for path in (pipe, door, Path("/dev/zero"), Path("/dev/null")):
+            with pytest.raises(SceneError, match="is a device, a pipe or a socket; allowed: a regular file"):
+                Scene.load(path)
+
+
+def misnamed(changes: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
+    content: dict[str, Any] = pickle.loads(pickle.dumps(CONTENT))
+    changes(content)
+    return content
+
+
+MISNAMED: dict[str, Callable[[], object]] = {
+    "title": lambda: simulate(
+        Scene.from_mapping(
+            misnamed(
+                lambda c: (
+                    c.update(title=STEERING[:-1]),  # no half characters in a scene
+                    c["mechanism"]["points"].update(strut_lower=c["mechanism"]["points"]["lower_ball_joint"]),
+                )
+            )
+        )
+    ),
+    "file": lambda: Scene.load(STEERING),
+    "key": lambda: Scene.from_mapping({**CONTENT, STEERING: 1}),
+    "key of time": lambda: Scene.from_mapping(misnamed(lambda c: c["time"].update({STEERING: 1}))),
+    "point": lambda: Scene.from_mapping(
+        misnamed(lambda c: c["mechanism"]["points"].update({STEERING: (1.0, 2.0, 3.0)}))
+    ),
+    "input": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"].update({STEERING: {"constant": 1}}))),
+    "law": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"]["rack"].update({STEERING: 1}))),
+    "effect": lambda: Scene.from_mapping({**CONTENT, "effects": [STEERING]}),
+    "value": lambda: Scene.from_mapping({**CONTENT, "tolerance": STEERING}),
+    "source": lambda: Scene.from_mapping({**CONTENT, "tolerance": 0}, STEERING),
+    "stream": lambda: Scene.read(io.BytesIO(b"a = \x1b"), STEERING),
+    "asked for": lambda: simulate(BOUNCE).position[STEERING],
+    "method": lambda: simulate(BOUNCE, STEERING),
+}
+
+
+@pytest.mark.parametrize("place", MISNAMED)
+def test_what_would_steer_a_terminal_is_shown_as_text(place: str) -> None:
+    with pytest.raises(PointcoordError) as caught:
+        MISNAMED[place]()
+    message = str(caught.value)
+    assert message.isprintable()
+    assert r"\x1b[31m" in message or place == "stream"
+    message.encode("utf-8")
+
+
+def test_a_name_of_any_length_makes_a_message_of_a_few_lines() -> None:
+    long = "x" * 10_000
+    for content in (
+        {**CONTENT, long: 1},
+        misnamed(lambda c: c["mechanism"]["points"].update({long: (1.0, 2.0, 3.0)})),
+        misnamed(lambda c: c["inputs"].update({long: {"constant": 1}})),
+        {**CONTENT, "effects": [long]},
+        {**CONTENT, "tolerance": long},
+    ):
+        with pytest.raises(SceneError) as caught:
+            Scene.from_mapping(content)
+        assert len(str(caught.value)) < 500
+
+
+@given(text=st.text(st.characters(), max_size=40))
+def test_visible_text_prints_and_keeps_what_prints(text: str) -> None:
+    shown = visible(text)
+    assert shown.isprintable()
+    assert visible(shown) == shown
+    if text.isprintable():
+        assert shown == text
+
+
+def test_steering_characters_are_spelled_out() -> None:
+    assert visible(STEERING) == STEERED
+    assert visible("Straße 7 ½ \\") == "Straße 7 ½ \\"
+
+
+def test_names_that_exist_are_offered_in_visible_text() -> None:
+    assert r"\x1b" in str(UnknownName("point", "a", ["b\x1b"]))

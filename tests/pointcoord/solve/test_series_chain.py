@@ -1,0 +1,283 @@
+"""A motion as a chain of series: continuous, accurate as asked, and honest about where it ends."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, Motion, Scene, simulate
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
+from pointcoord.solve.assembly import assemble
+from pointcoord.solve.dense_output import evaluate
+from pointcoord.solve.taylor import Chain, Segment, Settings, build_chain
+from pointcoord.suspensions.macpherson import COLLINEAR
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+
+Array = NDArray[np.float64]
+EPS = np.finfo(float).eps
+N = 17
+# Where the tie rod locks at a level arm, mm; between 130.100768 and 130.100769 by its circle's closed form.
+RACK_END = 130.10076831981567
+BOUNCE: dict[str, TimeFunction] = {"arm_angle": Polynomial((0.8, 0.25, 0.0625)), "rack": Polynomial((0.0,))}
+BOTH: dict[str, TimeFunction] = {"arm_angle": Sine(0.4, 2.0, 0.0, 1.5), "rack": Sine(30.0, 3.0)}
+TABLE: dict[str, TimeFunction] = {
+    "arm_angle": Table((0.0, 0.5, 0.9, 1.6, 2.0), (1.2, 1.5, 1.3, 1.7, 1.6)),
+    "rack": Table((0.0, 0.7, 1.1, 2.0), (0.0, 20.0, -10.0, 5.0)),
+}
+MOTIONS = {"bounce": BOUNCE, "both": BOTH, "table": TABLE}
+by_motion = pytest.mark.parametrize("functions", MOTIONS.values(), ids=MOTIONS.keys())
+
+
+def chain_of(
+    mechanism: Mechanism, functions: dict[str, TimeFunction], tolerance: float, stop: float = 2.0
+) -> Chain:
+    pose = assemble(mechanism, {name: f.series(0.0, 0)[..., 0] for name, f in functions.items()})
+    return build_chain(mechanism, functions, pose, 0.0, stop, Settings(tolerance, derivative=2))
+
+
+def plain_loop(chain: Chain, instants: Array, derivatives: int) -> Array:
+    """The definition: each instant on its own, each power on its own."""
+    result = np.zeros((derivatives + 1, len(instants), chain.segments[0].coefficients.shape[-1]))
+    for i, t in enumerate(instants):
+        segment = [s for s in chain.segments if s.start <= t][-1]
+        s = (t - segment.start) / segment.scale
+        for d in range(derivatives + 1):
+            for k in range(d, len(segment.coefficients)):
+                falling = float(np.prod(np.arange(k - d + 1, k + 1)))
+                result[d, i] += falling * segment.coefficients[k] * s ** (k - d) / segment.scale**d
+    return result
+
+
+def loop_size(chain: Chain, derivatives: int) -> Array:
+    """Largest sum of magnitudes of the terms of each derivative, over the segments."""
+    sizes = []
+    for segment in chain.segments:
+        s = (segment.stop - segment.start) / segment.scale
+        size = np.abs(segment.coefficients).max(axis=-1)
+        k = np.arange(len(size))
+        sizes.append(
+            [
+                sum(float(np.prod(np.arange(j - d + 1, j + 1))) * size[j] * s ** (j - d) for j in k[d:])
+                / segment.scale**d
+                for d in range(derivatives + 1)
+            ]
+        )
+    return np.max(sizes, axis=0)
+
+
+@by_motion
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-10, 1e-12])
+def test_segments_follow_on_without_a_gap(
+    strut: Mechanism, functions: dict[str, TimeFunction], tolerance: float
+) -> None:
+    chain = chain_of(strut, functions, tolerance)
+    assert chain.segments[0].start == 0.0
+    assert chain.stop == 2.0
+    for before, after in zip(chain.segments[:-1], chain.segments[1:], strict=True):
+        assert before.stop == after.start
+
+
+@by_motion
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-10, 1e-12])
+def test_position_velocity_and_acceleration_are_continuous_across_joints(
+    strut: Mechanism, functions: dict[str, TimeFunction], tolerance: float
+) -> None:
+    chain = chain_of(strut, functions, tolerance)
+    assert len(chain.segments) > 1
+    for before, after in zip(chain.segments[:-1], chain.segments[1:], strict=True):
+        single = Chain((before,), Work())
+        left = evaluate(single, [before.coefficients], np.array([before.stop]), 2)[:, 0, :N]
+        right = evaluate(Chain((after,), Work()), [after.coefficients], np.array([after.start]), 2)[:, 0, :N]
+        # Truncation of position: the tolerance (the unit is the size). Of a derivative: the tolerance
+        # relative to its largest term. Rounding: two solves at the joint, condition number below 200,
+        # once per derivative more.
+        size = np.maximum(loop_size(single, 2), 1.0)
+        for d in range(3):
+            rounding = 64 * EPS * 200.0 ** (min(d, 1) + 1) * size[d]
+            assert np.abs(left[d] - right[d]).max() <= tolerance * size[d] + rounding
+
+
+def test_breaks_of_a_table_are_joints_of_the_chain(strut: Mechanism) -> None:
+    chain = chain_of(strut, TABLE, 1e-9)
+    starts = [segment.start for segment in chain.segments]
+    for function in TABLE.values():
+        assert set(function.breaks) <= set(starts)
+    # and so no series is used across one: third derivatives may differ on both sides, but each side
+    # agrees with the input's own piece
+    for segment in chain.segments:
+        middle = 0.5 * (segment.start + segment.stop)
+        s = (middle - segment.start) / segment.scale
+        rack = np.polynomial.polynomial.polyval(
+            s, segment.coefficients[:, strut.layout.scalar("rack travel")]
+        )
+        # A cubic evaluated two ways, values up to 30 mm and steps above 0.3 s.
+        assert abs(rack * float(strut.unit) - TABLE["rack"].series(middle, 0)[0]) <= 1e3 * EPS * 30.0
+
+
+@settings(deadline=None, max_examples=max(10, settings.default.max_examples // 5))
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 40), derivatives=st.integers(0, 3))
+def test_evaluation_in_blocks_is_the_plain_loop_over_instants(
+    seed: int, count: int, derivatives: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    joints = np.cumsum([0.0, *rng.uniform(0.1, 1.0, size=rng.integers(1, 5))])
+    segments = tuple(
+        Segment(a, b, float(2.0 ** rng.integers(-2, 2)), rng.normal(size=(6, 4)))
+        for a, b in zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
+    )
+    chain = Chain(segments, Work())
+    instants = rng.permutation(np.concatenate([rng.uniform(0.0, joints[-1], size=count), joints, joints[:1]]))
+    values = evaluate(chain, [segment.coefficients for segment in segments], instants, derivatives)
+    assert values.shape == (derivatives + 1, len(instants), 4)
+    # Up to 16 roundings per term; at a joint both belong to the later segment.
+    tolerance = 32 * EPS * loop_size(chain, derivatives)[:, None, None] * 4
+    assert (np.abs(values - plain_loop(chain, instants, derivatives)) <= tolerance).all()
+
+
+def test_evaluation_of_more_instants_than_a_block_holds_is_the_plain_loop(strut: Mechanism) -> None:
+    chain = chain_of(strut, BOTH, 1e-9)
+    rng = np.random.default_rng(9)
+    instants = rng.uniform(0.0, 2.0, size=1500)
+    columns = [segment.coefficients[:, :3] for segment in chain.segments]
+    short = Chain(
+        tuple(Segment(s.start, s.stop, s.scale, c) for s, c in zip(chain.segments, columns, strict=True)),
+        Work(),
+    )
+    for order in (instants, np.sort(instants), np.sort(instants)[::-1].copy()):
+        values = evaluate(short, columns, order, 2)
+        # Up to 60 roundings per sum of 21 terms, twice.
+        tolerance = 2 * 60 * EPS * loop_size(short, 2)[:, None, None]
+        assert (np.abs(values - plain_loop(short, order, 2)) <= tolerance).all()
+
+
+def largest_gap(series: Motion, newton: Motion, quantity: str) -> float:
+    ours, theirs = getattr(series, quantity), getattr(newton, quantity)
+    return max(float(np.abs(ours[name] - theirs[name]).max()) for name in ours)
+
+
+@pytest.mark.parametrize(
+    "arm", [(0.8, 0.25, 0.0625), {"sine": {"amplitude": 0.4, "angular_frequency": 2.0, "offset": 1.5}}]
+)
+def test_error_against_newton_falls_with_the_tolerance_and_stays_below_it(
+    make_scene: Callable[..., Scene], arm: object
+) -> None:
+    newton = simulate(make_scene(arm, (0.0, 20.0), samples=201), "newton")
+    bound = float(newton.proof().bound.max())
+    gaps = []
+    for tolerance in (1e0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
+        series = simulate(make_scene(arm, (0.0, 20.0), samples=201, tolerance=tolerance))
+        gaps.append(largest_gap(series, newton, "position"))
+        # Rounding of the series adds to that of Newton's poses: as much again, and its 20 terms.
+        assert gaps[-1] <= tolerance + 4 * bound
+    # It does fall: a motion cut more finely is more accurate, down to rounding.
+    assert gaps[-1] < 1e-3 * gaps[0]
+
+
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-13, 1e-16, 1e-30])
+def test_tolerance_below_rounding_is_not_taken_for_a_singular_pose(
+    make_scene: Callable[..., Scene], tolerance: float
+) -> None:
+    # The condition number of the bounce stays below 200: nothing is singular. The tolerance is met as far
+    # as rounding allows.
+    series = simulate(make_scene(stop=2.6, tolerance=tolerance))
+    newton = simulate(make_scene(stop=2.6), "newton")
+    bound = float(newton.proof().bound.max())
+    assert largest_gap(series, newton, "position") <= tolerance + 4 * bound
+
+
+def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
+    make_scene: Callable[..., Scene],
+) -> None:
+    # The arm turns to 152.013 degrees = 2.65313 rad at t = 1.15313 s and the scene goes on to 1.5 s.
+    end = np.deg2rad(152.013) - 1.5
+    scene = make_scene((1.5, 1.0), samples=151, stop=1.5)
+    partial = {}
+    for method in ("series", "newton"):
+        with pytest.raises(AssemblyError, match="bring 'arm_angle' back") as caught:
+            simulate(scene, method)
+        error = caught.value
+        assert isinstance(error.partial, Motion)
+        partial[method] = error.partial
+        assert np.array_equal(error.partial.times, scene.instants[scene.instants < end])
+        assert error.partial.position["wheel_centre"].shape == (len(error.partial.times), 3)
+        # The limit is printed to a thousandth of a degree.
+        assert abs(error.reached["arm_angle"] - (1.5 + end)) <= np.deg2rad(0.001)
+    gap = largest_gap(partial["series"], partial["newton"], "position")
+    assert gap <= 1e-9 + 4 * float(partial["newton"].proof().bound.max())
+    inside = partial["series"].at(end - 1e-4).position["strut_lower"]
+    assert np.isfinite(inside).all()
+
+
+def test_motion_that_ends_where_it_starts_has_rates(make_scene: Callable[..., Scene]) -> None:
+    one = simulate(make_scene(rack=(0.0, 40.0), start=0.7, stop=0.7, samples=1))
+    many = simulate(make_scene(rack=(0.0, 40.0), start=0.7, stop=1.4, samples=2))
+    for quantity in ("position", "velocity", "acceleration"):
+        for name in one.position:
+            # The same pose, solved the same way.
+            assert np.array_equal(getattr(one, quantity)[name][0], getattr(many, quantity)[name][0])
+
+
+def test_batch_of_cars_shares_its_segments_and_moves_as_each(table: dict[str, tuple[float, ...]]) -> None:
+    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+    shifts = np.array([0.0, 3.0, -5.0])
+    points = {name: np.array([p] * 3, dtype=float) for name, p in table.items()}
+    points["strut_top"][:, 1] += shifts
+    cars = build_mechanism(COLLINEAR, points, axes)
+    batch = chain_of(cars, BOUNCE, 1e-9)
+    instants = np.linspace(0.0, 2.0, 7)
+    together = evaluate(batch, [s.coefficients for s in batch.segments], instants, 2)
+    for i in range(3):
+        car = build_mechanism(COLLINEAR, {name: p[i] for name, p in points.items()}, axes)
+        alone = chain_of(car, BOUNCE, 1e-9)
+        values = evaluate(alone, [s.coefficients for s in alone.segments], instants, 2)
+        # Both chains keep the tolerance, relative to the size of each derivative.
+        tolerance = 2e-9 * np.maximum(loop_size(alone, 2), 1.0)[:, None, None]
+        assert (np.abs(together[:, i] - values)[..., :N] <= tolerance).all()
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1.0, 10.0, 100.0])
+def test_no_tolerance_lets_a_motion_pass_the_end_of_its_branch(
+    make_scene: Callable[..., Scene], tolerance: float
+) -> None:
+    # With the rack a tenth of a millimetre off the middle the arm cannot go below 35.27 degrees.
+    scene = make_scene((1.0, -0.42), (-0.1,), stop=1.0, tolerance=tolerance)
+    for method in ("newton", "series"):
+        with pytest.raises(AssemblyError, match="bring 'arm_angle' back") as caught:
+            simulate(scene, method)
+        assert np.rad2deg(caught.value.reached["arm_angle"]) == pytest.approx(35.27, abs=0.01)
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e9])
+@pytest.mark.parametrize("short", [1e-6, 1e-10, 1e-12, 1e-13])
+def test_no_tolerance_lets_a_motion_cross_to_a_branch_that_it_only_touches(
+    make_scene: Callable[..., Scene], tolerance: float, short: float
+) -> None:
+    # The rack comes near the end of its travel and goes back. The other branch, its tie rod's outer end
+    # 200 mm away in the end, comes within the root of `short` of the car's size.
+    rack = {"sine": {"amplitude": (1.0 - short) * RACK_END, "angular_frequency": 1.0}}
+    scene = make_scene((np.pi / 2,), rack, stop=np.pi, samples=21, tolerance=tolerance, effects=[])
+    # Newton's method takes steps that are proven to keep the branch.
+    gap = largest_gap(simulate(scene), simulate(scene, "newton"), "position")
+    # The series keep ten times the coarsest truncation, 1e-6 of 512 mm; at the turn rounding is
+    # magnified by the inverse root of `short`.
+    assert gap <= 10 * 1e-6 * 512 + 16 * EPS * 512 / np.sqrt(short)
+
+
+@pytest.mark.parametrize("beyond", [1e-14, 1e-9, 1e-3])
+def test_a_motion_that_cannot_go_on_names_the_input_that_moves(
+    make_scene: Callable[..., Scene], beyond: float
+) -> None:
+    # The arm rests and the rack runs past its end, if only by rounding.
+    scene = make_scene((np.pi / 2,), (0.0, (1.0 + beyond) * RACK_END), stop=1.0)
+    with pytest.raises(AssemblyError, match="bring 'rack' back") as caught:
+        simulate(scene)
+    error = caught.value
+    # The range is 219 mm: its last value is found to a billionth of that at least.
+    assert abs(error.reached["rack"] - RACK_END) <= 1e-9 * 219
+    assert error.limits[0].startswith("link ")
+    assert all("tie_rod" in name or "strut_lower" in name for name in error.limits[:3])

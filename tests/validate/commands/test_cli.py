@@ -1,0 +1,210 @@
+"""The program as its users meet it: output, exit status, and one clear line for every mistake."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, built_in_scenes, simulate
+from validate import cli
+from validate.cli import main
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
+
+
+def scene_file(folder: Path, *changes: tuple[str, str]) -> str:
+    """A scene file made from `bounce` by replacing text."""
+    text = (Path(cli.__file__).parent.parent / "pointcoord" / "scenes" / "bounce.toml").read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "mine.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate"]) == 0
+    out, err = capsys.readouterr()
+    assert [line.split(":")[2].strip() for line in err.splitlines()] == list(PAPER_SCENES)
+    assert all("warning: " in line and "moves wheel_centre by 16.8 mm" in line for line in err.splitlines())
+    for name in built_in_scenes():
+        assert f"{name}: pointcoord and absolute" in out
+    assert "DISAGREES" not in out
+    assert "factor 2" in out
+    assert "Table 2" in out
+    assert "Table 3" in out
+    assert "cannot be matched to better than about 10 mm" in out
+    assert "5 of 5 scenes agree" in out
+
+
+def test_json_goes_alone_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "steer", "--json", "-", "--quiet"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    data = json.loads(out)
+    (scene,) = data["scenes"]
+    comparison, further = scene["comparisons"]
+    assert further["formulations"] == ["pointcoord-newton", "absolute"]
+    assert comparison["agreed"] is True
+    rows = {(row["quantity"], row["name"]) for row in comparison["rows"]}
+    assert ("acceleration", "wheel_centre") in rows
+    assert ("angular_velocity", "knuckle") in rows
+    assert all(row["difference"] <= row["tolerance"] for row in comparison["rows"])
+    assert {row["rests_on"] for row in comparison["rows"]} <= set(comparison["formulations"])
+    # The steering scene's printed omega is 0/0: JSON has no such number.
+    assert data["printed_formulas"][0]["worst"]["difference"] is None
+
+
+def test_json_of_the_main_job_holds_the_printed_tables(tmp_path: Path) -> None:
+    target = tmp_path / "all.json"
+    assert main(["validate", "--json", str(target)]) == 0
+    data = json.loads(target.read_text())
+    assert [scene["scene"] for scene in data["scenes"]] == list(DEFAULT_SCENES)
+    assert len(data["printed_tables"]["rows"]) == 18
+    assert all(scene["refusals"] == [] for scene in data["scenes"])
+
+
+def test_a_disagreement_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "bounce", "--second", "printed"]) == 1
+    assert "DISAGREES" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ([("strut_top        = [460, -180, 470]", "")], ["mechanism.points", "strut_top", "missing"]),
+        (
+            [("wheel_centre ", "wheel_center ")],
+            ["mechanism.points", "wheel_center", "allowed", "wheel_centre"],
+        ),
+        ([("[460, -180, 470]", "[460, -180]")], ["mechanism.points.strut_top"]),
+        ([("[460, -180, 470]", "[460, nan, 470]")], ["mechanism.points.strut_top.1", "finite"]),
+        ([("[460, -180, 470]", "[460, 'x', 470]")], ["mechanism.points.strut_top.1", "'x'"]),
+        ([("samples = 131", "samples = 0")], ["time.samples", "0"]),
+        ([("stop = 2.6", "stop = -1.0")], ["time", "allowed: start < stop"]),
+        ([("arm_angle =", "arm_angel =")], ["arm_angel", "allowed: arm_angle, rack, heave"]),
+        ([("polynomial = [0.8", "polynom = [0.8")], ["inputs.arm_angle", "no such key"]),
+        ([('"velocity"', '"speed"')], ["effects", "speed", "allowed: velocity"]),
+        ([("tolerance = 1e-9", "tolerance = 0.0")], ["tolerance", "greater than 0"]),
+        ([('type = "macpherson"', 'type = "mcpherson"')], ["mechanism.type", "macpherson"]),
+        ([('side = "left"', 'side = "port"')], ["mechanism.side", "left"]),
+        ([("[450, -330, -40]", "[452, -320, 20]")], ["mechanism.points", "has no length"]),
+        ([("title =", "title")], ["not TOML"]),
+    ],
+)
+def test_a_wrong_scene_ends_with_2_and_one_line_that_says_where(
+    changes: list[tuple[str, str]], words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = scene_file(tmp_path, *changes)
+    assert main(["simulate", path, "-o", str(tmp_path / "out.csv")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    for word in words:
+        assert word in err, err
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ("[0.2, 0.25, 0.0625]", ["arm_angle", "assembly stopped at", "nothing is written"]),
+        ("[0.8, 1.25, 0.0625]", ["input 'arm_angle' is 3.", "allowed: 0 to pi rad"]),
+    ],
+)
+def test_a_scene_that_is_refused_ends_with_3_and_one_line_that_says_where(
+    law: str, words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = scene_file(tmp_path, ("[0.8, 0.25, 0.0625]", law))
+    assert main(["simulate", path, "-o", str(tmp_path / "out.csv")]) == 3
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith(f"pointcoord: {path}: ")
+    for word in words:
+        assert word in line
+    assert not (tmp_path / "out.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["validate", "bounse"], ["bounse", "bounce"]),
+        (["validate", "no/such/file.toml"], ["no/such/file.toml", "No such file"]),
+        (["validate", "bounce", "--second", "adams"], ["adams", "absolute"]),
+        (["simulate", "bounce", "-o", "x.xlsx"], ["x.xlsx", ".csv", ".npz"]),
+        (["simulate", "bounce", "-o", ""], ["-o ''", "names no file"]),
+        (["simulate", "bounce", "--method", "euler"], ["euler", "newton"]),
+        (["validate", "steer", "--json", ""], ["--json ''", "names no file"]),
+        (["validate", "steer", "--second", "pointcoord"], ["'pointcoord'", "with itself", "absolute"]),
+        (["validate", "steer", "--first", "absolute"], ["'absolute'", "with itself", "--first"]),
+        (["validate", "-", "-"], ["standard input", "more than once"]),
+        (["validate", ""], ["''", "names no scene"]),
+        (["validate", "steer", "--first", ""], ["without a name", "absolute"]),
+        (["simulat", "bounce"], ["simulat", "--help"]),
+        ([], ["--help"]),
+    ],
+)
+def test_a_wrong_command_ends_with_2_and_one_line(
+    arguments: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    err = capsys.readouterr().err
+    assert len(err.splitlines()) == 1
+    for word in words:
+        assert word in err
+
+
+def test_a_motion_that_stops_halfway_keeps_what_was_solved(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = scene_file(tmp_path, ("[0.8, 0.25, 0.0625]", "[0.8, 0.8]"))
+    target = tmp_path / "out.csv"
+    assert main(["simulate", path, "-o", str(target)]) == 3
+    (said,) = capsys.readouterr().err.splitlines()
+    assert "cannot pass" in said
+    with target.open(newline="") as stream:
+        times = [float(row["time [s]"]) for row in csv.DictReader(stream)]
+    assert said.endswith(f", {len(times)} instants up to t = {times[-1]:.10g} s, is in {target}")
+    # The arm meets its dead point at 152.013 degrees.
+    last = (np.radians(152.013) - 0.8) / 0.8
+    assert times[0] == 0.0
+    assert last - 0.02 < times[-1] <= last + 1e-4
+
+
+def test_csv_and_npz_give_back_the_same_bits(tmp_path: Path) -> None:
+    motion = simulate(Scene.load("bounce"))
+    for name in ("m.csv", "m.npz"):
+        assert main(["simulate", "bounce", "-o", str(tmp_path / name)]) == 0
+    with (tmp_path / "m.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    arrays = np.load(tmp_path / "m.npz")
+    columns = {
+        "time [s]": motion.times,
+        "position.wheel_centre.x [mm]": motion.position["wheel_centre"][:, 0],
+        "velocity.strut_lower.z [mm/s]": motion.velocity["strut_lower"][:, 2],
+        "acceleration.tie_rod_outer.y [mm/s^2]": motion.acceleration["tie_rod_outer"][:, 1],
+        "angular_velocity.knuckle.x [rad/s]": motion.angular_velocity["knuckle"][:, 0],
+        "wheel.camber [deg]": np.degrees(motion.wheel["camber"]),
+    }
+    for name, column in columns.items():
+        assert [float(row[name]) for row in rows] == column.tolist()
+        assert arrays[name].tolist() == column.tolist()
+
+
+def test_plan_says_what_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene_file(
+        tmp_path, ('["velocity", "acceleration", "knuckle_rates", "wheel_angles"]', '["velocity"]')
+    )
+    assert main(["plan", path]) == 0
+    out = capsys.readouterr().out
+    assert "computed: velocity of every point" in out
+    assert "left out: camber and kingpin angle" in out
+    assert "derivatives solved for: 1" in out
+
+
+def test_scenes_lists_every_built_in_scene(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenes"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(built_in_scenes())

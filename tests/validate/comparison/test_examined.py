@@ -1,0 +1,396 @@
+"""What becomes of a scene that a formulation refuses or fails at, and of several scenes together."""
+
+import itertools
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from program import PAST_ITS_END, complaints, short_scene
+
+from pointcoord import Scene
+from validate.cli import main
+from validate.comparison.examined import Examined, Once, examine
+from validate.exit_status import ExitStatus, combined
+from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+from validate.formulations.point_coordinates import PointCoordinates
+from validate.running import ROOT, asked_for, check_what_is_run, has_job, modules_with_a_job
+
+PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
+
+
+def said(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_refusal_says_who_where_which_value_and_which_limit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The arm turns by 0.8 rad/s from 0.8 rad; its dead point is at 152.013 degrees, 2.3165 s."""
+    path = short_scene(tmp_path, samples="27", **PAST_ITS_END)
+    assert main(["validate", path, "--json", "-"]) == 3
+    out, err = capsys.readouterr()
+    (line,) = err.splitlines()
+    assert line.startswith(f"pointcoord: {path}: ")
+    assert (
+        "; refused by pointcoord (AssemblyError), absolute (UnreachableError) "
+        "and pointcoord-newton (AssemblyError)" in line
+    )
+    (scene,) = json.loads(out)["scenes"]
+    assert scene["solved_by"] == []
+    refusals = {refusal["formulation"]: refusal for refusal in scene["refusals"]}
+    assert list(refusals) == ["pointcoord", "absolute", "pointcoord-newton"]
+    for refusal in refusals.values():
+        assert refusal["input"] == "arm_angle"
+        assert refusal["instant"] == pytest.approx(2.3165, abs=0.11)
+        # A chain of series stops within a step of a dead point, which it tells to a millionth.
+        assert refusal["value"] == pytest.approx(0.8 + 0.8 * refusal["instant"], abs=1e-6)
+        assert refusal["value"] > refusal["limit"]
+        assert refusal["limit"] == pytest.approx(2.65313, abs=0.01)
+        assert refusal["reason"] == "motion leaves its reach"
+        assert refusal["condition"] > 1.0
+        assert refusal["message"]
+    assert refusals["pointcoord"]["links"]
+
+
+def test_an_input_out_of_range_is_told_with_what_is_allowed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = short_scene(tmp_path, arm_angle="{ polynomial = [1.5, 1.0] }", samples="27")
+    assert main(["validate", path, "--json", "-"]) == 3
+    refusals = said(capsys)["scenes"][0]["refusals"]
+    for refusal in (refusal for refusal in refusals if refusal["formulation"] != "absolute"):
+        assert (refusal["input"], refusal["reason"]) == ("arm_angle", "input out of range")
+        assert refusal["instant"] == pytest.approx(1.7)
+        assert refusal["value"] == pytest.approx(3.2)
+        assert "0 to pi" in refusal["limit"]
+
+
+def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A motion of too many series: the other model and Newton's method take the instants alone."""
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 2)
+    path = short_scene(tmp_path)
+    assert main(["validate", path]) == 3
+    out, err = capsys.readouterr()
+    (line,) = err.splitlines()
+    assert "(--first pointcoord-newton); refused by pointcoord (MotionTooLong); " in line
+    assert line.endswith("solved by absolute and pointcoord-newton")
+    assert f"{path}: pointcoord-newton and absolute, 5 instants" in out
+    assert "0 of 1 scenes agree between pointcoord and absolute, 1 of 1 between" in out
+    # The hint can be followed, here and where the scene is only solved.
+    assert main(["validate", path, "--first", "pointcoord-newton"]) == 0
+    assert main(["simulate", path, "-o", str(tmp_path / "x.csv")]) == 3
+    said = capsys.readouterr().err
+    assert "(--method newton); closing the drawing moves wheel_centre by 16.8 mm" in said
+    assert "; what was solved, one instant up to t = 0 s, is in " in said
+    assert main(["simulate", path, "--method", "newton", "-o", str(tmp_path / "x.csv")]) == 0
+
+
+def test_hardpoints_that_make_no_mechanism_are_a_wrong_input_whoever_solves_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = Scene.load("bounce")
+    assert examine("bounce", scene, PAIRS[:1], False).status is ExitStatus.AGREE
+    points = {**scene.mechanism.points, "lower_ball_joint": scene.mechanism.points["strut_lower"]}
+    bent = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+    found = examine("bent", bent, PAIRS[:1], False)
+    assert found.status is ExitStatus.WRONG_INPUT
+    assert found.complaint.startswith("bent: mechanism.points: link ")
+    assert found.complaint.endswith("; refused by pointcoord (SceneError) and absolute (DescriptionError)")
+    answer = AbsoluteCoordinates().solve(scene)
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda self, scene: answer)
+    found = examine("bent", bent, PAIRS[:1], False)
+    assert found.status is ExitStatus.WRONG_INPUT
+    assert found.complaint.endswith("; refused by pointcoord (SceneError); solved by absolute")
+
+
+def test_a_scene_without_any_verdict_never_ends_with_0(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A formulation that gives no solution at all, and a comparison that fails: each is told."""
+    scene = Scene.load("bounce")
+    assert Examined("empty").status is ExitStatus.NO_VERDICT
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda self, scene: "nonsense")
+    found = examine("bounce", scene, PAIRS[:1], False)
+    assert found.status in (ExitStatus.NO_VERDICT, ExitStatus.NOT_FINISHED)
+    assert "absolute" in found.complaint
+    monkeypatch.undo()
+    monkeypatch.setattr("validate.comparison.examined.compare", lambda *_: 1 / 0)
+    found = examine("bounce", scene, PAIRS[:1], False)
+    assert found.status is ExitStatus.NOT_FINISHED
+    assert "the comparison of pointcoord with absolute fails: ZeroDivisionError" in found.complaint
+
+
+def drawn(folder: Path, moved: str) -> str:
+    """The paper's car as drawn, its strut_rod_end moved."""
+    path = Path(short_scene(folder, strut_rod_end=moved))
+    text = path.read_text()
+    path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("closure")) + "\n")
+    return str(path)
+
+
+@pytest.mark.parametrize("command", ["validate", "simulate", "plan"])
+@pytest.mark.parametrize(("off", "status"), [(0.09, 0), (0.11, 0), (4.7, 0), (5.3, 2)])
+def test_a_drawing_that_does_not_close_is_warned_of_and_then_refused(
+    command: str, off: float, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The strut's rod end beside the axis: it alone moves. One percent of the car's longest side is 5.1 mm.
+
+    Half of the axis, h, away from the strut's top, it goes to the axis at its drawn distance D from there:
+    its movement is that of the corner of a triangle with the sides `off` and D - h.
+    """
+    top, lower = np.array([460.0, -180.0, 470.0]), np.array([452.0, -320.0, 20.0])
+    beside = np.cross(top - lower, [1.0, 0.0, 0.0])
+    place = lower + 0.5 * (top - lower) + off * beside / np.linalg.norm(beside)
+    path = drawn(tmp_path, str(place.tolist()))
+    target = tmp_path / "out.json"
+    more = {"validate": ["--json", str(target)], "simulate": ["-o", str(tmp_path / "x.csv")], "plan": []}
+    assert main([command, path, *more[command]]) == status
+    said = capsys.readouterr().err.splitlines()
+    lines = [line for line in said if not line.startswith("pointcoord: note: ")]
+    if off < 0.1:
+        assert lines == []
+    else:
+        (line,) = lines
+        assert line.startswith(f"pointcoord: {'' if status else 'warning: '}{path}: ")
+        assert f"closing the drawing moves strut_rod_end by {off:.3g} mm" in line
+        assert ("another car" in line) == (status == 2)
+    if command == "validate":
+        (scene,) = json.loads(target.read_text())["scenes"]
+        assert scene["closing"]["point"] == "strut_rod_end"
+        half = 0.5 * np.linalg.norm(top - lower)
+        moved = np.hypot(off, np.hypot(half, off) - half)
+        assert scene["closing"]["largest"] == pytest.approx(moved, abs=1e-9)
+        assert scene["closing"]["largest"] == max(scene["closing"]["movements"].values())
+        assert len(scene["warnings"]) == (off > 0.1)
+
+
+def test_each_formulation_solves_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    solved: list[str] = []
+    for kind in (PointCoordinates, AbsoluteCoordinates):
+        solve = kind.solve
+        monkeypatch.setattr(
+            kind, "solve", lambda self, scene, solve=solve: (solved.append(self.name), solve(self, scene))[1]
+        )
+    found = examine("bounce", Scene.load("bounce"), PAIRS, True)
+    assert sorted(solved) == ["absolute", "pointcoord", "pointcoord-newton", "printed"]
+    assert [o.agreed for o in found.outcomes] == [True, True]
+    assert found.printed is not None
+
+
+def test_the_printed_formulas_are_tried_on_the_papers_scenes_only(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = short_scene(tmp_path, samples="131")
+    assert main(["validate", "bounce", copy, "--json", "-"]) == 0
+    assert {finding["scene"] for finding in said(capsys)["printed_formulas"]} == {"bounce"}
+
+
+def test_printed_formulas_that_refuse_a_scene_change_no_verdict(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A strut that lies flat, as if it were one of the paper's scenes."""
+    path = short_scene(
+        tmp_path,
+        strut_top="[460, 200, 20]",
+        strut_rod_end="[456, -50, 20]",
+        arm_angle="{ polynomial = [1.65, 0.1] }",
+        stop="0.1",
+    )
+    monkeypatch.setattr("validate.commands.comparison.PAPER_SCENES", (path,))
+    assert main(["validate", path]) == 0
+    out, err = capsys.readouterr()
+    assert complaints(err) == []
+    assert f"The paper's formulas as printed cannot solve {path}: " in out
+
+
+def failing(monkeypatch: pytest.MonkeyPatch, error: Exception, title: str) -> None:
+    """Makes the absolute model fail at scenes of one title."""
+    solve = AbsoluteCoordinates.solve
+
+    def failed(self: AbsoluteCoordinates, scene: Scene) -> Any:
+        if scene.title == title:
+            raise error
+        return solve(self, scene)
+
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", failed)
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (MemoryError("no room"), "absolute fails: MemoryError: out of memory (no room); try fewer samples"),
+        (KeyError("knuckle"), "absolute fails: KeyError: 'knuckle' at test_examined.py:"),
+    ],
+)
+def test_a_failure_at_one_scene_leaves_the_others_solved_and_ends_with_4(
+    error: Exception,
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    failing(monkeypatch, error, "first")
+    first, second = short_scene(tmp_path, "1.toml", title='"first"'), short_scene(tmp_path, "2.toml")
+    assert main(["validate", first, second, "--json", "-"]) == 4
+    out, err = capsys.readouterr()
+    (line,) = complaints(err)
+    assert line.startswith(f"pointcoord: {first}: {words}")
+    assert line.endswith("; solved by pointcoord")
+    data = json.loads(out)
+    assert [scene["verdict"] for scene in data["scenes"]] == ["not finished", "agree"]
+    assert data["scenes"][0]["failures"][0]["error"] == type(error).__name__
+
+
+def test_a_defect_outside_of_the_scenes_is_one_line_and_status_4(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("validate.commands.comparison.compare_with_paper", lambda: 1 / 0)
+    assert main(["validate", "--quiet"]) == 4
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("pointcoord: ZeroDivisionError: division by zero at test_examined.py:")
+
+
+def test_one_bad_file_leaves_the_others_solved_and_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "out.json"
+    assert main(["validate", "nowhere.toml", short_scene(tmp_path), "--json", str(target)]) == 2
+    out, err = capsys.readouterr()
+    (line,) = complaints(err)
+    assert "nowhere.toml: cannot be read" in line
+    assert "1 of 2 scenes agree" in out
+    data = json.loads(target.read_text())
+    assert [scene["verdict"] for scene in data["scenes"]] == ["wrong input", "agree"]
+    assert data["complete"] is True
+
+
+def test_a_disagreement_comes_before_every_other_status() -> None:
+    scenes = [ExitStatus.DISAGREE, ExitStatus.NOT_FINISHED, ExitStatus.WRONG_INPUT, ExitStatus.NO_VERDICT]
+    for count in range(1, 5):
+        for chosen in itertools.permutations([*scenes, ExitStatus.AGREE], count):
+            best = next((status for status in scenes if status in chosen), ExitStatus.AGREE)
+            assert combined(chosen) is best
+    assert combined(()) is ExitStatus.AGREE
+
+
+def test_an_answer_is_not_asked_for_twice_and_memory_is_not_held() -> None:
+    class Full:
+        name = "full"
+        asked = 0
+
+        def solve(self, scene: Scene) -> Any:
+            self.asked += 1
+            raise MemoryError("full")
+
+    full = Full()
+    once = Once(full)
+    for _ in range(2):
+        with pytest.raises(MemoryError, match="full"):
+            once.solve(Scene.load("bounce"))
+    assert full.asked == 1
+
+
+def test_a_quiet_run_says_nothing_but_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    good = short_scene(tmp_path)
+    assert main(["validate", good, "--quiet", "--second", "printed"]) == 1
+    assert capsys.readouterr() == ("", "")
+    assert main(["hard", "at-rest", "-q"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert main(["validate", good, "nowhere.toml", "-q"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+
+
+def test_results_do_not_go_over_the_scene_that_they_come_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = short_scene(tmp_path, "scene.csv")
+    before = Path(scene).read_text()
+    assert main(["simulate", scene, "-o", scene]) == 2
+    assert main(["validate", scene, "--json", scene]) == 2
+    assert capsys.readouterr().err.count("would overwrite the scene") == 2
+    assert Path(scene).read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        (["simulate", "-o", "no/x.csv"], 4),
+        (["simulate", "-o", "x.xlsx"], 2),
+        (["draw", "-o", "x.png"], 2),
+        (["draw", "-o", "no/x.svg"], 4),
+        (["validate", "--json", "no/x.json"], 4),
+        (["validate", "--json", "/"], 4),
+    ],
+)
+def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
+    words: list[str], status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("solved")
+
+    monkeypatch.setattr("validate.commands.motion.simulate", never)
+    monkeypatch.setattr("validate.commands.comparison.examine", never)
+    monkeypatch.setattr("validate.commands.draw.svg", never)
+    command, option, target = words
+    assert main([command, "bounce", option, target]) == status
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith(f"pointcoord: {target}: ")
+
+
+MODULES = sorted(
+    ".".join(path.relative_to(ROOT.parent).with_suffix("").parts).removesuffix(".__init__")
+    for path in ROOT.rglob("*.py")
+)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_that_is_run_does_its_job_or_is_refused(
+    module: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["-m", "some", "words"])
+    monkeypatch.setattr(sys, "orig_argv", ["python", "-m", module, "some", "words"])
+    if has_job(module):
+        check_what_is_run()
+        return
+    with pytest.raises(SystemExit) as ended:
+        check_what_is_run()
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pointcoord: {module} has nothing to run; ")
+
+
+def test_every_module_with_a_job_ends_with_its_main(capsys: pytest.CaptureFixture[str]) -> None:
+    jobs = modules_with_a_job()
+    assert {"validate", "validate.cli", "validate.studies.bounds", "validate.studies.random_runs"} <= set(
+        jobs
+    )
+    assert "validate.running" not in jobs
+    for name in jobs:
+        place = ROOT.joinpath(*name.split(".")[1:])
+        path = place / "__main__.py" if place.is_dir() else place.with_suffix(".py")
+        *_, guard, call = path.read_text().splitlines()
+        assert guard == 'if __name__ == "__main__":'
+        assert "main()" in call
+
+
+@pytest.mark.parametrize(
+    ("original", "argv", "module"),
+    [
+        (["python", "-m", "validate.x"], ["-m"], "validate.x"),
+        (["python", "-X", "dev", "-m", "validate.x", "a"], ["-m", "a"], "validate.x"),
+        (["python", "-mvalidate.x", "a"], ["-m", "a"], "validate.x"),
+        (["python", "-Im", "validate.x"], ["-m"], "validate.x"),
+        (["python", "tool.py", "a"], ["tool.py", "a"], None),
+    ],
+)
+def test_the_module_that_python_was_asked_to_run_is_found(
+    original: list[str], argv: list[str], module: str | None
+) -> None:
+    assert asked_for(argv, original) == module

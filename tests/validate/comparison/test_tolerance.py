@@ -1,0 +1,98 @@
+"""Tolerances and verdicts, held to numbers that can be worked out by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import absolute
+from pointcoord import Scene
+from validate.comparison.compare import Comparison, compare_solutions
+from validate.comparison.tolerance import level, tolerance, untested
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+
+SCENE = Scene.load("steer")
+EPS = 2.0**-52
+
+
+@pytest.fixture(scope="module")
+def solved() -> Solution:
+    return formulation("pointcoord").solve(SCENE)
+
+
+def test_a_tolerance_is_the_sum_of_both_claims_and_a_rounding_of_a_rounding() -> None:
+    first, second = np.array([[1e-12, 0.0, 3e-13]]), np.array([[2e-12, 0.0, 1e-13]])
+    found = tolerance(first, second, 1000.0)
+    assert np.array_equal(found, first + second + EPS**2 * 1000.0)
+    assert found[0, 1] == pytest.approx(4.93e-29, rel=1e-3)
+
+
+@pytest.mark.parametrize(("wider", "tests_nothing"), [(999.0, False), (1001.0, True)])
+def test_a_thousand_times_the_other_sides_claim_tests_nothing(wider: float, tests_nothing: bool) -> None:
+    small = np.array([1e-12, 1e-12])
+    wide = np.array([1e-12, wider * 1e-12])
+    assert untested(small, wide, small, wide).tolist() == [False, tests_nothing]
+    assert untested(wide, small, wide, small).tolist() == [False, tests_nothing]
+
+
+def test_what_a_side_would_give_is_its_largest_claim_or_what_rounding_leaves() -> None:
+    claims = [np.array([[1e-12, 2e-12, 0.0]]), np.array([[5e-12, 0.0, 0.0]])]
+    assert level(claims, [np.array([[1.0, 1.0, 1.0]])], np.array([10.0])).tolist() == [5e-12]
+    # eps times the condition number times the largest number.
+    assert level(claims, [np.array([[300.0, -400.0, 0.0]])], np.array([100.0])).tolist() == [
+        EPS * 100.0 * 400.0
+    ]
+
+
+def row(one: Solution, other: Solution, quantity: str, name: str) -> Comparison:
+    outcome = compare_solutions(SCENE, one, replace(other, formulation="other"), "steer")
+    (found,) = (r for r in outcome.rows if (r.quantity, r.name) == (quantity, name))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("turned", "verdict"),
+    [(2.0 * np.pi, "agrees"), (-2.0 * np.pi, "agrees"), (np.pi, "disagrees"), (1e-3, "disagrees")],
+)
+def test_an_angle_agrees_with_itself_whole_turns_on_and_not_half_a_turn_on(
+    solved: Solution, turned: float, verdict: str
+) -> None:
+    other = replace(solved, wheel={**solved.wheel, "camber": solved.wheel["camber"] + turned})
+    if verdict == "agrees":
+        # A whole turn added is rounded, by more than what is claimed: claim as much.
+        claims = {name: claim + 4e-15 for name, claim in solved.accuracy.wheel.items()}
+        other = replace(other, accuracy=replace(solved.accuracy, wheel=claims))
+    assert row(solved, other, "wheel", "camber").verdict == verdict
+
+
+def test_a_solution_prints_as_a_line(solved: Solution) -> None:
+    quantities = "position, velocity, acceleration, angular_velocity, angular_acceleration, wheel"
+    assert repr(solved) == f"<Solution of pointcoord: 81 instants; {quantities}>"
+
+
+def test_a_wrong_number_does_not_widen_its_own_tolerance(solved: Solution) -> None:
+    # Points of the chassis stand still and claim nothing: a fault of 1e20 in one number of another point must
+    # not excuse a fault of 1e-13 there.
+    spoilt = dict(solved.velocity)
+    spoilt["wheel_centre"] = spoilt["wheel_centre"].copy()
+    spoilt["wheel_centre"][3] = 1e20
+    spoilt["strut_top"] = spoilt["strut_top"] + 1e-13
+    assert row(solved, replace(solved, velocity=spoilt), "velocity", "strut_top").verdict == "disagrees"
+
+
+def test_the_absolute_model_claims_what_the_chassis_rounds_and_twice_its_estimates() -> None:
+    scene = Scene.load("bounce-on-a-heaving-chassis")
+    claims = formulation("absolute").solve(scene).accuracy
+    part, times = scene.mechanism, scene.instants
+    laws = {name: rates(law, times) for name, law in scene.inputs.items()}
+    lift = laws.pop("heave")[:, 0, None] * np.array(part.up)
+    model = absolute.macpherson(dict(part.points), closure=part.closure)
+    still = absolute.solve(model, laws, errors=True)
+    # Of a point that does not move in the chassis' frame only the sums with the lift and the origin round.
+    rounded = EPS * np.abs(lift) + EPS * np.abs(np.array(part.points["strut_top"]) + lift)
+    assert (claims.position["strut_top"] >= rounded).all()
+    assert (claims.position["strut_top"] <= rounded + 4.0 * EPS * 500.0).all()
+    for point in ("tie_rod_outer", "wheel_centre"):
+        assert (claims.velocity[point] >= 1.9 * still.velocity_error[point]).all()

@@ -1,0 +1,115 @@
+"""The paper's own verification: two formulations of one mechanism agree in everything they compute."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, note
+
+from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
+from validate.cars.paper_car import EFFECTS, PAPER
+from validate.cars.strategies import make_scene, scenes
+from validate.comparison.compare import Outcome, compare
+from validate.formulations.protocol import FormulationError
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
+
+PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("name", PAPER_SCENES)
+def test_formulations_agree_on_the_papers_scenes(name: str, pair: tuple[str, str]) -> None:
+    outcome = compare(Scene.load(name), *pair, name)
+    assert outcome.agreed, outcome.disagreements
+    quantities = {row.quantity for row in outcome.rows}
+    assert quantities == {*EFFECTS[:2], "position", "angular_velocity", "angular_acceleration", "wheel"}
+    assert {row.name for row in outcome.rows if row.quantity == "acceleration"} == set(PAPER)
+
+
+def test_every_built_in_scene_is_validated_by_default() -> None:
+    assert set(DEFAULT_SCENES) == set(built_in_scenes())
+
+
+def require_agreement(outcome: Outcome) -> None:
+    """Every row agrees; of rates that are lost to underflow when they are multiplied nothing can be said."""
+    assert not outcome.disagreements
+    for row in outcome.undecided:
+        numbers = getattr(outcome.solutions[0], row.quantity).values()
+        assert max(float(np.abs(array).max()) for array in numbers) < 1e-280, row
+
+
+@given(scenes())
+def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
+    note(repr(scene))
+    try:
+        outcome = compare(scene, "pointcoord", "absolute")
+    except FormulationError as error:
+        # A motion that cannot be assembled is passed over; one that only the absolute model refuses
+        # is a finding.
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
+        raise
+    require_agreement(outcome)
+
+
+@given(scenes(samples=3))
+def test_series_and_newton_agree_on_random_cars_and_motions(scene: Scene) -> None:
+    try:
+        outcome = compare(scene, "pointcoord", "pointcoord-newton")
+    except FormulationError as error:
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
+        raise
+    require_agreement(outcome)
+
+
+def test_a_tolerance_is_no_wider_than_its_derivation_needs() -> None:
+    """A tolerance a thousand times the difference would pass a great deal that is wrong.
+
+    The numbers are rounded to 1.1e-16 of themselves, and the car amplifies that by some ten: with a hundred
+    roundings on the way, a tolerance is some 1e-13 of the largest number of its quantity.
+    """
+    for name in DEFAULT_SCENES:
+        outcome = compare(Scene.load(name), "pointcoord", "absolute")
+        solution = outcome.solutions[1]
+        for row in outcome.rows:
+            numbers = getattr(solution, row.quantity)
+            largest = max(float(np.abs(array).max()) for array in numbers.values())
+            assert row.tolerance < 1e-12 * largest, row
+            if row.quantity != "wheel" and row.difference > 0.0 and row.part < 1.0:
+                assert row.share > 1e-3, row
+
+
+def test_the_printed_formulas_fail_where_the_errata_say_and_nowhere_else() -> None:
+    wrong = {}
+    for name in ("bounce", "steer"):
+        outcome = compare(Scene.load(name), "pointcoord", "printed")
+        wrong[name] = {row.quantity for row in outcome.disagreements}
+    assert wrong["bounce"] == {"acceleration", "angular_acceleration"}  # eq. (23)
+    assert wrong["steer"] == {"angular_velocity", "angular_acceleration"}  # the quotient
+
+
+def test_the_printed_rows_fail_where_the_strut_lies_flat_and_the_slide_does_not() -> None:
+    """The whole car turned about x until its strut is horizontal: nothing about the mechanism changes."""
+    inputs = {"arm_angle": {"constant": 1.6}, "rack": {"constant": 10.0}}
+    pose = simulate(make_scene(PAPER, inputs, closure="collinear")).position
+    strut = (pose["strut_top"] - pose["lower_ball_joint"])[0]
+    angle = -np.arctan2(strut[2], strut[1])
+    turn = np.array(
+        [[1.0, 0.0, 0.0], [0.0, np.cos(angle), -np.sin(angle)], [0.0, np.sin(angle), np.cos(angle)]]
+    )
+    assert abs((turn @ strut)[2]) < 1e-12 * np.linalg.norm(strut)
+    turned = {name: tuple(float(c) for c in turn @ point) for name, point in PAPER.items()}
+    scene = make_scene(
+        turned, inputs, closure="collinear", up=tuple(turn[:, 2].tolist()), right=tuple(turn[:, 1].tolist())
+    )
+    assert compare(scene, "pointcoord", "absolute").agreed
+    with pytest.raises(FormulationError, match="printed"):
+        compare(scene, "pointcoord", "printed")
+
+
+def test_differences_stay_at_rounding_when_the_car_is_far_away() -> None:
+    """At 1e6 mm from the origin a coordinate is rounded to 1e-10 mm; the rates are not."""
+    shift = np.array([1e6, -2e6, 5e5])
+    far = {name: tuple(float(c) for c in np.add(point, shift)) for name, point in PAPER.items()}
+    inputs = {"arm_angle": {"polynomial": [1.2, 0.3]}, "rack": {"polynomial": [0.0, 50.0]}}
+    near = compare(make_scene(PAPER, inputs, closure="collinear"), "pointcoord", "absolute")
+    outcome = compare(make_scene(far, inputs, closure="collinear"), "pointcoord", "absolute")
+    assert near.agreed
+    assert outcome.agreed

@@ -1,0 +1,41 @@
+"""Laws of the inputs, rounded once, however their terms cancel."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from pointcoord.scene.scene_file import InputPart, SinePart
+from validate.formulations.input_rates import rates
+
+EPS = float(np.finfo(float).eps)
+
+
+def test_a_polynomial_near_its_rest_keeps_every_digit() -> None:
+    # 16 t^2 (1 - t)^2 and its rates 2^-40 before it comes to rest; terms of 16 to 192 cancel.
+    h = 2.0**-40
+    (found,) = rates(InputPart(polynomial=(0.0, 0.0, 16.0, -32.0, 16.0)), np.array([1.0 - h]))
+    t, rest = 1 - Fraction(h), Fraction(h)
+    exact = (16 * t**2 * rest**2, 32 * t * rest * (rest - t), 32 * (rest**2 - 4 * t * rest + t**2))
+    assert found.tolist() == [float(x) for x in exact]
+
+
+@pytest.mark.parametrize("turns", [0, 1, 10**6, 10**12, 10**300])
+def test_a_sine_of_many_turns_keeps_every_digit(turns: int) -> None:
+    # sin(w t + p) with a phase near `turns` turns is that of what is left of the phase.
+    phase = 2.0 * math.pi * turns
+    wave = SinePart(amplitude=2.0, angular_frequency=3.0, phase=phase)
+    (found,) = rates(InputPart(sine=wave), np.array([0.5]))
+    left = math.sin(phase) * math.cos(1.5) + math.cos(phase) * math.sin(1.5)
+    # The C library reduces any angle exactly; four roundings here.
+    assert abs(found[0] - 2.0 * left) <= 4 * EPS
+    assert abs(found[2] + 9.0 * found[0]) <= 2 * EPS * 9.0 * 2.0
+
+
+def test_laws_too_large_for_the_arithmetic_come_out_infinite() -> None:
+    (high,) = rates(InputPart(polynomial=(1.0, 0.0, -1e308)), np.array([100.0]))
+    assert high.tolist() == [-math.inf, -math.inf, -math.inf]
+    (wave,) = rates(InputPart(sine=SinePart(amplitude=1.0, angular_frequency=1e200)), np.array([1.0]))
+    assert math.isfinite(wave[1])
+    assert math.isinf(wave[2])

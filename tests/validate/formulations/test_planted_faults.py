@@ -1,0 +1,345 @@
+"""A comparison is worth what it catches: each single fault, planted in one formulation, must be seen."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import absolute
+import pointcoord.effects.rigid
+import pointcoord.effects.wheel_angles
+import pointcoord.results.readout
+import pointcoord.solve.dense_output
+import pointcoord.solve.pointwise
+import pointcoord.solve.taylor
+import validate.formulations.absolute_coordinates
+from pointcoord import Scene
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.results.motion import Channel, Samples
+from validate.comparison.compare import compare
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.paper.scenes import DEFAULT_SCENES
+
+# The module; the package's attribute of this name is the function.
+solver = import_module("pointcoord.simulation")
+
+Plant = Callable[[pytest.MonkeyPatch], None]
+
+
+def _in_mechanism(change: Callable[[Mechanism], Mechanism]) -> Plant:
+    build = solver.build_mechanism
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(solver, "build_mechanism", lambda *a: change(build(*a)))
+
+    return plant
+
+
+def _link_too_long(mechanism: Mechanism) -> Mechanism:
+    """The tie rod 1e-7 mm longer than drawn."""
+    place = mechanism.layout.squared_length("tie_rod_inner", "tie_rod_outer")
+    drawn = mechanism.drawn.copy()
+    drawn[place] = (np.sqrt(drawn[place]) + 1e-7 / mechanism.unit) ** 2
+    return replace(mechanism, drawn=drawn)
+
+
+def _mirrored_wheel(mechanism: Mechanism) -> Mechanism:
+    """The wheel centre on the wrong side of the knuckle's plane: one sign."""
+    weights = mechanism.carrier_weights["wheel_centre"] * np.array([1.0, 1.0, -1.0])
+    return replace(mechanism, carrier_weights={"wheel_centre": weights})
+
+
+def _half_square_term(patch: pytest.MonkeyPatch) -> None:
+    """The factor 2 of eq. (23) dropped in every row."""
+    term = pointcoord.solve.pointwise.square_velocity_term
+    patch.setattr(solver, "square_velocity_term", lambda s, v: 0.5 * term(s, v))
+
+
+def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
+    """The second derivative of s^k taken as k^2 s^(k-2)."""
+    right = pointcoord.solve.dense_output.derivative_tables
+
+    def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
+        tables = right(coefficients, scale, derivatives)
+        k = np.arange(coefficients.shape[-2], dtype=float)[:, None]
+        tables[2][:-2] = (coefficients * k * k)[2:] / scale**2
+        return tables
+
+    patch.setattr(pointcoord.solve.dense_output, "derivative_tables", wrong)
+
+
+def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
+    """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
+    rates = pointcoord.effects.rigid.body_rates
+    patch.setattr(
+        pointcoord.effects.rigid, "body_rates", lambda p, v, a: (rates(p, v, a)[0], rates(p, a, a)[0])
+    )
+
+
+def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
+    angle = pointcoord.effects.wheel_angles.kingpin_angle
+    patch.setattr(pointcoord.results.readout.wheel, "kingpin_angle", lambda *a: -angle(*a))
+
+
+def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
+    rates = validate.formulations.absolute_coordinates.rates
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: change(rates(part, t))
+        )
+
+    return plant
+
+
+def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
+    build = absolute.macpherson
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        def wrong(points: dict, **options: object) -> absolute.Model:
+            return build(change(dict(points)), **(options | axes))
+
+        patch.setattr(absolute, "macpherson", wrong)
+
+    return plant
+
+
+def _moved(name: str, *shift: float) -> Callable[[dict], dict]:
+    return lambda points: points | {name: tuple(np.add(points[name], shift))}
+
+
+def _body_frame(patch: pytest.MonkeyPatch) -> None:
+    """The absolute model's angular velocity given in the knuckle's axes instead of the world's."""
+    solve = absolute.solve
+
+    def wrong(*args: object, **options: object) -> absolute.Solution:
+        solved = solve(*args, **options)
+        p = [solved.position[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower")]
+        e1 = p[1] - p[0]
+        e3 = np.cross(e1, p[2] - p[0])
+        axes = np.stack(
+            [v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (e1, np.cross(e3, e1), e3)], -1
+        )
+        to_body = np.swapaxes(axes[:1], -2, -1) @ axes  # identity at the first instant
+        turned = np.einsum("nji,nj->ni", to_body, solved.angular_velocity["knuckle"])
+        return replace(solved, angular_velocity={**solved.angular_velocity, "knuckle": turned})
+
+    patch.setattr(absolute, "solve", wrong)
+
+
+def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rates: rates * [0.0 if order in orders else 1.0 for order in range(3)]
+
+
+def _shifted(by: float) -> Plant:
+    """The absolute model sees its inputs a little late."""
+    rates = validate.formulations.absolute_coordinates.rates
+
+    def plant(patch: pytest.MonkeyPatch) -> None:
+        patch.setattr(
+            validate.formulations.absolute_coordinates, "rates", lambda part, t: rates(part, t - by)
+        )
+
+    return plant
+
+
+def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
+    """The heaving chassis moves the absolute model, but its velocity and acceleration are forgotten."""
+    solve = absolute.solve
+
+    def wrong(model: absolute.Model, inputs: dict, chassis: np.ndarray, **options: bool) -> absolute.Solution:
+        return solve(model, inputs, chassis=chassis * np.array([1.0, 0.0, 0.0])[None, :, None], **options)
+
+    patch.setattr(absolute, "solve", wrong)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Where a fault goes, the scene that shows it, and the quantity that it spoils."""
+
+    plant: Plant
+    scene: str
+    spoils: str
+    first: str = "pointcoord"
+
+
+FAULTS = {
+    "a link 1e-7 mm too long": Fault(_in_mechanism(_link_too_long), "bounce", "position"),
+    "the wheel on the wrong side of the knuckle": Fault(_in_mechanism(_mirrored_wheel), "steer", "position"),
+    "the factor 2 of eq. (23) dropped": Fault(
+        _half_square_term, "bounce", "acceleration", "pointcoord-newton"
+    ),
+    "a derivative k^2 for k (k-1)": Fault(_wrong_derivative, "steer", "acceleration"),
+    "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
+    "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
+    "theta'' forgotten": Fault(_in_absolute_inputs(_without(2)), "bounce", "acceleration"),
+    "theta' and S' forgotten": Fault(_in_absolute_inputs(_without(1)), "steer", "velocity"),
+    "inputs late by 1e-10 s": Fault(_shifted(1e-10), "bounce", "position"),
+    "an input rounded to single precision": Fault(
+        _in_absolute_inputs(lambda r: r.astype(np.float32).astype(float)), "bounce", "position"
+    ),
+    "the rack's direction reversed": Fault(
+        _in_absolute_model(lambda p: p, right=(0.0, -1.0, 0.0)), "steer", "position"
+    ),
+    "the tie rod 1e-7 mm too short": Fault(
+        _in_absolute_model(_moved("tie_rod_inner", 0.0, -1e-7, 0.0)), "bounce", "position"
+    ),
+    "the strut's axis off by 1e-9 mm": Fault(
+        _in_absolute_model(_moved("strut_lower", 1e-9, 0.0, 0.0)), "steer", "position"
+    ),
+    "a wrong point: the wheel at the rod's end": Fault(
+        _in_absolute_model(lambda p: p | {"wheel_centre": p["strut_rod_end"]}), "bounce", "position"
+    ),
+    "y and z of a point exchanged": Fault(
+        _in_absolute_model(lambda p: p | {"lower_arm_rear": (540, -20, -10)}), "bounce", "position"
+    ),
+    "the vertical tilted by 1e-9 rad": Fault(
+        _in_absolute_model(lambda p: p, up=(1e-9, 0.0, 1.0)), "bounce", "position"
+    ),
+    "omega in the body's axes": Fault(_body_frame, "bounce-and-steer", "angular_velocity"),
+    "the chassis' rates forgotten": Fault(_chassis_at_rest, "bounce-on-a-heaving-chassis", "velocity"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_single_fault_makes_the_comparison_fail(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    fault = FAULTS[name]
+    scene = Scene.load(fault.scene)
+    assert compare(scene, fault.first, "absolute").agreed
+    fault.plant(monkeypatch)
+    outcome = compare(scene, fault.first, "absolute")
+    assert fault.spoils in {row.quantity for row in outcome.disagreements}
+
+
+NEAR = 1e-11  # relative: a hundred thousand roundings, which a tolerance for a whole motion let pass
+
+
+def _scaled(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {name: array * (1.0 + NEAR) for name, array in arrays.items()}
+
+
+def _off_in_pointcoord(quantity: str) -> Plant:
+    """What pointcoord reports, before it proves its own bounds of it."""
+    samples = pointcoord.results.readout.Readout.samples
+
+    def wrong(*args: object) -> Samples:
+        right = samples(*args)
+        channel = getattr(right, quantity)
+        return replace(right, **{quantity: Channel(channel.quantity, channel.effect, _scaled(channel))})
+
+    return lambda patch: patch.setattr(pointcoord.results.readout.Readout, "samples", wrong)
+
+
+def _off_in_absolute(quantity: str) -> Plant:
+    """What the absolute model gives, beside what it says of its own errors."""
+    solve = absolute.solve
+
+    def wrong(*args: object, **options: object) -> absolute.Solution:
+        right = solve(*args, **options)
+        return replace(right, **{quantity: _scaled(getattr(right, quantity))})
+
+    return lambda patch: patch.setattr(absolute, "solve", wrong)
+
+
+@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+@pytest.mark.parametrize("quantity", ["velocity", "acceleration", "angular_velocity", "angular_acceleration"])
+@pytest.mark.parametrize(
+    ("plant", "method"),
+    [
+        (_off_in_pointcoord, "pointcoord"),
+        (_off_in_pointcoord, "pointcoord-newton"),
+        (_off_in_absolute, "pointcoord"),
+    ],
+)
+def test_a_rate_that_is_a_part_in_1e11_off_in_either_model_is_caught(
+    plant: Callable[[str], Plant],
+    method: str,
+    quantity: str,
+    scene: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A model that proves its bounds sees its own fault, and may not widen its tolerance by it."""
+    plant(quantity)(monkeypatch)
+    outcome = compare(Scene.load(scene), method, "absolute")
+    assert {row.quantity for row in outcome.disagreements} == {quantity}
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_rate_that_is_summed_wrong_by_a_part_in_1e11_is_caught(
+    order: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the series themselves, so that what is proven and what is reported are off alike."""
+    right = pointcoord.solve.dense_output.derivative_tables
+
+    def wrong(coefficients: np.ndarray, scale: float, derivatives: int) -> list[np.ndarray]:
+        tables = right(coefficients, scale, derivatives)
+        return [table * (1.0 + NEAR * (k == order)) for k, table in enumerate(tables)]
+
+    monkeypatch.setattr(pointcoord.solve.dense_output, "derivative_tables", wrong)
+    outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "absolute")
+    spoilt = {"velocity", "angular_velocity"} if order == 1 else {"acceleration", "angular_acceleration"}
+    assert spoilt <= {row.quantity for row in outcome.disagreements}
+
+
+class _Stretched:
+    """A formulation whose result of one name is a relative 1e-7 off at one instant."""
+
+    name = "stretched"
+
+    def __init__(self, quantity: str, part: str) -> None:
+        self.quantity, self.part = quantity, part
+
+    def solve(self, scene: Scene) -> Solution:
+        solution = formulation("absolute").solve(scene)
+        arrays = dict(getattr(solution, self.quantity))
+        wrong = arrays[self.part].copy()
+        wrong[len(wrong) // 2] *= 1.0 + 1e-7
+        return replace(solution, **{self.quantity: arrays | {self.part: wrong}})
+
+
+@pytest.mark.parametrize(
+    ("quantity", "part"),
+    [
+        ("position", "strut_lower"),
+        ("position", "rack_centre"),
+        ("velocity", "tie_rod_inner"),
+        ("acceleration", "wheel_centre"),
+        ("angular_velocity", "knuckle"),
+        ("angular_acceleration", "knuckle"),
+        ("wheel", "camber"),
+        ("wheel", "kingpin"),
+    ],
+)
+def test_one_number_at_one_instant_a_ten_millionth_off_is_seen(quantity: str, part: str) -> None:
+    outcome = compare(Scene.load("steer"), "pointcoord", _Stretched(quantity, part))
+    assert [(row.quantity, row.name) for row in outcome.disagreements] == [(quantity, part)]
+
+
+def test_not_a_number_is_a_disagreement() -> None:
+    class Holes:
+        name = "holes"
+
+        def solve(self, scene: Scene) -> Solution:
+            solution = formulation("absolute").solve(scene)
+            wrong = solution.velocity["wheel_centre"].copy()
+            wrong[3, 1] = np.nan
+            return replace(solution, velocity={**solution.velocity, "wheel_centre": wrong})
+
+    outcome = compare(Scene.load("steer"), "pointcoord", Holes())
+    assert [(row.quantity, row.name) for row in outcome.disagreements] == [("velocity", "wheel_centre")]
+
+
+def test_a_missing_result_cannot_pass_for_agreement() -> None:
+    class Silent:
+        name = "silent"
+
+        def solve(self, scene: Scene) -> Solution:
+            return replace(formulation("absolute").solve(scene), angular_velocity={})
+
+    outcome = compare(Scene.load("steer"), "pointcoord", Silent())
+    assert not outcome.agreed
+    assert [(row.quantity, row.verdict) for row in outcome.undecided] == [("angular_velocity", "not given")]
+    assert outcome.missing == ("absolute gives no angular velocity",)

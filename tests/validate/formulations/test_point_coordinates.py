@@ -1,0 +1,109 @@
+"""What pointcoord says of its own accuracy, as a comparison takes it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pointcoord import Motion, Scene, SingularConfiguration
+from pointcoord.bounds.proof import Proof
+from validate.cars.input_limits import Car, Linkage
+from validate.cars.paper_car import PAPER
+from validate.comparison.compare import compare_solutions
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
+
+STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), "collinear"))
+
+
+def rack_to_its_end(short: float, tolerance: float = 1e-9) -> Scene:
+    """From the middle to a share `short` before the end, where the tie rod locks."""
+    end = STRUT.end({"arm_angle": math.pi / 2, "rack": 0.0}, "rack", ahead=True)
+    assert end is not None
+    content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
+    content["inputs"] = {
+        "arm_angle": {"constant": math.pi / 2},
+        "rack": {"polynomial": [0.0, end[0] * (1.0 - short)]},
+    }
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 2}
+    return Scene.from_mapping({**content, "tolerance": tolerance})
+
+
+def test_poses_are_proven_to_a_part_in_1e12_of_the_way_before_a_lock() -> None:
+    solved = formulation("pointcoord").solve(rack_to_its_end(1e-12))
+    # A fold of the length of the car: condition number 1 / sqrt(1e-12) and somewhat more.
+    assert solved.accuracy.condition[1] > 1e6
+    assert max(float(claim.max()) for claim in solved.accuracy.position.values()) < 1e-6
+
+
+@pytest.mark.parametrize("part", ["bound", "carried_bound"])
+def test_a_pose_that_nothing_is_proven_of_is_no_answer(monkeypatch: pytest.MonkeyPatch, part: str) -> None:
+    prove = Motion.proof
+
+    def unproven(motion: Motion, rates: bool = False) -> Proof:
+        proof = prove(motion, rates)
+        return replace(proof, **{part: np.where(motion.times == 1.0, np.inf, getattr(proof, part))})
+
+    monkeypatch.setattr(Motion, "proof", unproven)
+    with pytest.raises(FormulationError, match="no error bound of the pose can be proven") as caught:
+        formulation("pointcoord").solve(rack_to_its_end(1e-12))
+    reason = caught.value.reason
+    assert isinstance(reason, SingularConfiguration)
+    assert reason.where == "at t = 1 s"
+    assert reason.condition > 1e6  # of that instant; at the other it is below 100
+
+
+@pytest.mark.parametrize("tolerance", [1e-300, 1e-9, 1.0, 1e300])
+def test_a_series_claims_what_it_leaves_out_and_a_coarse_one_is_no_test(tolerance: float) -> None:
+    scene = rack_to_its_end(0.5, tolerance)
+    series, newton = (formulation(name).solve(scene) for name in ("pointcoord", "pointcoord-newton"))
+    outcome = compare_solutions(scene, series, newton, "steer")
+    assert not outcome.disagreements
+    claimed = max(float(claim.max()) for claim in series.accuracy.acceleration.values())
+    largest = max(float(np.abs(array).max()) for array in series.acceleration.values())
+    # A series is cut at 4 eps to 1e-6 of a derivative's size.
+    if tolerance < 1.0:
+        assert outcome.agreed
+        assert claimed < 1e-12 * largest
+    else:
+        assert 1e-12 * largest < claimed < 1e-5 * largest
+        assert {row.verdict for row in outcome.undecided} == {"not tested"}
+        assert {row.rests_on for row in outcome.undecided} == {"pointcoord"}
+
+
+@pytest.mark.parametrize("quantity", ["velocity", "angular_acceleration", "wheel"])
+def test_a_fault_of_a_number_does_not_widen_what_is_claimed_of_it(
+    quantity: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The proof sees any fault, so a claim that followed it would let the fault pass."""
+    prove = Motion.proof
+
+    def spoilt(motion: Motion, rates: bool = False) -> Proof:
+        proof = prove(motion, rates)
+        wider = {name: bound + 1.0 for name, bound in getattr(proof.proven, quantity).items()}
+        return replace(proof, proven=replace(proof.proven, **{quantity: wider}))
+
+    right = formulation("pointcoord").solve(Scene.load("steer")).accuracy
+    monkeypatch.setattr(Motion, "proof", spoilt)
+    claims = getattr(formulation("pointcoord").solve(Scene.load("steer")).accuracy, quantity)
+    for name, claim in claims.items():
+        assert (claim >= getattr(right, quantity)[name]).all()
+        assert (claim < 1e-6).all()
+
+
+def test_what_lies_far_away_loosens_positions_and_no_rate() -> None:
+    content = Scene.load("bounce").model_dump(mode="json", exclude_none=True)
+    points = content["mechanism"]["points"]
+    # By a power of two of a size that moves the mechanism's own origin exactly with the car.
+    content["mechanism"]["points"] = {n: [x + 2.0**30 for x in place] for n, place in points.items()}
+    far, near = (
+        formulation("pointcoord").solve(s) for s in (Scene.from_mapping(content), Scene.load("bounce"))
+    )
+    for quantity in ("position", "velocity", "angular_acceleration", "wheel"):
+        for name, claim in getattr(near.accuracy, quantity).items():
+            away = getattr(far.accuracy, quantity)[name]
+            if quantity == "position":
+                assert away.max() > 1e3 * claim.max() or claim.max() == 0.0
+            else:
+                assert np.allclose(away, claim, rtol=1.0, atol=1e-12)

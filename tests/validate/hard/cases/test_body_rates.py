@@ -1,0 +1,68 @@
+"""The printed omega is a quotient that vanishes in common motions; least squares over the knuckle is not."""
+
+from dataclasses import replace
+
+import pytest
+
+from validate.hard.case import Case, Trial
+from validate.hard.cases.body_rates import CASES, across_the_plane, plane_angle
+from validate.hard.run import as_expected, examine
+
+BY_NAME = {case.name: case for case in CASES}
+SINGULAR = ("arm-all-but-held", "omega-in-the-knuckle-plane")
+
+
+def at(case: str, *values: float) -> Case:
+    """A case at some values of its parameter only."""
+    return replace(BY_NAME[case], values=values)
+
+
+def omega_error(trial: Trial, name: str) -> float:
+    """Of the knuckle's angular velocity, in parts of it."""
+    return float(trial.facts[f"error of it, {name} [rad/s]"]) / float(
+        trial.facts["largest angular velocity [rad/s]"]
+    )
+
+
+@pytest.mark.parametrize("name", SINGULAR)
+def test_the_printed_omega_loses_its_digits_and_ours_keeps_them(name: str) -> None:
+    result = examine(at(name, 1e-3, 1e-9))
+    assert as_expected([result]), result.unexpected
+    near, nearer = result.trials
+    assert omega_error(nearer, "printed") > 1e4 * omega_error(near, "printed")
+    assert omega_error(nearer, "printed") > 1e-8
+    for ours in ("pointcoord", "pointcoord-newton", "absolute"):
+        assert omega_error(nearer, ours) < 1e-12
+
+
+@pytest.mark.parametrize("name", SINGULAR)
+def test_the_printed_omega_is_far_off_or_no_number_at_the_singular_rates(name: str) -> None:
+    (trial,) = examine(at(name, 0.0)).trials
+    assert not omega_error(trial, "printed") < 1e-3
+    for ours in ("pointcoord", "pointcoord-newton", "absolute"):
+        assert omega_error(trial, ours) < 1e-12
+
+
+def test_omega_of_the_turning_arm_passes_the_knuckle_plane_where_it_was_worked_out() -> None:
+    angle = plane_angle()
+    # One rounding of the angle is 2e-16 rad, and the sine changes by about 0.3 per rad there.
+    assert abs(across_the_plane(angle)) < 1e-15
+    before, after = across_the_plane(angle - 1e-3), across_the_plane(angle + 1e-3)
+    assert before < -1e-4
+    assert after > 1e-4
+
+
+@pytest.mark.parametrize("name", ["at-rest", "arm-hardly-moves", "rack-hardly-moves"])
+def test_a_car_at_rest_has_rates_of_exactly_zero(name: str) -> None:
+    (trial,) = examine(at(name, 0.0)).trials
+    rates = {key: rate for key, rate in trial.facts.items() if key.startswith("largest rate")}
+    assert len(rates) == 3
+    assert set(rates.values()) == {0.0}
+
+
+@pytest.mark.parametrize("name", ["arm-hardly-moves", "rack-hardly-moves"])
+def test_slow_rates_are_as_accurate_as_fast_ones(name: str) -> None:
+    result = examine(at(name, 1e-25, 1e-150, 1e-300))
+    assert as_expected([result]), result.unexpected
+    for trial in result.trials:
+        assert 0.0 < float(trial.facts["largest rate, pointcoord"]) < 1e4 * trial.value

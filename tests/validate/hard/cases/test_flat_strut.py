@@ -1,0 +1,113 @@
+"""Of each pair of printed rows one is lost where the strut lies flat; the slide's coordinates lose none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, SceneError
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.simulation import scene_mechanism
+from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, any_rotation, car_content, rotation, turned
+from validate.hard.case import Case
+from validate.hard.cases.flat_strut import CASES, quarter_turn_less
+from validate.hard.run import as_expected, examine
+
+BY_NAME = {case.name: case for case in CASES}
+RISE = "z component of the strut's direction"
+
+
+def at(case: str, *values: float) -> Case:
+    """A case at some values of its parameter only."""
+    return replace(BY_NAME[case], values=values)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_turns_turn(axis: int) -> None:
+    for turn in (rotation(axis, np.cos(0.3), np.sin(0.3)), quarter_turn_less(axis, 0.2), any_rotation(axis)):
+        assert np.allclose(turn @ turn.T, np.eye(3), rtol=0, atol=1e-15)
+        assert np.linalg.det(turn) == pytest.approx(1.0)
+    along, first = np.eye(3)[axis], np.eye(3)[(axis + 1) % 3]
+    assert np.array_equal(quarter_turn_less(axis, 0.0) @ along, along)
+    assert np.array_equal(quarter_turn_less(axis, 0.0) @ first, np.cross(along, first))
+
+
+def test_each_pair_of_printed_rows_loses_one_exactly_where_the_strut_is_flat() -> None:
+    aside = rotation(2, np.cos(0.3), np.sin(0.3))  # about z, so that the flat strut lies along no axis
+    upright = Scene.from_mapping(car_content(UPRIGHT_CAR, 1.5))
+    flat = quarter_turn_less(0, 0.0)
+    nearly = quarter_turn_less(0, 1e-3)
+    for turn, rank in ((np.eye(3), 15), (nearly, 15), (aside @ nearly, 15), (flat, 13), (aside @ flat, 13)):
+        assert np.linalg.matrix_rank(turned_jacobian(scene_mechanism(upright, printed=True), turn)) == rank
+        ours = scene_mechanism(upright)
+        assert np.linalg.matrix_rank(turned_jacobian(ours, turn)) == ours.map.unknowns
+
+
+def turned_jacobian(mechanism: Mechanism, turn: Array) -> Array:
+    """At the drawing, turned about the mechanism's own origin: no check stands between it and its rank."""
+    y, layout = mechanism.drawn.copy(), mechanism.layout
+    for name in (*layout.moving, *layout.chassis, *layout.directions):
+        place = list(layout.vector(name))
+        y[place] = turn @ y[place]
+    return mechanism.map.jacobian(y)
+
+
+@pytest.mark.parametrize(("value", "outcome"), [(1e-3, "right"), (0.0, "refused")])
+def test_the_printed_formulas_are_refused_for_the_row_that_they_lose(value: float, outcome: str) -> None:
+    answers = BY_NAME["upright-strut-turned-about-x"].examine(value).answers
+    (printed,) = [answer for answer in answers if answer.formulation == "printed"]
+    assert printed.outcome == outcome
+    assert ("parallel" in printed.reason) == (outcome == "refused")
+    flat = Scene.from_mapping(car_content(turned(UPRIGHT_CAR, quarter_turn_less(0, value)), 1.5))
+    if outcome == "refused":
+        with pytest.raises(SceneError, match="parallel"):
+            scene_mechanism(flat, printed=True)
+    else:
+        scene_mechanism(flat, printed=True)
+
+
+def test_a_quarter_turn_as_such_does_not_lay_the_papers_strut_flat() -> None:
+    result = examine(at("quarter-turn-about-x-printed", 1e-3, 0.0))
+    assert as_expected([result]), result.unexpected
+    assert all(float(trial.facts[RISE]) > 0.2 for trial in result.trials)
+
+
+def test_the_parameter_is_the_rise_of_the_assembled_strut() -> None:
+    for trial in examine(at("strut-nearly-flat", 1e-2, 1e-6, 0.0)).trials:
+        # Turned coordinates are rounded: some 1e-16 of 500 mm on a strut of that length.
+        assert abs(float(trial.facts[RISE]) - trial.value) < 1e-15
+
+
+def test_the_printed_condition_number_grows_as_one_over_the_rise_and_ours_does_not() -> None:
+    result = examine(at("strut-nearly-flat", 1e-4, 1e-6, 1e-8))
+    printed = [answer.condition for _, answer in result.answers("printed")]
+    assert np.allclose(np.diff(np.log10(np.array(printed, dtype=float))), 2.0, rtol=0, atol=0.01)
+    for name in ("pointcoord", "absolute"):
+        assert all(
+            answer.condition is not None and answer.condition < 1e3 for _, answer in result.answers(name)
+        )
+
+
+def test_the_printed_rows_cannot_follow_a_strut_through_the_horizontal() -> None:
+    result = examine(at("strut-passes-flat", 1e-3))
+    outcomes = {answer.formulation: answer.outcome for answer in result.trials[0].answers}
+    assert outcomes == {
+        "pointcoord": "right",
+        "pointcoord-newton": "right",
+        "absolute": "right",
+        "printed": "refused",
+    }
+
+
+@pytest.mark.parametrize("name", [name for name in BY_NAME if name != "strut-passes-flat"])
+def test_ours_are_right_however_the_car_is_turned(name: str) -> None:
+    values = BY_NAME[name].values
+    result = examine(at(name, values[0], values[len(values) // 2], values[-1]))
+    assert as_expected([result]), result.unexpected
+
+
+def test_a_turned_car_has_its_lengths() -> None:
+    car = turned(PAPER_CAR, any_rotation(3))
+    for a, b in (("strut_top", "lower_ball_joint"), ("tie_rod_inner", "tie_rod_outer")):
+        drawn, there = (np.linalg.norm(np.subtract(c.points[a], c.points[b])) for c in (PAPER_CAR, car))
+        assert there == pytest.approx(drawn, rel=1e-14)

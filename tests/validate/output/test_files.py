@@ -1,0 +1,134 @@
+"""A file is whole or not there, whatever stops its writing."""
+
+import errno
+import os
+import stat
+import threading
+from pathlib import Path
+from typing import BinaryIO
+
+import pytest
+
+from validate.output.files import OutputError, require_writable, write_whole
+
+
+def put(content: bytes) -> object:
+    def write(stream: BinaryIO) -> None:
+        stream.write(content)
+
+    return write
+
+
+def stops(error: BaseException) -> object:
+    def write(stream: BinaryIO) -> None:
+        stream.write(b"half")
+        stream.flush()
+        raise error
+
+    return write
+
+
+@pytest.mark.parametrize("before", [None, b"old"])
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
+def test_what_was_there_is_whole_and_nothing_else_is_left(
+    before: bytes | None, error: BaseException, tmp_path: Path
+) -> None:
+    target = tmp_path / "x.json"
+    if before is not None:
+        target.write_bytes(before)
+    with pytest.raises((OutputError, KeyboardInterrupt)):
+        write_whole(str(target), stops(error))
+    assert (target.read_bytes() if target.exists() else None) == before
+    assert len(list(tmp_path.iterdir())) == (before is not None)
+
+
+def test_the_new_content_appears_at_once(tmp_path: Path) -> None:
+    target = tmp_path / "x.json"
+    target.write_bytes(b"old")
+
+    def write(stream: BinaryIO) -> None:
+        stream.write(b"new")
+        stream.flush()
+        assert target.read_bytes() == b"old"
+
+    write_whole(str(target), write)
+    assert target.read_bytes() == b"new"
+
+
+def test_the_content_is_on_the_disk_before_it_has_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = []
+    fsync, replace = os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda handle: (done.append("fsync"), fsync(handle)))
+    monkeypatch.setattr(os, "replace", lambda a, b: (done.append("replace"), replace(a, b)))
+    write_whole(str(tmp_path / "x.json"), put(b"new"))
+    assert done == ["fsync", "replace", "fsync"]  # the last one is the folder's
+
+
+def test_rights_and_links_stay_and_a_new_file_has_the_usual_rights(tmp_path: Path) -> None:
+    real, link, new = tmp_path / "real", tmp_path / "link", tmp_path / "new"
+    real.write_bytes(b"old")
+    real.chmod(0o640)
+    link.symlink_to(real)
+    write_whole(str(link), put(b"new"))
+    assert link.is_symlink()
+    assert real.read_bytes() == b"new"
+    assert stat.S_IMODE(real.stat().st_mode) == 0o640
+    before = os.umask(0o027)
+    try:
+        write_whole(str(new), put(b"new"))
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE(new.stat().st_mode) == 0o640
+
+
+def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    read: list[bytes] = []
+    reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()))
+    reader.start()
+    require_writable(str(pipe))
+    write_whole(str(pipe), put(b"new"))
+    reader.join(10)
+    assert read == [b"new"]
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("no/x.json", "there is no folder"),
+        ("file/x.json", "Not a directory"),
+        ("folder", "Is a directory"),
+        ("new/", "Is a directory"),
+        ("x" * 300, "File name too long"),
+        ("a\0b", "null"),
+    ],
+)
+def test_a_target_that_cannot_be_written_is_told_before_and_when_it_is_written(
+    name: str, words: str, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    (tmp_path / "folder").mkdir()
+    for attempt in (lambda t: require_writable(t), lambda t: write_whole(t, put(b"new"))):
+        with pytest.raises(OutputError, match=rf"cannot be written \(.*{words}"):
+            attempt(f"{tmp_path}/{name}")
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_asking_whether_a_file_can_be_written_changes_nothing(tmp_path: Path) -> None:
+    target = tmp_path / "x.json"
+    require_writable(str(target))
+    assert not target.exists()
+    target.write_bytes(b"old")
+    before = target.stat()
+    require_writable(str(target))
+    assert target.read_bytes() == b"old"
+    assert target.stat().st_mtime_ns == before.st_mtime_ns
+
+
+def test_a_full_device_is_told_with_what_to_do() -> None:
+    with pytest.raises(OutputError, match=r"/dev/full: cannot be written \(No space left.*make room"):
+        write_whole("/dev/full", put(b"new" * 10000))

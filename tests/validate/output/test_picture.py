@@ -1,0 +1,57 @@
+"""The picture of a drawing shows every hardpoint where it is, and what closing does to it."""
+
+import xml.etree.ElementTree as ET
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.output.picture import svg
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def content(scene: Scene, **points: tuple[float, float, float]) -> dict[str, Any]:
+    plain = scene.model_dump(exclude_none=True)
+    plain["mechanism"]["points"] |= points
+    return plain
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "bounce"])
+def test_every_point_stands_in_all_three_views_at_one_scale(name: str) -> None:
+    scene = Scene.load(name)
+    root = ET.fromstring(svg(scene))
+    circles = [(float(c.get("cx", "")), float(c.get("cy", ""))) for c in root.iter(f"{SVG}circle")]
+    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    order = scene.mechanism.topology.points
+    assert len(circles) == 3 * len(order)
+    behind, left, above = (
+        dict(zip(order, np.array(circles[i * len(order) : (i + 1) * len(order)]), strict=True))
+        for i in range(3)
+    )
+    span = max(float(np.ptp([p[i] for p in points.values()])) for i in range(3))
+    for one in order:
+        for other in order:
+            x, y, z = (points[one] - points[other]) * 290.0 / span
+            # Coordinates are printed to a tenth of a pixel.
+            assert np.abs(behind[one] - behind[other] - [y, -z]).max() <= 0.11
+            assert np.abs(left[one] - left[other] - [x, -z]).max() <= 0.11
+            assert np.abs(above[one] - above[other] - [y, x]).max() <= 0.11
+    words = " ".join(text.text or "" for text in root.iter(f"{SVG}text"))
+    for name, place in points.items():
+        assert f"{name}: {', '.join(f'{c:.6g}' for c in place)} mm" in words
+
+
+def test_a_drawing_that_moves_when_it_closes_is_drawn_twice_and_says_so() -> None:
+    still, moving = (ET.fromstring(svg(Scene.load(name))) for name in ("off-axis-strut", "bounce"))
+    assert not still.findall(f".//{SVG}line[@class='closed']")
+    assert moving.findall(f".//{SVG}line[@class='closed']")
+    words = " ".join(text.text or "" for text in moving.iter(f"{SVG}text"))
+    assert "closing the drawing moves wheel_centre by 16.8 mm" in words
+
+
+def test_odd_titles_leave_the_picture_well_formed() -> None:
+    plain = content(Scene.load("off-axis-strut")) | {"title": "</svg> & \x1b[2J \n <b>"}
+    root = ET.fromstring(svg(Scene.from_mapping(plain)))
+    assert any("</svg> & " in (text.text or "") for text in root.iter(f"{SVG}text"))

@@ -1,0 +1,1 @@
+"""From the reference to a Solution: what a formulation should have answered."""

@@ -1,0 +1,1 @@
+"""Cars and scenes to try: the paper's, random ones, and where their inputs end."""

@@ -1,0 +1,1 @@
+"""Two solutions of one scene, held to what each claims."""

@@ -1,0 +1,226 @@
+"""Two formulations on one scene: every quantity's largest difference, against a derived tolerance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.scene.scene_file import Scene
+from pointcoord.simulation import require_scene
+from validate.comparison.given import Given, given
+from validate.comparison.tolerance import largest_of, level, tolerance, untested
+from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
+from validate.formulations.registry import formulation
+
+Array = NDArray[np.float64]
+# Numbers below the smallest normal one lose digits, and so do tolerances made of them.
+SMALLEST = float(np.finfo(float).tiny)
+Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
+
+UNITS = {
+    "position": "mm",
+    "velocity": "mm/s",
+    "acceleration": "mm/s^2",
+    "angular_velocity": "rad/s",
+    "angular_acceleration": "rad/s^2",
+    "wheel": "rad",
+}
+# Which effect of a scene asks for a quantity; positions are always asked for.
+EFFECT_OF = {
+    "velocity": "velocity",
+    "acceleration": "acceleration",
+    "angular_velocity": "knuckle_rates",
+    "angular_acceleration": "knuckle_rates",
+    "wheel": "wheel_angles",
+}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One quantity of one point, body or angle over a scene.
+
+    Attributes:
+        difference: largest difference of any component, and the `instant` (s) where it is.
+        tolerance: what it was held to at that instant.
+        share: largest difference / tolerance over all instants and components; it agrees up to 1.
+        verdict: `not tested` where the tolerance rests on what one formulation claims of itself (see
+            `tolerance`); `not given` where one of them gives no such numbers, and all numbers here are NaN.
+        rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
+    """
+
+    scene: str
+    first: str
+    second: str
+    quantity: str
+    name: str
+    unit: str
+    difference: float
+    tolerance: float
+    share: float
+    instant: float
+    verdict: Verdict
+    rests_on: str
+    part: float
+
+
+@dataclass(frozen=True, repr=False)
+class Outcome:
+    """All comparisons of one scene and pair.
+
+    Attributes:
+        solutions: both solved scenes, for whoever wants to look further.
+        notes: what the formulations said themselves of numbers without meaning, and what is wrong with
+            what they gave.
+        missing: what one formulation does not give, a line each.
+    """
+
+    scene: str
+    rows: tuple[Comparison, ...]
+    solutions: tuple[Solution, Solution]
+    notes: tuple[str, ...]
+    missing: tuple[str, ...]
+
+    @property
+    def agreed(self) -> bool:
+        """Whether every row agrees."""
+        return all(row.verdict == "agrees" for row in self.rows)
+
+    @property
+    def disagreements(self) -> tuple[Comparison, ...]:
+        """The rows that do not."""
+        return tuple(row for row in self.rows if row.verdict == "disagrees")
+
+    @property
+    def undecided(self) -> tuple[Comparison, ...]:
+        """The rows of which nothing can be said: not tested, or not given."""
+        return tuple(row for row in self.rows if row.verdict in ("not tested", "not given"))
+
+    def __repr__(self) -> str:
+        first, second = (solution.formulation for solution in self.solutions)
+        counts = (f"{sum(row.verdict == v for row in self.rows)} {v}" for v in _verdicts(self.rows))
+        return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
+
+
+def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:
+    return list(dict.fromkeys(row.verdict for row in rows))
+
+
+def compare(
+    scene: Scene, first: str | Formulation, second: str | Formulation, name: str | None = None
+) -> Outcome:
+    """Solve a scene by two formulations and compare all that the scene asks for.
+
+    Args:
+        first, second: names of formulations, or formulations themselves.
+        name: what to call the scene in the rows; its title if not given.
+    Raises:
+        FormulationError: one of them refuses the scene, or gives what is no solution.
+        SceneError: the scene's own hardpoints make no mechanism.
+    """
+    require_scene(scene)
+    one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
+    return compare_solutions(scene, one, two, name or scene.title or "scene")
+
+
+def _solved(solver: Formulation, scene: Scene) -> Solution:
+    try:
+        solution = solver.solve(scene)
+    except AccuracyError as error:
+        raise FormulationError(solver.name, error) from error
+    if not isinstance(solution, Solution):
+        problem = TypeError(f"it gives a {type(solution).__name__}; needed: a Solution")
+        raise FormulationError(solver.name, problem)
+    return solution
+
+
+def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> Outcome:
+    """Compare two solved scenes.
+
+    Raises:
+        FormulationError: one of them does not say at which instants its numbers are.
+    """
+    instants = scene.instants
+    first, second = given(one, instants), given(two, instants)
+    both = first.found & second.found
+    notes = tuple(dict.fromkeys((*one.notes, *two.notes, *first.notes, *second.notes)))
+    first, second = first.at(both), second.at(both)
+    rows: list[Comparison] = []
+    missing: list[str] = []
+    for quantity in ("position", *(q for q, effect in EFFECT_OF.items() if effect in scene.effects)):
+        missing += _missing(quantity, first, second)
+        for part in _parts(quantity, first, second):
+            rows.append(_row(name, quantity, part, first, second, instants[both]))
+    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
+
+
+def _parts(quantity: str, one: Given, two: Given) -> list[str]:
+    """Every point, body or angle that one of them gives; one without a name if there is none."""
+    return list(dict.fromkeys((*one.numbers[quantity], *two.numbers[quantity]))) or [""]
+
+
+def _missing(quantity: str, one: Given, two: Given) -> Iterator[str]:
+    words = "wheel angle" if quantity == "wheel" else quantity.replace("_", " ")
+    for side in (one, two):
+        lacking = [part for part in _parts(quantity, one, two) if part not in side.numbers[quantity]]
+        if lacking and not side.numbers[quantity]:
+            yield f"{side.formulation} gives no {words}"
+        elif lacking:
+            yield f"{side.formulation} gives no {words} of {', '.join(lacking)}"
+
+
+def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Array) -> Comparison:
+    unit, nan = UNITS[quantity], math.nan
+    known = [part in side.numbers[quantity] for side in (one, two)]
+    if not all(known) or not len(times):
+        ends = (scene, one.formulation, two.formulation, quantity, part, unit)
+        return Comparison(*ends, nan, nan, nan, nan, "not given", "", nan)
+    mine, other = one.numbers[quantity][part], two.numbers[quantity][part]
+    gap = np.abs(mine - other)
+    if quantity == "wheel":
+        # Whole turns apart is the same angle.
+        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
+    # A NaN is a disagreement, and the worst one.
+    gap = np.where(np.isfinite(gap), gap, np.inf)
+    claims = [side.claims[quantity].get(part) for side in (one, two)]
+    held = [np.zeros_like(gap) if claim is None else claim for claim in claims]
+    # The smaller of both, so that a wrong number does not widen its own tolerance.
+    largest = min(largest_of(side.numbers[quantity].values()) for side in (one, two))
+    allowed = tolerance(held[0], held[1], largest)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
+    levels = [
+        level(side.claims[quantity].values(), side.numbers[quantity].values(), side.condition)
+        for side in (one, two)
+    ]
+    apart = gap.reshape(len(gap), -1).max(axis=-1) > SMALLEST
+    loose = untested(*held, *levels) & apart
+    verdict: Verdict = "agrees"
+    if any(claim is None for claim in claims):
+        verdict = "not tested"
+    elif float(np.max(shares)) > 1.0:
+        verdict = "disagrees"
+    elif loose.any():
+        verdict = "not tested"
+    worst = np.unravel_index(int(np.argmax(gap)), gap.shape)
+    widest = np.unravel_index(int(np.argmax(allowed)), allowed.shape)
+    larger = int(held[1][widest] > held[0][widest])
+    return Comparison(
+        scene=scene,
+        first=one.formulation,
+        second=two.formulation,
+        quantity=quantity,
+        name=part,
+        unit=unit,
+        difference=float(gap[worst]),
+        tolerance=float(allowed[worst]),
+        share=float(np.max(shares)),
+        instant=float(times[worst[0]]),
+        verdict=verdict,
+        rests_on=(one, two)[larger].formulation,
+        part=float(held[larger][widest] / (allowed[widest] + SMALLEST)),
+    )

@@ -1,0 +1,124 @@
+"""What a formulation really gave: arrays that can be compared, and a line for everything that cannot.
+
+A formulation may be anybody's. What is missing, has another shape, is given at other times or is no real
+number is told and left out; the rest is compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.formulations.protocol import NUMBERS_OF, FormulationError, Solution
+
+Array = NDArray[np.float64]
+Arrays = dict[str, dict[str, Array]]
+
+
+@dataclass(frozen=True)
+class Given:
+    """Numbers of one formulation at the instants asked for.
+
+    Attributes:
+        found: which of the instants it gives, (instants,); its arrays have a row for each of these.
+        numbers: by quantity and name, (N, 3) or (N,).
+        claims: how far each may be off, likewise; a name is missing where nothing is claimed of it.
+        condition: condition number at each instant.
+        notes: what was left out, and why.
+    """
+
+    formulation: str
+    found: NDArray[np.bool_]
+    numbers: Arrays
+    claims: Arrays
+    condition: Array
+    notes: tuple[str, ...]
+
+    def at(self, instants: NDArray[np.bool_]) -> Given:
+        """The same at fewer instants, a part of those that are found."""
+        rows = instants[self.found]
+        numbers, claims = (
+            {
+                quantity: {name: array[rows] for name, array in part.items()}
+                for quantity, part in arrays.items()
+            }
+            for arrays in (self.numbers, self.claims)
+        )
+        return Given(self.formulation, instants, numbers, claims, self.condition[rows], self.notes)
+
+
+def given(solution: Solution, instants: Array) -> Given:
+    """What a solution gives at instants, shape (N,).
+
+    Raises:
+        FormulationError: it says of no number at which instant it is.
+    """
+    who, notes = solution.formulation, []
+    times = _real(solution.times)
+    if isinstance(times, str) or times.ndim != 1:
+        problem = times if isinstance(times, str) else f"have the shape {times.shape}"
+        raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
+    found = np.isin(instants, times)
+    if not found.all():
+        notes.append(
+            f"{who} gives {int(found.sum())} of {len(instants)} instants; the others are not compared"
+        )
+    # For each instant found the first place of its time.
+    places = np.array([np.flatnonzero(times == t)[0] for t in instants[found]], dtype=np.intp)
+    numbers: Arrays = {}
+    claims: Arrays = {}
+    for quantity, width in NUMBERS_OF.items():
+        numbers[quantity], claims[quantity] = {}, {}
+        shape = (len(times), width) if width > 1 else (len(times),)
+        part = getattr(solution, quantity)
+        if not isinstance(part, Mapping):
+            notes.append(f"{who}: {_words(quantity)} is a {type(part).__name__}; needed: arrays by name")
+            continue
+        claimed = getattr(solution.accuracy, quantity)
+        for name, raw in part.items():
+            what = f"{who}: {_words(quantity)} of {name}"
+            array = _shaped(raw, shape)
+            if isinstance(array, str):
+                notes.append(f"{what} {array}; it is left out")
+                continue
+            wrong = int(np.count_nonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=-1)))
+            said = any(note.startswith(f"{_words(quantity)} of {name} ") for note in solution.notes)
+            if wrong and not said:
+                notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
+            numbers[quantity][name] = array[places]
+            claim = _shaped(claimed[name], shape) if name in claimed else "is not given"
+            if isinstance(claim, str):
+                notes.append(f"{what}: its accuracy {claim}")
+            else:
+                claims[quantity][name] = claim[places]
+    condition = _shaped(solution.accuracy.condition, times.shape)
+    if isinstance(condition, str):
+        notes.append(f"{who}: its condition number {condition}; 1 is taken")
+        condition = np.ones_like(times)
+    return Given(who, found, numbers, claims, condition[places], tuple(notes))
+
+
+def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
+    """An array of a shape, or what is wrong with it."""
+    array = _real(raw)
+    if isinstance(array, str) or array.shape == shape:
+        return array
+    return f"has the shape {array.shape}; needed: {shape}"
+
+
+def _real(raw: object) -> Array | str:
+    """Real numbers in doubles, or what is wrong with them."""
+    try:
+        array = np.asarray(raw)
+    except (ValueError, TypeError) as error:
+        return f"is no array ({error})"
+    if array.dtype.kind not in "iuf":
+        return f"is of type {array.dtype}; needed: real numbers"
+    return array.astype(float)
+
+
+def _words(quantity: str) -> str:
+    return "wheel angle" if quantity == "wheel" else quantity.replace("_", " ")

@@ -1,0 +1,1 @@
+"""The formulations that can be compared, behind one contract."""

@@ -1,0 +1,95 @@
+"""pointcoord as a formulation: by series, by Newton at every instant, and as the paper prints it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
+from pointcoord.bounds.proof import Proof
+from pointcoord.simulation import Method
+from validate.formulations.protocol import NUMBERS_OF, Accuracy, FormulationError, Solution
+
+Array = NDArray[np.float64]
+
+UNKNOWN = 1e-9
+
+
+@dataclass(frozen=True)
+class PointCoordinates:
+    """pointcoord by one of its methods."""
+
+    name: str
+    method: Method
+
+    def solve(self, scene: Scene) -> Solution:
+        """Solve a scene; what it claims of its accuracy is proven, number by number (see `_claims`).
+
+        Raises:
+            FormulationError: pointcoord refuses the scene, or cannot bound the error of a number; but a fault
+                of the scene file itself is raised as it is.
+        """
+        try:
+            motion = simulate(scene, self.method)
+        except SceneError:
+            raise
+        except PointcoordError as error:
+            raise FormulationError(self.name, error) from error
+        proof = motion.proof(rates=True)
+        # Numbers that nothing is known of would agree with anything: they are no answer here.
+        _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
+        return Solution(
+            formulation=self.name,
+            times=motion.times,
+            position=motion.position,
+            velocity=motion.velocity,
+            acceleration=motion.acceleration,
+            angular_velocity=motion.angular_velocity,
+            angular_acceleration=motion.angular_acceleration,
+            wheel=motion.wheel,
+            accuracy=Accuracy(
+                condition=proof.condition,
+                proven=True,
+                **{quantity: self._claims(scene, motion, proof, quantity) for quantity in NUMBERS_OF},
+            ),
+            notes=motion.notes,
+        )
+
+    def _claims(self, scene: Scene, motion: Motion, proof: Proof, quantity: str) -> dict[str, Array]:
+        """The proven error of each number, or the expected one where that is less.
+
+        The proof sees how far off a number is, whatever the reason: a fault of the method would widen its
+        own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong; but
+        where an input's terms cancel until few of its digits are left, only the proof knows what that does.
+        """
+        uncertain = _uncertain_laws(scene)
+        claims: dict[str, Array] = {}
+        expected = getattr(proof.expected, quantity)
+        for name, proven in getattr(proof.proven, quantity).items():
+            # What is not a number has no error; the comparison finds it.
+            number = np.isfinite(getattr(motion, quantity)[name])
+            bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
+            _refuse_unproven(self.name, motion, proof, f"{quantity.replace('_', ' ')} of {name}", bound)
+            capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected[name])
+            claims[name] = np.where(number, np.minimum(proven, capped), 0.0)
+        return claims
+
+
+def _uncertain_laws(scene: Scene) -> NDArray[np.bool_]:
+    """At which instants fewer than nine digits are known of an input, in parts of its largest value, (N,)."""
+    uncertain = np.zeros(len(scene.instants), dtype=bool)
+    for function in scene.functions.values():
+        largest = float(np.abs(function.series(scene.instants, 0)).max())
+        uncertain |= function.rounding(scene.instants) > UNKNOWN * largest
+    return uncertain
+
+
+def _refuse_unproven(who: str, motion: Motion, proof: Proof, what: str, bound: Array) -> None:
+    unproven = ~np.isfinite(bound)
+    if unproven.any():
+        first = int(np.argmax(unproven))
+        condition, when = float(proof.condition[first]), f"at t = {motion.times[first]:.10g} s"
+        reason = SingularConfiguration(f"no error bound of the {what} can be proven", condition, when)
+        raise FormulationError(who, reason)

@@ -1,0 +1,47 @@
+"""The formulations that can be compared, by name."""
+
+from __future__ import annotations
+
+from validate.extras import MissingPackage
+from validate.formulations.point_coordinates import PointCoordinates
+from validate.formulations.protocol import Formulation
+
+
+class UnknownFormulation(Exception):
+    """A name that no formulation has; the message lists those that exist."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
+
+
+_POINT_COORDINATES: dict[str, Formulation] = {
+    f.name: f
+    for f in (
+        PointCoordinates("pointcoord", "series"),
+        PointCoordinates("pointcoord-newton", "newton"),
+        PointCoordinates("printed", "printed"),
+    )
+}
+
+NAMES = (*_POINT_COORDINATES, "absolute")
+
+
+def formulation(name: str) -> Formulation:
+    """A formulation by its name. Only the absolute model needs Pinocchio, and only when it is used.
+
+    Raises:
+        UnknownFormulation: no formulation has this name.
+        MissingPackage: Pinocchio is not installed, or does not load.
+    """
+    if name in _POINT_COORDINATES:
+        return _POINT_COORDINATES[name]
+    if name != "absolute":
+        raise UnknownFormulation(name)
+    try:
+        from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+    except MissingPackage:
+        raise
+    except ImportError as error:
+        raise MissingPackage(name, error) from error
+    return AbsoluteCoordinates()

@@ -1,0 +1,1 @@
+"""The hard cases, a family a file."""

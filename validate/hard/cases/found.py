@@ -1,0 +1,98 @@
+"""Found by searches: places that nobody thought of, each with the search that found it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from validate.cars.input_limits import Car
+from validate.cars.near_singular import approach
+from validate.hard.cars import PAPER_CAR, RIGHT, UP, car_content
+from validate.hard.case import RIGHT_OR_REFUSED, Case, Expected
+from validate.hard.cases.dead_points import rack_ends
+from validate.hard.content import SQUARE, decades
+from validate.hard.trial import scene_case
+
+GROUP = "11. Found by searches"
+# The strut of the largest share that a search for error / bound found, 0.99999 of it.
+SEARCHED = Car(
+    {
+        "lower_arm_front": (271.0, -5.0, -114.26757179419634),
+        "lower_arm_rear": (539.0, -120.99482549806498, -64.68059692752652),
+        "rack_centre": (565.7938722478295, 193.543562530239, 90.0),
+        "strut_top": (504.8095912819766, -180.0, 514.8095912819766),
+        "lower_ball_joint": (451.0, -217.02756130158969, -59.0531970397941),
+        "tie_rod_outer": (560.0, -436.8174545750767, 76.95156742437214),
+        "strut_lower": (471.83659700499715, -202.6894413586449, 151.62757063828622),
+        "strut_rod_end": (490.79644482346635, -189.4048465611014, 365.363681951393),
+        "tie_rod_inner": (565.7938722478295, 197.82642503435562, 90.0),
+        "wheel_centre": (592.0, -537.0275613015897, -140.33333333333331),
+    },
+    "left",
+    UP,
+    RIGHT,
+    "collinear",
+)
+ASIDE = 0.7681496121355411  # where its rack was held
+COARSE = 1e9  # mm, a tolerance that asks for nothing
+
+
+def _searched(value: float) -> dict[str, Any]:
+    pose = approach(SEARCHED, driven="arm_angle", forward=True, aside=ASIDE, distance=value)
+    if pose is None:
+        raise ValueError("the arm of the searched strut has no end that is open to reach")
+    return car_content(SEARCHED, pose.inputs["arm_angle"], pose.inputs["rack"])
+
+
+def _touching(value: float) -> dict[str, Any]:
+    low, high = rack_ends("", SQUARE)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    swing = {"sine": {"amplitude": half * (1.0 - value), "angular_frequency": 1.0, "offset": middle}}
+    # From the middle to near the greatest travel and back; instants on both sides of the turn.
+    return car_content(PAPER_CAR, SQUARE, swing, stop=3.0, samples=4, tolerance=COARSE)
+
+
+def _folded(value: float) -> dict[str, Any]:
+    top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
+    x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
+    points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}
+    return car_content(Car(points, "left", UP, RIGHT, "collinear"), [1.4, 0.2], stop=1.0)
+
+
+CASES: tuple[Case, ...] = (
+    scene_case(
+        name="error-all-but-its-bound",
+        group=GROUP,
+        why="a search for the largest error / bound came here: the last step of Newton's method is nearly "
+        "all of the error, and the bound measures it, so that nothing is left to spare",
+        parameter="distance of the arm from its end, in parts of its range",
+        values=decades(-12, -1),
+        scene=_searched,
+        expected={"pointcoord": Expected(("right", "refused"), 1e-11), "absolute": RIGHT_OR_REFUSED},
+        behaviour="pointcoord is right within its bound, by however little; the absolute model may refuse",
+    ),
+    scene_case(
+        name="turn-at-a-coarse-tolerance",
+        group=GROUP,
+        why="the rack turns just before its end: a series too coarse to see the other branch, which comes "
+        "within the root of the distance, runs smoothly over to it and every residual stays zero",
+        parameter="distance of the turn from the end, in parts of half the range",
+        values=decades(-12, -1),
+        scene=_touching,
+        expected={
+            "pointcoord": Expected(("right", "refused"), 1e-12),
+            "pointcoord-newton": Expected(("right", "refused"), 1e-12),
+            "absolute": RIGHT_OR_REFUSED,
+        },
+        behaviour="the branch is kept at any tolerance: the sign of the Jacobian's determinant is followed",
+    ),
+    scene_case(
+        name="strut-drawn-folded",
+        group=GROUP,
+        why="random scenes drew the rod end behind the strut's top: their line points the other way",
+        parameter="distance of the rod end behind the top, in parts of the strut",
+        values=decades()[::2],  # near the top a refusal takes a second
+        scene=_folded,
+        expected={"pointcoord": Expected(("right", "refused"), 1e-2), "absolute": RIGHT_OR_REFUSED},
+        behaviour="right, as it is drawn, or refused with a reason; the absolute model refuses such drawings",
+    ),
+)

@@ -1,0 +1,184 @@
+"""Numbers that no computation survives, one at a time, at every place of a scene.
+
+A number that is none, infinite, huge or below the smallest normal one must be refused with a reason, or the
+answer must be right. Every place of a scene that holds a number is tried, with the other numbers left alone.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from validate.cars.input_limits import Car
+from validate.cars.paper_car import PAPER
+from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, car_content
+from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
+from validate.hard.cases.links import GROUP
+from validate.hard.content import SQUARE, paper_car
+from validate.hard.sides import try_on_side
+
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+LEAST = math.ulp(0.0)  # 5e-324
+Place = tuple[str | int, ...]
+
+
+def content() -> dict[str, Any]:
+    """A short motion of the paper's car with a law of every kind, in which every number has a place."""
+    return paper_car(
+        (SQUARE, 0.1, 0.05),
+        {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}},
+        {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}},
+        stop=0.2,
+        samples=2,
+    )
+
+
+def _places(part: Any, here: Place = ()) -> list[Place]:
+    if isinstance(part, dict | list):
+        inner = part.items() if isinstance(part, dict) else enumerate(part)
+        return [place for key, value in inner for place in _places(value, (*here, key))]
+    return [here] if isinstance(part, float | int) and not isinstance(part, bool) else []
+
+
+PLACES = tuple(_places(content()))
+
+
+def told(place: Place) -> str:
+    """A place in words, such as mechanism.points.strut_top.2."""
+    return ".".join(str(key) for key in place)
+
+
+def with_number(place: Place, number: object) -> dict[str, Any]:
+    """The scene with another number at one place."""
+    whole = content()
+    part: Any = whole
+    for key in place[:-1]:
+        part = part[key]
+    part[place[-1]] = number
+    return whole
+
+
+def everywhere(number: object) -> Callable[[float], Trial]:
+    """Tries a number at the place of a number counted from 1."""
+
+    def examine(value: float) -> Trial:
+        place = PLACES[int(value) - 1]
+        trial = try_on_side(value, with_number(place, number), SOLVERS)
+        return Trial(value, trial.answers, {**trial.facts, "place": told(place)})
+
+    return examine
+
+
+PAIRS = tuple(itertools.combinations(PAPER, 2))
+# A rod without length has no answer in the reference: which way its end lies is not drawn.
+PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != ("strut_top", "strut_rod_end"))
+# Pairs that hold each other at a distance, or make a line together: they cannot be in one place.
+APART = frozenset(
+    frozenset(pair)
+    for pair in (
+        ("lower_ball_joint", "lower_arm_front"),
+        ("lower_ball_joint", "lower_arm_rear"),
+        ("lower_arm_front", "lower_arm_rear"),
+        ("tie_rod_outer", "lower_ball_joint"),
+        ("strut_lower", "lower_ball_joint"),
+        ("strut_lower", "tie_rod_outer"),
+        ("strut_rod_end", "strut_top"),
+        ("tie_rod_inner", "tie_rod_outer"),
+    )
+)
+
+
+def linked(first: bool) -> tuple[tuple[str, str], ...]:
+    """The pairs that cannot be in one place, or all others."""
+    return tuple(pair for pair in PAIRS if (frozenset(pair) in APART) == first)
+
+
+def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Callable[[float], Trial]:
+    """Tries a car with the points of one pair in one place: the second is put on the first."""
+
+    def examine(value: float) -> Trial:
+        onto, moved = pairs[int(value) - 1]
+        there = replace(car, points={**car.points, moved: car.points[onto]})
+        trial = try_on_side(value, car_content(there, 1.65), SOLVERS)
+        return Trial(value, trial.answers, {**trial.facts, "place": f"{moved} on {onto}"})
+
+    return examine
+
+
+def _counted(number: int) -> tuple[float, ...]:
+    return tuple(float(n) for n in range(1, number + 1))
+
+
+def _case(
+    name: str,
+    why: str,
+    examine: Callable[[float], Trial],
+    values: tuple[float, ...],
+    expected: Expected,
+    parameter: str = "number of the place in the scene",
+) -> Case:
+    behaviour = {REFUSED: "refused, by all", RIGHT: "right, by all"}.get(expected, "right, or refused")
+    return Case(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter=parameter,
+        values=values,
+        expected=dict.fromkeys(SOLVERS, expected),
+        behaviour=behaviour,
+        examine=examine,
+    )
+
+
+NUMBERS: tuple[tuple[str, str, object, Expected], ...] = (
+    ("not-a-number", "A NaN spreads through everything that it meets.", math.nan, REFUSED),
+    ("infinity", "An infinity makes a NaN of every difference.", math.inf, REFUSED),
+    ("minus-infinity", "An infinity of the other sign passes every check for too large.", -math.inf, REFUSED),
+    ("huge", "The square of 1e308 overflows.", 1e308, RIGHT_OR_REFUSED),
+    ("minus-huge", "The square of -1e308 overflows.", -1e308, RIGHT_OR_REFUSED),
+    ("tiny", "The square of 1e-308 is 0.", 1e-308, RIGHT_OR_REFUSED),
+    ("denormal", "Below the smallest normal number digits are lost, down to none.", LEAST, RIGHT_OR_REFUSED),
+    (
+        "whole-number-too-large",
+        "A whole number of 401 digits fits no floating-point number.",
+        10**400,
+        REFUSED,
+    ),
+)
+EVERYWHERE = _counted(len(PLACES))
+EVERY_PAIR = "number of the pair of points"
+
+CASES: tuple[Case, ...] = (
+    _case(
+        "link-without-length",
+        "Two points that a link holds apart are drawn in one place.",
+        coincident(linked(True)),
+        _counted(len(linked(True))),
+        REFUSED,
+        EVERY_PAIR,
+    ),
+    _case(
+        "points-in-one-place",
+        "Two points without a link are drawn in one place, which may be a mechanism or not.",
+        coincident(linked(False)),
+        _counted(len(linked(False))),
+        RIGHT_OR_REFUSED,
+        EVERY_PAIR,
+    ),
+    _case(
+        "points-in-one-place-beside",
+        "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
+        coincident(PAIRS_BESIDE, BESIDE_CAR),
+        _counted(len(PAIRS_BESIDE)),
+        RIGHT_OR_REFUSED,
+        EVERY_PAIR,
+    ),
+    *(
+        # A scene with a tiny number is solved, which takes time: every third place must do.
+        _case(name, why, everywhere(number), EVERYWHERE[:: 3 if name == "tiny" else 1], expected)
+        for name, why, number, expected in NUMBERS
+    ),
+)

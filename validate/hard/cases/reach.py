@@ -1,0 +1,273 @@
+"""How far the inputs go: each is driven beyond its last value, and the refusal is held to the true end.
+
+Nothing is assembled beyond the end, so a formulation is `right` here when it refuses the motion and says what
+it must: the last value to 1e-9 of the input's range, which input and value were asked for, the motion up to
+there with right instants, and (pointcoord) the links that lie in line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from pointcoord import AssemblyError, Scene
+from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
+from validate.hard.cars import car_content
+from validate.hard.case import RIGHT, Answer, Case, Trial
+from validate.hard.cases.blocked_ways import blocked_way
+from validate.hard.content import Law, decades, paper_car
+from validate.hard.kept import fault_of_kept
+from validate.hard.last_values import LastValue, car_called, home, last_value
+from validate.hard.trial import scene_case
+from validate.reference import InfeasibleError, NoReferenceError
+
+GROUP = "9. Reachable range"
+SHARE = 1e-9  # of the range: how exactly the last value must be found
+SAMPLES = 5
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+# What is in line at each kind of end: all of the first, and one of the second.
+STRUT = {"strut_top on the strut axis"}
+TIE_ROD = ({"link tie_rod_inner - tie_rod_outer"}, {"strut_lower", "lower_ball_joint"})
+ARM = {"link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"}
+LOCKED = {
+    "arm": "ball joint, arm axis, up",
+    "strut": "nothing: the top is at a right angle beside the ball joint",
+    "tie_rod": "tie rod, steering arm",
+}
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One input of one car, driven beyond one of its ends.
+
+    Attributes:
+        car: a name that `car_called` knows.
+        moving: driven there from home within 1 s; else it is there at the only instant.
+    """
+
+    car: str
+    driven: str
+    ahead: bool
+    moving: bool = True
+
+    @property
+    def end(self) -> LastValue:
+        """Where it ends."""
+        return last_value(self.car, self.driven, self.ahead, self.moving)
+
+    @property
+    def home(self) -> dict[str, float]:
+        """Inputs from which it starts; without a motion the drawing's own, so that only one input differs."""
+        return home(self.car, level=self.moving)
+
+    @property
+    def room(self) -> float:
+        """The largest overshoot, rad or mm: as far as angles have a meaning, or the rack's range again."""
+        if self.driven == "rack":
+            return self.end.reach
+        return float(abs(Fraction(np.pi if self.ahead else 0.0) - self.end.value))
+
+    def scene(self, overshoot: float) -> Scene:
+        """The scene that asks for an overshoot, in parts of the room."""
+        goal = self.end.beyond(overshoot * self.room / self.end.reach)
+        start = self.home[self.driven]
+        laws: dict[str, Law] = dict(self.home)
+        laws[self.driven] = (start, goal - start) if self.moving else goal
+        car = car_called(self.car)
+        return Scene.from_mapping(
+            car_content(
+                car,
+                laws["arm_angle"],
+                laws["rack"],
+                stop=1.0 if self.moving else 0.0,
+                samples=SAMPLES if self.moving else 1,
+            )
+        )
+
+
+def examine(drive: Drive, overshoot: float) -> Trial:
+    """Ask every solver for a value beyond the end."""
+    scene = drive.scene(overshoot)
+    answers = []
+    facts: dict[str, float | str] = {"end [mm or rad]": float(drive.end.value)}
+    for name in SOLVERS:
+        try:
+            formulation(name).solve(scene)
+        except FormulationError as error:
+            answers.append(_refusal(name, error.reason, scene, drive))
+            if name == "absolute":
+                said = (
+                    "names" if _shown(error.reason, drive.driven, _reached(error.reason)) else "does not name"
+                )
+                facts["absolute"] = f"{type(error.reason).__name__}: its message {said} the last value"
+        except Exception as error:
+            answers.append(Answer(name, "wrong", f"fails: {type(error).__name__}: {error}"))
+        else:
+            answers.append(_answered(name, scene))
+    facts["asked for [mm or rad]"] = _asked(scene, drive)
+    facts["in line"] = LOCKED[drive.end.lock]
+    return Trial(overshoot, tuple(answers), facts)
+
+
+def _asked(scene: Scene, drive: Drive) -> float:
+    return float(rates(scene.inputs[drive.driven], np.array([scene.time.stop]))[0, 0])
+
+
+def _answered(name: str, scene: Scene) -> Answer:
+    """A solver that answers a scene whose last instant should have no pose."""
+    try:
+        true_instant(scene, inputs_at(scene, scene.time.stop))
+    except InfeasibleError as error:
+        return Answer(name, "wrong", f"answers beyond the end: {error}")
+    except NoReferenceError as error:
+        return Answer(name, "unjudged", f"{type(error).__name__}: {error}")
+    return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
+
+
+def _refusal(name: str, reason: Exception, scene: Scene, drive: Drive) -> Answer:
+    """A refusal held to the true end."""
+    reached = _reached(reason)
+    if drive.driven not in reached:
+        return Answer(name, "wrong", f"does not say how far it came: {type(reason).__name__}: {reason}")
+    error = float(abs(Fraction(reached[drive.driven]) - drive.end.value))
+    bound = SHARE * drive.end.reach
+    faults = _faults_of_words(reason, scene, drive)
+    if error > bound:
+        faults.insert(
+            0, f"stops at {drive.driven} = {reached[drive.driven]!r}, not {float(drive.end.value)!r}"
+        )
+    if drive.moving and (fault := fault_of_kept(reason, scene, float(drive.end.value), drive.driven)):
+        faults.append(fault)
+    return Answer(
+        name,
+        "wrong" if faults else "right",
+        "; ".join(faults) or " ".join(str(reason).split()),
+        error=error,
+        bound=bound,
+        share=error / bound,
+        condition=getattr(reason, "condition", None),
+    )
+
+
+def _reached(reason: Exception) -> Mapping[str, float]:
+    reached: Mapping[str, float] = getattr(reason, "reached", {})
+    return reached
+
+
+def _faults_of_words(reason: Exception, scene: Scene, drive: Drive) -> list[str]:
+    """What an error does not say, or says wrongly."""
+    faults = []
+    reached = _reached(reason)
+    for other, held in drive.home.items():
+        # The held input takes no part; it comes back through a cosine and its inverse.
+        if other != drive.driven and abs(reached[other] - held) > SHARE * max(1.0, abs(held)):
+            faults.append(f"{other} is said to stop at {reached[other]!r}, and is held at {held!r}")
+    wanted: Mapping[str, float] = getattr(reason, "wanted", getattr(reason, "inputs", {}))
+    outward = 1.0 if drive.ahead else -1.0
+    if not outward * (wanted[drive.driven] - float(drive.end.value)) > -SHARE * drive.end.reach:
+        faults.append(f"the value asked for, {wanted[drive.driven]!r}, lies before the end")
+    if not _shown(reason, drive.driven, wanted):
+        faults.append(f"the message does not hold {drive.driven} = {wanted[drive.driven]:.10g}")
+    if isinstance(reason, AssemblyError):
+        if not _shown(reason, drive.driven, reached):
+            faults.append(f"the message does not hold {drive.driven} = {reached[drive.driven]:.10g}")
+        if reason.reduce != drive.driven:
+            faults.append(f"{reason.reduce!r} is to be reduced, and {drive.driven!r} was driven")
+        if not _in_line(reason.limits, drive.end.lock):
+            faults.append(f"what limits it is not what lies in line: {', '.join(reason.limits[:3])}")
+    return faults
+
+
+def _shown(reason: Exception, driven: str, values: Mapping[str, float]) -> bool:
+    """Whether a message holds an input's value; the two models print ten and twelve digits."""
+    return any(f"{driven} = {values[driven]:.{digits}g}" in str(reason) for digits in (10, 12))
+
+
+def _in_line(limits: tuple[str, ...], lock: str) -> bool:
+    if lock == "arm":
+        return set(limits[:3]) >= ARM
+    if lock == "strut":
+        return set(limits) >= STRUT
+    limits, (rod, ends) = limits[:3], TIE_ROD
+    steering_arm = {limit for limit in limits if "tie_rod_outer" in limit and any(e in limit for e in ends)}
+    return set(limits) >= rod and bool(steering_arm)
+
+
+def _case(drive: Drive, name: str, where: str, values: tuple[float, ...]) -> Case:
+    unit = "rad" if drive.driven == "arm_angle" else "mm"
+    part = "the way from the end to the upright arm" if unit == "rad" else "the rack's range"
+    return Case(
+        name=name,
+        group=GROUP,
+        why=f"{where}; beyond it there is no pose, and at it two assemblies meet.",
+        parameter=f"overshoot beyond the last value, in parts of {part}",
+        values=values,
+        expected=dict.fromkeys(SOLVERS, RIGHT),
+        behaviour=(
+            "refused, with the last value to 1e-9 of the range, the input, what was asked for, the right "
+            "motion up to there and (pointcoord) the links in line; absolute names no links"
+        ),
+        examine=lambda overshoot: examine(drive, overshoot),
+        unit=unit,
+    )
+
+
+ENDS = {
+    ("arm_angle", False): ("arm-highest", "The ball joint is highest on its circle"),
+    ("arm_angle", True): ("arm-lowest", "The ball joint is lowest on its circle"),
+    ("rack", False): ("rack-least", "Tie rod and steering arm lie in line"),
+    ("rack", True): ("rack-greatest", "Tie rod and steering arm lie in line"),
+}
+SLIDE = "The strut's slide has no more way"
+# Every refusal is a whole motion towards a fold, so few values must do.
+SOME, EIGHT, ENDS_ONLY = decades()[::4], (*decades()[::2], 1e-11), decades()[::12]
+
+CASES: tuple[Case, ...] = (
+    *(
+        _case(Drive("paper", driven, ahead), f"reach-{name}", where, SOME)
+        for (driven, ahead), (name, where) in ENDS.items()
+    ),
+    *(
+        _case(
+            Drive("turned", driven, ahead),
+            f"reach-{name}-turned",
+            f"{where}, in a car mirrored, turned and 4e6 mm from the origin",
+            ENDS_ONLY,
+        )
+        for (driven, ahead), (name, where) in ENDS.items()
+    ),
+    *(
+        _case(
+            Drive("paper", driven, ahead, moving=False),
+            f"start-beyond-{name}",
+            f"{where}, and the first instant lies beyond",
+            EIGHT,
+        )
+        for (driven, ahead), (name, where) in ENDS.items()
+    ),
+    _case(Drive("wide", "arm_angle", False), "reach-slide-runs-out", SLIDE, SOME),
+    _case(
+        Drive("wide", "arm_angle", False, moving=False),
+        "start-beyond-slide-runs-out",
+        f"{SLIDE}, and the first instant lies beyond",
+        EIGHT,
+    ),
+    blocked_way(GROUP, EIGHT),
+    scene_case(
+        name="heave-has-no-end",
+        group=GROUP,
+        why="The chassis carries all points, so heave alone has no last value; only digits are lost.",
+        parameter="1 mm over the heave",
+        values=decades(),
+        scene=lambda value: paper_car(heave=(0.0, 1.0 / value), stop=1.0),
+        # Heave takes no part in any constraint: it is added to what was solved, which is the drawing itself.
+        expected=dict.fromkeys(SOLVERS, RIGHT),
+        behaviour="right at every heave",
+    ),
+)

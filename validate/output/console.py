@@ -1,0 +1,122 @@
+"""What a run says: results on standard output, everything else in single lines on standard error."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+
+from validate.output.files import OutputError, unwritable
+
+STANDARD_OUTPUT = "standard output"
+
+
+def shown(text: str) -> str:
+    """Text on one line in which nothing acts on a terminal: control characters are shown as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def one_line(message: str) -> str:
+    """A message without its line breaks."""
+    return shown(" ".join(message.split()))
+
+
+class Console:
+    """Standard output and standard error of one run.
+
+    Attributes:
+        quiet: whether only results that were asked for and errors are said.
+        mute: whether standard output belongs to a result, so that nothing else is said there.
+        written: the files that the run has written, in words, for the one who interrupts it.
+    """
+
+    def __init__(self, program: str = "pointcoord") -> None:
+        self.program = program
+        self.quiet = False
+        self.mute = False
+        self.written: list[str] = []
+        self._reader_gone = False
+
+    def require(self, what_else: str) -> None:
+        """Find a closed standard output before anything is solved.
+
+        Raises:
+            OutputError: it is closed; the message says what else can be done.
+        """
+        if sys.stdout is None:
+            raise OutputError(STANDARD_OUTPUT, f"is closed; {what_else}")
+
+    def say(self, text: str) -> None:
+        """Lines for people; nothing if the run is quiet or mute.
+
+        Raises:
+            OutputError: standard output does not take them.
+        """
+        if not self.quiet and not self.mute:
+            self.write(text + "\n")
+            self.flush()
+
+    def write(self, text: str) -> int:
+        """Text on standard output, as it is; characters that it has no code for are shown as escapes.
+
+        Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
+        are wanted all the same.
+
+        Raises:
+            OutputError: standard output does not take it.
+        """
+        if not self._reader_gone:
+            try:
+                code = getattr(sys.stdout, "encoding", None) or "utf-8"
+                sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
+            except BrokenPipeError:
+                self._leave_standard_output()
+            except (OSError, ValueError, AttributeError) as error:
+                raise self._lost(error) from None
+        return len(text)
+
+    def flush(self) -> None:
+        """Bring what was written to its reader.
+
+        Raises:
+            OutputError: standard output does not take it.
+        """
+        if self._reader_gone or sys.stdout is None:
+            return
+        try:
+            sys.stdout.flush()
+        except BrokenPipeError:
+            self._leave_standard_output()
+        except (OSError, ValueError) as error:
+            raise self._lost(error) from None
+
+    def _lost(self, error: Exception) -> OutputError:
+        self._leave_standard_output()
+        if isinstance(error, OSError):
+            return unwritable(STANDARD_OUTPUT, error)
+        return OutputError(STANDARD_OUTPUT, "is closed")
+
+    def _leave_standard_output(self) -> None:
+        """Point it to nowhere, so that what is left in its buffer cannot fail again at the end."""
+        self._reader_gone = True
+        with suppress(OSError, ValueError, AttributeError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+
+    def complain(self, message: str) -> None:
+        """One line on standard error."""
+        # Without a standard error `print` would take standard output.
+        if sys.stderr is not None:
+            with suppress(OSError, ValueError):
+                print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
+
+    def note(self, message: str) -> None:
+        """One line on standard error of what was taken for granted; nothing if the run is quiet."""
+        if not self.quiet:
+            self.complain(f"note: {message}")
+
+    def warn(self, message: str) -> None:
+        """One line on standard error that does not change the status; nothing if the run is quiet."""
+        if not self.quiet:
+            self.complain(f"warning: {message}")

@@ -1,0 +1,190 @@
+"""The JSON that the program writes: what was run, where and when, around what came of it.
+
+Its JSON Schema is `schema.json` beside this file, and `pointcoord --schema` prints it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+import shlex
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cache
+from importlib import metadata, resources
+from typing import Any, BinaryIO
+
+from validate.exit_status import ExitStatus
+from validate.output.console import STANDARD_OUTPUT, Console
+from validate.output.files import require_writable, write_whole
+
+# Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
+SCHEMA_VERSION = 1
+PACKAGES = ("numpy", "scipy", "pydantic", "pin", "mpmath", "python-flint")
+# Environment variables that say how many threads the linear algebra takes.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+PAUSE = 9.0  # between two writings of a journal, in times that the first took
+
+
+def program_version() -> str:
+    """Version of the installed distribution."""
+    return _version("pointcoord") or "not installed"
+
+
+def _version(distribution: str) -> str | None:
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def schema_text() -> str:
+    """The JSON Schema of every document that the program writes."""
+    return resources.files("validate").joinpath("output", "schema.json").read_text(encoding="utf-8")
+
+
+@cache
+def machine() -> dict[str, Any]:
+    """Where the numbers come from: system, processors, versions, and how many threads are allowed."""
+    return {
+        "platform": platform.platform(),
+        "processor": platform.machine(),
+        "processors": os.cpu_count(),
+        "python": platform.python_version(),
+        "packages": {name: _version(name) for name in PACKAGES},
+        "threads": {name: os.environ.get(name) for name in THREADS},
+    }
+
+
+def now() -> str:
+    """The time as RFC 3339 has it, UTC, to the second."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+@dataclass(frozen=True)
+class Head:
+    """What is known of a run before it begins.
+
+    Attributes:
+        kind: which command's results follow: validate, hard, hard-list or bounds.
+        command: the command line, word by word.
+        started: UTC.
+    """
+
+    kind: str
+    command: tuple[str, ...]
+    started: str
+
+    @classmethod
+    def of(cls, kind: str, command: Sequence[str]) -> Head:
+        """The head of a run that begins now."""
+        return cls(kind, tuple(command), now())
+
+    def document(
+        self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
+    ) -> dict[str, Any]:
+        """Everything as plain data; a run that goes on has no status yet."""
+        return {
+            "schema_version": SCHEMA_VERSION,
+            "kind": self.kind,
+            "program": {"name": "pointcoord", "version": program_version()},
+            "command": list(self.command),
+            "command_line": shlex.join(self.command),
+            "started": self.started,
+            "written": now(),
+            "machine": machine(),
+            "complete": complete,
+            "exit_status": None if status is None else status.value,
+            "verdict": None if status is None else status.verdict,
+            **results,
+        }
+
+
+def json_text(data: Any) -> str:
+    """JSON of plain data. It has no infinity and no NaN: a number that does not exist is null."""
+    return json.dumps(_plain(data), indent=1, allow_nan=False) + "\n"
+
+
+def _plain(data: Any) -> Any:
+    if isinstance(data, str):
+        # A file's name may hold bytes that are no text.
+        return data.encode("utf-8", "backslashreplace").decode("utf-8")
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    if isinstance(data, Mapping):
+        return {_plain(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    return data
+
+
+def write_json(target: str, data: Any, console: Console) -> None:
+    """Write JSON to a file, or to standard output for `-`.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    text = json_text(data)
+    if target == "-":
+        console.write(text)
+        console.flush()
+        return
+
+    def put(stream: BinaryIO) -> None:
+        stream.write(text.encode("ascii"))
+
+    write_whole(target, put)
+
+
+class Journal:
+    """The JSON of a run, written again as its parts are finished, so that a kill loses next to nothing.
+
+    Standard output takes one document only: it is written at the end.
+    """
+
+    def __init__(self, target: str | None, head: Head, console: Console) -> None:
+        """Find a target that cannot be written, before the run begins.
+
+        Raises:
+            OutputError: it cannot be.
+        """
+        self.target = target
+        self._head = head
+        self._console = console
+        self._next = 0.0
+        if target is not None and target != "-":
+            require_writable(target)
+
+    def keep(self, results: Callable[[], Mapping[str, Any]], what: str) -> None:
+        """Write what is finished; `what` it is, in words, for the one who interrupts the run.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        if self.target is not None and self.target != "-" and time.monotonic() >= self._next:
+            began = time.monotonic()
+            self._write(self.target, results(), None, False, what)
+            # Writing costs more the more there is: with such pauses it takes at most a tenth of the time.
+            self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
+
+    def close(
+        self, results: Callable[[], Mapping[str, Any]], status: ExitStatus, complete: bool, what: str
+    ) -> None:
+        """Write what there is, with the status that the run ends with.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        if self.target is not None:
+            self._write(self.target, results(), status, complete, what)
+
+    def _write(
+        self, target: str, results: Mapping[str, Any], status: ExitStatus | None, complete: bool, what: str
+    ) -> None:
+        write_json(target, self._head.document(results, status, complete), self._console)
+        where = STANDARD_OUTPUT if target == "-" else target
+        self._console.written = [f"{where} holds {what}"]

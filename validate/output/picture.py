@@ -1,0 +1,187 @@
+"""A drawing as a picture: three views of the hardpoints, as drawn and as closed, in one SVG file.
+
+Seen by someone who reads the numbers of a scene file: the picture shows whether a sign, an axis or a side was
+mistaken before anything is solved. The views are from behind, from the left and from above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from textwrap import wrap
+from xml.sax.saxutils import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, Scene
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.results.closing import Closing, closing
+from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import close_drawing
+
+Array = NDArray[np.float64]
+Places = Mapping[str, Array]
+
+VIEW = 290.0  # px, side of the square that a view is scaled into
+MARGIN = 30.0
+LINE = 15.0  # px, from line to line of text
+LETTERS = 150  # to a line
+KEY = (
+    "blue: as drawn; red: as closed, where that differs by a pixel; filled: on the chassis; "
+    "dashed: steering axis and spin axis"
+)
+STYLE = """
+text { font: 11px sans-serif; fill: #222 }
+.title { font-size: 13px; font-weight: bold }
+.member { stroke: #3b6ea5; stroke-width: 2.5; stroke-linecap: round }
+.closed { stroke: #c44e2b; stroke-width: 1 }
+.axis { stroke: #888; stroke-width: 1; stroke-dasharray: 7 4 }
+.body { fill: #3b6ea5; fill-opacity: 0.15; stroke: none }
+.chassis { fill: #222 }
+.moving { fill: #fff; stroke: #222; stroke-width: 1.5 }
+.frame { fill: none; stroke: #ddd }
+"""
+
+
+@dataclass(frozen=True)
+class View:
+    """A direction to look along: the car's axes that point right and up on the paper."""
+
+    title: str
+    right: Array
+    up: Array
+
+
+def svg(scene: Scene) -> str:
+    """The picture of a scene's drawing; what closing moves by more than a pixel is drawn a second time.
+
+    Raises:
+        SceneError: the hardpoints make no mechanism.
+    """
+    mechanism = scene_mechanism(scene)
+    points = {name: np.array(scene.mechanism.points[name]) for name in mechanism.topology.points}
+    closed, words = _closed(mechanism)
+    numbers = {name: str(i) for i, name in enumerate(points, 1)}
+    width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
+    lines = _legend(points, numbers, mechanism.topology)
+    rows, below_lines = -(-len(lines) // 2), wrap(words, LETTERS)
+    height = top + VIEW + MARGIN + (rows + len(below_lines) + 3) * LINE
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
+        f'viewBox="0 0 {width:.0f} {height:.0f}">',
+        f'<style>{STYLE}</style><rect width="100%" height="100%" fill="#fff"/>',
+        _text(MARGIN, 1.5 * LINE, scene.title or "scene", "title"),
+    ]
+    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
+    rearward = np.cross(right, up)
+    views = (
+        View(f"from behind: {_named(right)} right, {_named(up)} up", right, up),
+        View(f"from the left: {_named(rearward)} right, {_named(up)} up", rearward, up),
+        View(f"from above: {_named(right)} right, {_named(rearward)} down", right, -rearward),
+    )
+    # One scale for all views, so that lengths can be compared between them.
+    scale = VIEW / max(float(np.ptp([p @ a for p in points.values()])) for a in (right, up, rearward))
+    for i, view in enumerate(views):
+        corner = (MARGIN + i * (VIEW + MARGIN), top)
+        parts += _view(view, corner, scale, mechanism.topology, points, closed, numbers)
+    below = top + VIEW + MARGIN + LINE
+    for i, line in enumerate(lines):
+        parts.append(_text(MARGIN + (i // rows) * width / 2, below + (i % rows) * LINE, line))
+    below_lines = [KEY, *below_lines]
+    for i, line in enumerate(below_lines):
+        parts.append(_text(MARGIN, below + (rows + 0.5 + i) * LINE, line))
+    return "\n".join([*parts, "</svg>", ""])
+
+
+def _named(direction: Array) -> str:
+    """A direction of the car in the axes that its points are given in: +y, -x, or its three components."""
+    along = np.flatnonzero(direction)
+    if len(along) == 1:
+        return f"{'+' if direction[along[0]] > 0.0 else '-'}{'xyz'[along[0]]}"
+    return f"({', '.join(f'{c:.3g}' for c in direction)})"
+
+
+def _closed(mechanism: Mechanism) -> tuple[Places, str]:
+    """Where the points are when the drawing is closed, mm, and what closing does, in words."""
+    try:
+        y = close_drawing(mechanism).y
+    except AssemblyError as error:
+        return {}, f"this drawing cannot be closed: {error.problem}"
+    moved: Closing = closing(mechanism, y)
+    unit = float(mechanism.unit)
+    return {name: mechanism.origin + unit * p for name, p in mechanism.places(y).items()}, moved.words
+
+
+def _legend(points: Places, numbers: Mapping[str, str], topology: Topology) -> list[str]:
+    held = dict.fromkeys(topology.chassis, "on the chassis")
+    return [
+        f"{numbers[name]}  {name}: {', '.join(f'{c:.6g}' for c in place)} mm{_aside(held.get(name))}"
+        for name, place in points.items()
+    ]
+
+
+def _aside(word: str | None) -> str:
+    return f" ({word})" if word else ""
+
+
+def _view(
+    view: View,
+    corner: tuple[float, float],
+    scale: float,
+    topology: Topology,
+    points: Places,
+    closed: Places,
+    numbers: Mapping[str, str],
+) -> list[str]:
+    flat = {name: np.array([p @ view.right, -(p @ view.up)]) for name, p in points.items()}
+    middle = 0.5 * (np.min(list(flat.values()), axis=0) + np.max(list(flat.values()), axis=0))
+    centre = np.array(corner) + 0.5 * VIEW
+
+    def at(place: Array) -> Array:
+        return np.asarray(centre + scale * (np.array([place @ view.right, -(place @ view.up)]) - middle))
+
+    drawn = {name: at(p) for name, p in points.items()}
+    moved = {name: at(p) for name, p in closed.items()}
+    room = 0.45 * MARGIN
+    parts = [
+        f'<rect class="frame" x="{corner[0] - room:.1f}" y="{corner[1] - room:.1f}" '
+        f'width="{VIEW + 2 * room:.1f}" height="{VIEW + 2 * room:.1f}"/>',
+        _text(corner[0] - room, corner[1] - room - 4, view.title),
+    ]
+    for body in topology.bodies.values():
+        ends = " ".join(f"{x:.1f},{y:.1f}" for x, y in (drawn[name] for name in body))
+        parts.append(f'<polygon class="body" points="{ends}"/>')
+    parts += [_line("axis", drawn[a], drawn[b]) for a, b in (topology.steering_axis, topology.wheel_axis)]
+    segments = [ends for constraint in topology.constraints for ends in constraint.segments]
+    parts += [_line("member", drawn[a], drawn[b]) for a, b in segments]
+    if any(np.abs(moved[name] - drawn[name]).max() > 1.0 for name in moved):
+        parts += [_line("closed", moved[a], moved[b]) for a, b in segments]
+    for name, (x, y) in drawn.items():
+        kind = "chassis" if name in topology.chassis else "moving"
+        parts.append(f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="3"/>')
+    return parts + [_text(x, y, text) for x, y, text in _labels(drawn, numbers)]
+
+
+def _labels(drawn: Mapping[str, Array], numbers: Mapping[str, str]) -> list[tuple[float, float, str]]:
+    """A number beside every point; points that fall together on the paper share one."""
+    groups: list[tuple[Array, list[str]]] = []
+    for name, place in drawn.items():
+        for other, together in groups:
+            if np.abs(other - place).max() < 9.0:
+                together.append(numbers[name])
+                break
+        else:
+            groups.append((place, [numbers[name]]))
+    return [(place[0] + 5.0, place[1] - 5.0, ", ".join(together)) for place, together in groups]
+
+
+def _line(kind: str, start: Array, end: Array) -> str:
+    (a, b), (c, d) = start, end
+    return f'<line class="{kind}" x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}"/>'
+
+
+def _text(x: float, y: float, text: str, kind: str = "plain") -> str:
+    shown = escape("".join(c if c.isprintable() else " " for c in text))
+    return f'<text class="{kind}" x="{x:.1f}" y="{y:.1f}">{shown}</text>'

@@ -1,0 +1,197 @@
+"""Results as text for people and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.examined import Examined
+from validate.paper.errata import Finding
+from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
+
+# Columns of words, which read better from the left.
+LEFT = (
+    "formulation",
+    "outcome",
+    "worst at",
+    "wrong quantity",
+    "erratum",
+    "slip of print",
+    "verdict",
+    "resting on",
+)
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Columns of text: words to the left, numbers to the right."""
+    lines = [list(head), *(list(row) for row in rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    lines.insert(1, ["-" * width for width in widths])
+    to_left = [i == 0 or name in LEFT for i, name in enumerate(head)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if left else cell.rjust(width)
+            for cell, width, left in zip(line, widths, to_left, strict=True)
+        ).rstrip()
+        for line in lines
+    )
+
+
+def _with_unit(value: float, unit: str) -> str:
+    """Two significant digits, as tolerances deserve."""
+    return f"{value:.1e} {unit}" if math.isfinite(value) else "not a number"
+
+
+def worst_rows(outcome: Outcome) -> list[Comparison]:
+    """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
+    worst: dict[str, Comparison] = {}
+    for row in outcome.rows:
+        # The two wheel angles are quantities of their own.
+        key = row.name if row.quantity == "wheel" else row.quantity
+        if key not in worst or _severity(row) > _severity(worst[key]):
+            worst[key] = row
+    return list(worst.values())
+
+
+def _severity(row: Comparison) -> tuple[int, float]:
+    order = ("agrees", "not tested", "not given", "disagrees")
+    return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
+
+
+def outcome_text(outcome: Outcome) -> str:
+    """The agreement table of one scene and pair, and what its tolerances rest on."""
+    first, second = (s.formulation for s in outcome.solutions)
+    rows = [
+        (
+            row.name if row.quantity == "wheel" else row.quantity.replace("_", " "),
+            "" if row.quantity == "wheel" else row.name,
+            _with_unit(row.difference, row.unit),
+            _with_unit(row.tolerance, row.unit),
+            f"{row.instant:.4g} s",
+            row.rests_on,
+            f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
+        )
+        for row in worst_rows(outcome)
+    ]
+    lines = [
+        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants",
+        table(("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows),
+    ]
+    told = (*outcome.missing, *outcome.notes)
+    return "\n".join([*lines, *(f"  note: {note}" for note in told)])
+
+
+def agreement_line(outcome: Outcome) -> str:
+    """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
+    first, second = (s.formulation for s in outcome.solutions)
+    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
+    where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
+    return (
+        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} quantities; the largest "
+        f"difference uses {worst.share:.1e} of its tolerance ({where})"
+    )
+
+
+def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
+    """What the printed formulas get wrong, each beside its erratum."""
+    if not findings:
+        return f"The paper's printed formulas agree in {', '.join(scenes)}."
+    rows = [
+        (f.scene, f.quantity.replace("_", " "), _with_unit(f.worst.difference, f.worst.unit), f.erratum)
+        for f in findings
+    ]
+    lines = table(("scene", "wrong quantity", "largest difference", "erratum"), rows)
+    return "The paper's formulas as printed, against the mended ones:\n" + lines
+
+
+def paper_text(rows: Sequence[PaperRow]) -> str:
+    """Tables 2 and 3, printed and computed."""
+    blocks = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
+    for number_of_table, label in ((2, "theta [deg]"), (3, "S [mm]")):
+        mine = [row for row in rows if row.printed.table == number_of_table]
+        lines = [
+            (
+                f"{row.printed.time:.2f}",
+                f"{row.printed.input:g}",
+                f"{row.input:.2f}",
+                _vector(row.printed.wheel_centre, "{:g}"),
+                _vector(row.wheel_centre, "{:.1f}"),
+                f"{row.position_gap:.1f}",
+                f"{row.omega_gap:.2f}",
+                f"{row.alpha_gap:.2f}",
+                row.printed.slip,
+            )
+            for row in mine
+        ]
+        head = (
+            "t [s]",
+            label,
+            "ours",
+            "wheel centre, printed",
+            "ours [mm]",
+            "apart",
+            "omega apart",
+            "alpha apart",
+            "slip of print",
+        )
+        blocks.append(f"Table {number_of_table}\n" + table(head, lines))
+    blocks.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
+    return "\n".join(blocks)
+
+
+def _vector(vector: Sequence[float], form: str) -> str:
+    return "(" + ", ".join(form.format(component) for component in vector) + ")"
+
+
+def examined_data(examined: Examined) -> dict[str, Any]:
+    """One scene as plain data: its verdict, every comparison, and every reason why there is none."""
+    return {
+        "scene": examined.name,
+        "title": examined.title,
+        "exit_status": examined.status.value,
+        "verdict": examined.status.verdict,
+        "problem": examined.problem,
+        "warnings": list(examined.warnings),
+        "closing": examined.closing,
+        "defaults": list(examined.defaults),
+        "solved_by": list(examined.solved),
+        "comparisons": [outcome_data(outcome) for outcome in examined.outcomes],
+        "refusals": [asdict(refusal) for refusal in examined.refusals],
+        "failures": [asdict(failure) for failure in examined.failures],
+        "refusal_of_printed_formulas": None if examined.unprinted is None else asdict(examined.unprinted),
+    }
+
+
+def outcome_data(outcome: Outcome) -> dict[str, Any]:
+    """One comparison as plain data."""
+    return {
+        "scene": outcome.scene,
+        "formulations": [s.formulation for s in outcome.solutions],
+        "instants": len(outcome.solutions[0].times),
+        "agreed": outcome.agreed,
+        "rows": [asdict(row) for row in outcome.rows],
+        "missing": list(outcome.missing),
+        "notes": list(outcome.notes),
+    }
+
+
+def finding_data(finding: Finding) -> dict[str, Any]:
+    """A wrong printed quantity as plain data."""
+    return {
+        "scene": finding.scene,
+        "quantity": finding.quantity,
+        "worst": asdict(finding.worst),
+        "erratum": finding.erratum,
+    }
+
+
+def paper_data(rows: Sequence[PaperRow]) -> dict[str, Any]:
+    """The comparison with the printed tables as plain data."""
+    return {
+        "explanation": WHY_NOT_EQUAL,
+        "wheel_centre_rms_mm": root_mean_square(rows),
+        "rows": [asdict(row) for row in rows],
+    }

@@ -1,0 +1,1 @@
+"""The paper: its tables, its errata and its formulas as printed."""

@@ -1,0 +1,1 @@
+"""Long runs: random scenes, proven bounds, claims."""
