@@ -270,11 +270,9 @@ RECIPES: dict[str, Recipe] = {
         {"name": "arm-higest"},
     ),
     "validate.reference.errors.NoReferenceError": Recipe(
-        lambda *_: (
-            solve_reference(
-                {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
-            ).camber
-        ),
+        lambda *_: solve_reference(
+            {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
+        ).effect("camber"),
         ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
     ),
     "validate.reference.errors.BadInputError": Recipe(

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from flint import arb, arb_mat
 
 from validate.reference.certificate import jacobian_matrix
-from validate.reference.design import Design, values_only
+from validate.reference.design import values_only
 from validate.reference.errors import NotDecidedError
 from validate.reference.jet import Jet
 from validate.reference.linkage import Known
-from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
+from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 
 def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
@@ -80,33 +80,6 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
     second_rates = [_part(vector, "acceleration") for vector in frame]
     alpha = half_curl([minus(d, c) for d, c in zip(second_rates, centripetal, strict=True)])
     return omega, alpha
-
-
-def wheel_angles(points: Mapping[str, Vector], design: Design, known: Known) -> dict[str, arb]:
-    """Camber and kingpin angle, rad, balls."""
-    return {name: arb.atan2(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
-
-
-def wheel_directions(
-    points: Mapping[str, Vector], design: Design, known: Known
-) -> dict[str, tuple[Scalar, Scalar]]:
-    """(y, x) of each wheel angle atan2(y, x), side aware.
-
-    With a the steering axis and w the wheel's spin axis (see `Linkage`), the paper's eqs. (17) and (16):
-
-    camber  = atan2(-w . up, w . outboard)
-    kingpin = atan2(a . inboard, a . up)
-    """
-    p = {n: _part(point, "value") for n, point in points.items()}
-    outboard = times(known.right, design.outboard)
-    foot, head = known.linkage.steering_axis
-    inner, centre = known.linkage.wheel_axis
-    axis = minus(p[head], p[foot])
-    spin = minus(p[centre], next(p[n] for n in inner if n in p))
-    return {
-        "camber": (-dot(spin, known.up), dot(spin, outboard)),
-        "kingpin": (-dot(axis, outboard), dot(axis, known.up)),
-    }
 
 
 def _right_hand_side(rows: Sequence[arb]) -> arb_mat:

@@ -16,16 +16,18 @@ from mpmath import mpf
 
 from validate.reference.candidates import CLEAR_SIGN, choices_of_table
 from validate.reference.design import Design, Driven, balls, values_only
-from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.dual import Dual, slope_of
+from validate.reference.effects.effect import Axes
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball, centre_of
 from validate.reference.instant import Triple, prove_pose
 from validate.reference.jet import Jet
-from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets, wheel_directions
+from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.linkage import Choices, Known
 from validate.reference.solve import Points, with_enough_digits
 from validate.reference.suspensions import CLOSURE, SUSPENSION
-from validate.reference.vectors import Scalar, Vector, times
+from validate.reference.vectors import Vector, times
 
 ORDERS = ("value", "rate", "acceleration")
 
@@ -37,7 +39,7 @@ class Sensitivity:
     Attributes:
         position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
         angular_velocity, angular_acceleration: of "knuckle" and "lower_arm".
-        angles: of "camber" and "kingpin"; one that is undefined (0/0) is left out.
+        effects: by name, see `effects.registry`; one that is undefined (0/0) is left out.
         error_bound: proven bound on the error of each quantity above.
     """
 
@@ -46,7 +48,7 @@ class Sensitivity:
     acceleration: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
-    angles: Mapping[str, mpf]
+    effects: Mapping[str, mpf]
     error_bound: Mapping[str, mpf]
 
 
@@ -125,19 +127,21 @@ def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> 
         vectors[quantity] = {body: _slope_of(turn[i]) for body, turn in turns.items()}
     if not all(x.is_finite() for named in vectors.values() for vector in named.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
-    angles = {name: _angle_slope(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
-    angles = {name: slope for name, slope in angles.items() if slope.is_finite()}
+    places = {name: _part(p, "value") for name, p in points.items()}
+    axes = Axes.of(places, known, design.outboard)
+    slopes_of_effects = {name: effect.slope(axes) for name, effect in EFFECTS.items()}
+    effects = {name: slope for name, slope in slopes_of_effects.items() if slope.is_finite()}
     bounds = {
         quantity: max(x.rad() for vector in named.values() for x in vector)
         for quantity, named in vectors.items()
     }
-    bounds["angles"] = max((slope.rad() for slope in angles.values()), default=arb(0))
+    bounds["effects"] = max((slope.rad() for slope in effects.values()), default=arb(0))
     return Sensitivity(
         **{
             quantity: {name: (centre_of(x), centre_of(y), centre_of(z)) for name, (x, y, z) in named.items()}
             for quantity, named in vectors.items()
         },
-        angles={name: centre_of(slope) for name, slope in angles.items()},
+        effects={name: centre_of(slope) for name, slope in effects.items()},
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
     )
 
@@ -150,16 +154,13 @@ def _with_slopes(jets: Sequence[Jet], slopes: Sequence[Sequence[arb]]) -> list[J
 
 
 def _slope(point: Vector, order: str) -> Vector:
-    return _slope_of((getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)))
+    return _slope_of(_part(point, order))
+
+
+def _part(point: Vector, order: str) -> Vector:
+    return getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)
 
 
 def _slope_of(vector: Vector) -> Vector:
     x, y, z = (arb(slope_of(number)) for number in vector)
     return x, y, z
-
-
-def _angle_slope(y: Scalar, x: Scalar) -> arb:
-    """Of atan2(y, x)."""
-    across, along = value_of(y), value_of(x)
-    turning = along * slope_of(y) - across * slope_of(x)
-    return arb(turning / (along * along + across * across))

@@ -25,6 +25,7 @@ from off_axis_cars import (
 )
 
 from validate.reference import InfeasibleError, Instant, closed_drawing, count_assemblies, solve_reference
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.linkage import Known
 from validate.reference.macpherson import DRAWN
 from validate.reference.macpherson.drawn import AXIS, residual
@@ -183,9 +184,9 @@ def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
         for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
             bound = drawn.error_bound[quantity] + collinear.error_bound[quantity]
             assert apart(getattr(drawn, quantity), getattr(collinear, quantity)) <= bound
-        bound = drawn.error_bound["angles"] + collinear.error_bound["angles"]
-        assert set(drawn.angles) == set(collinear.angles) == {"camber", "kingpin"}
-        assert all(abs(drawn.angles[n] - collinear.angles[n]) <= bound for n in drawn.angles)
+        bound = drawn.error_bound["effects"] + collinear.error_bound["effects"]
+        assert set(drawn.effects) == set(collinear.effects) == set(EFFECTS)
+        assert all(abs(drawn.effects[n] - collinear.effects[n]) <= bound for n in drawn.effects)
         assert drawn.choices == collinear.choices
 
 
@@ -240,10 +241,10 @@ def test_camber_is_the_spin_axis_s_and_kingpin_the_steering_axis_s(closure: str,
         p = reference.position
         assert set(p) == set(points)
         axis = minus(p["wheel_centre"], p[inner])
-        assert abs(mpmath.tan(reference.camber) + axis[2] / (out * axis[1])) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.effects["camber"]) + axis[2] / (out * axis[1])) < mpf("1e-70")
         top = "strut_top" if closure == "drawn" else "strut_lower"
         steer = minus(p[top], p["lower_ball_joint"])
-        assert abs(mpmath.tan(reference.kingpin) + out * steer[1] / steer[2]) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.effects["kingpin"]) + out * steer[1] / steer[2]) < mpf("1e-70")
         body = ("lower_ball_joint", "tie_rod_outer", "wheel_centre", inner)
         for a in body:
             for b in body:

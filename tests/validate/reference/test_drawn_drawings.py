@@ -35,11 +35,6 @@ def test_a_strut_that_is_none_is_refused_by_name(change: Points, message: str) -
         solve_reference({**POINTS, **change}, STILL, closure="drawn")
 
 
-def test_a_closure_that_does_not_exist_is_refused() -> None:
-    with pytest.raises(BadInputError, match="closure is 'bent'; allowed is 'drawn' or 'collinear'"):
-        solve_reference(POINTS, STILL, closure="bent")
-
-
 def test_a_point_that_the_car_does_not_have_is_no_guess() -> None:
     short = {name: place for name, place in POINTS.items() if name != "wheel_axis_inner"}
     with pytest.raises(BadInputError, match="names among"):
