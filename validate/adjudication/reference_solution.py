@@ -18,13 +18,8 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Solution
-from validate.reference import AmbiguousAssemblyError, Choices, Instant, solve_reference
-from validate.reference.branches import candidate
-from validate.reference.closures import equations_for
-from validate.reference.design import Design, Driven, exact_vector, values_only
-from validate.reference.instant import prove_instant
-from validate.reference.solve import with_enough_digits
-from validate.reference.vectors import cross, dot, minus
+from validate.reference import Instant, solve_reference
+from validate.reference.candidates import CLEAR_SIGN
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
@@ -49,25 +44,22 @@ def reference_instant(
 
     Args:
         inputs: value, rate and acceleration of each.
-        exact_sides: where the drawing's side is unclear, take it from exact products.
+        exact_sides: whether every side that is drawn is meant, however small the product that tells it.
     Raises:
         NoReferenceError: there is no pose, or none can be proven.
     """
     part = scene.mechanism
-    try:
-        return solve_reference(
-            dict(part.points),
-            inputs,
-            up=part.up,
-            right=part.right,
-            side=part.side,
-            closure=part.closure,
-            digits=digits,
-        )
-    except AmbiguousAssemblyError:
-        if not exact_sides:
-            raise
-    return on_drawn_side(scene, inputs, digits)
+    return solve_reference(
+        dict(part.points),
+        inputs,
+        up=part.up,
+        right=part.right,
+        side=part.side,
+        digits=digits,
+        closure=part.closure,
+        suspension=part.type,
+        clearness=0.0 if exact_sides else CLEAR_SIGN,
+    )
 
 
 def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
@@ -80,56 +72,6 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
     return as_solution(scene.instants, instants)
 
 
-def drawn_choices(scene: Scene) -> Choices:
-    """The four signs of a drawing, from exact products (see `validate.reference.Choices`).
-
-    Raises:
-        AmbiguousAssemblyError: a product is exactly zero, so that nothing tells the side.
-    """
-    part = scene.mechanism
-    p = {name: exact_vector(place, name) for name, place in part.points.items()}
-    ball, top = p["lower_ball_joint"], p["strut_top"]
-    front, strut = p["lower_arm_front"], minus(p["strut_top"], ball)
-    # The knuckle's side of the strut, the line that the tie rod turns it about, and the rod's direction.
-    drawn = part.closure == "drawn"
-    along = minus(top, p["strut_lower"]) if drawn else minus(p["strut_lower"], ball)
-    steered, slid = (strut, along) if drawn else (along, strut)
-    axis, up = minus(p["lower_arm_rear"], front), exact_vector(part.up, "up")
-    inner, outer = minus(p["tie_rod_inner"], ball), minus(p["tie_rod_outer"], ball)
-    products = {
-        "arm": dot(cross(axis, up), minus(ball, front)),
-        "strut": dot(along, strut),
-        "rod": -dot(minus(p["strut_rod_end"], top), slid),
-        "tie": dot(cross(steered, inner), outer),
-    }
-    for name, product in products.items():
-        if product == 0:
-            remedy = "the drawing lies exactly where two assemblies meet"
-            raise AmbiguousAssemblyError(f"the sign of the {name} choice", 0.0, 0.0, remedy)
-    return Choices(**{name: 1 if product > 0 else -1 for name, product in products.items()})
-
-
-def on_drawn_side(scene: Scene, inputs: Inputs, digits: int = DIGITS) -> Instant:
-    """The reference on the side that exact products of the drawing tell.
-
-    Raises:
-        NoReferenceError: there is no pose, or none can be proven.
-    """
-    part, choices = scene.mechanism, drawn_choices(scene)
-    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure)
-    driven = Driven.from_mapping(inputs)
-
-    def attempt(working: int) -> Instant:
-        known = design.known(driven)
-        still = values_only(known)
-        chosen = candidate(still, choices)
-        chosen.require_feasible(float(design.unit))
-        start = equations_for(part.closure).unknown_of(chosen.points, still)
-        return prove_instant(design, known, start, choices, digits, working)
-
-    return with_enough_digits(attempt, digits)
-
-
 def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
     """The reference at instants, rounded to doubles.
 
@@ -137,14 +79,14 @@ def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
     first = instants[0]
-    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
+    angles = [n for n in ("camber", "kingpin") if all(n in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
         "angular_velocity": _rounded([i.angular_velocity for i in instants], ("knuckle",)),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], ("knuckle",)),
-        "wheel": {n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
+        "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {

@@ -163,6 +163,12 @@ DOUBLE_WISHBONE = Suspension(
     upper_lock=UPPER_ARM,
     with_arm_lock=with_short_lower_arm,
     with_upper_lock=with_short_upper_arm,
+    sides={
+        "drawn": {
+            "upper arm": (UPPER_FRONT, UPPER_REAR, BALL, UPPER_BALL),
+            "tie": (BALL, UPPER_BALL, INNER, OUTER),
+        }
+    },
     nearly_singular={
         "drawn": {
             name: parts.without_rack_centre(nearly)

@@ -191,6 +191,8 @@ MACPHERSON = Suspension(
     upper_lock=STRUT,
     with_arm_lock=lambda uniform, drawn: drawn,
     with_upper_lock=with_slide_that_runs_out,
+    # A collinear strut's knuckle is drawn about its own line, which its top need not lie on.
+    sides={"drawn": {"tie": (BALL, TOP, INNER, OUTER)}, "collinear": {"tie": (BALL, LOWER, INNER, OUTER)}},
     nearly_singular={
         "drawn": {
             name: parts.without_rack_centre(nearly)

@@ -48,6 +48,8 @@ class Suspension:
         upper_lock: what can lock besides arm and tie rod: what holds the knuckle's upper end.
         with_arm_lock: a drawing whose arm may come to its dead points before anything else locks.
         with_upper_lock: a drawing whose upper end locks as the arm turns.
+        sides: by closure and name, four points whose place tells one assembly from another: the fourth lies
+            beside the plane of the first three on the side that it is drawn on.
         nearly_singular: by closure and by what is singular, drawings that nearly are.
     """
 
@@ -60,6 +62,7 @@ class Suspension:
     upper_lock: str
     with_arm_lock: Reshape
     with_upper_lock: Reshape
+    sides: Mapping[Closure, Mapping[str, tuple[str, str, str, str]]]
     nearly_singular: Mapping[Closure, Mapping[str, Nearly]]
 
     @property

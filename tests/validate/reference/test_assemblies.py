@@ -12,13 +12,13 @@ from mpmath import mpf
 
 from validate.reference import (
     AmbiguousAssemblyError,
-    Choices,
     InfeasibleError,
     Instant,
     NoReferenceError,
     count_assemblies,
     solve_reference,
 )
+from validate.reference.macpherson import Choices
 from validate.reference.vectors import minus
 
 Table = dict[str, tuple[int, int, int]]

@@ -25,8 +25,11 @@ from off_axis_cars import (
 )
 
 from validate.reference import InfeasibleError, Instant, closed_drawing, count_assemblies, solve_reference
-from validate.reference.equations import NUMBER_OF, Known
-from validate.reference.knuckle_equations import AXIS, residual
+from validate.reference.effects.registry import EFFECTS
+from validate.reference.linkage import Known
+from validate.reference.macpherson import DRAWN
+from validate.reference.macpherson.drawn import AXIS, residual
+from validate.reference.macpherson.points import BALL, CARRIED, CHASSIS, END, FRONT, LOWER, OUTER, TOP
 from validate.reference.vectors import cross, dot, minus, plus, times
 
 UP, RIGHT = (0, 0, 1), (0, 1, 0)
@@ -71,13 +74,13 @@ def test_the_equations_vanish_on_the_closed_form_and_expose_a_change_of_any_numb
     car: OffAxisCar, turn: Fraction, travel: Fraction
 ) -> None:
     theta, rack = car.drawn[0] + number(turn), car.drawn[1] + number(travel)
-    p = {NUMBER_OF[name]: numbers(place) for name, place in car.points.items()}
-    k = {n: minus(p[n], p[5]) for n in (6, 7, 10, 11)}
-    lengths = {(i, j): dot(minus(p[i], p[j]), minus(p[i], p[j])) for i, j in ((5, 1), (5, 2), (8, 4), (9, 6))}
-    height = size(minus(p[5], p[1])) * mpmath.cos(theta)
-    shape = {**k, AXIS: minus(p[4], p[7]), 8: minus(p[8], p[4])}
-    chassis = {n: p[n] for n in (1, 2, 3, 4)}
-    known = Known("drawn", chassis, numbers(car.up), numbers(car.right), lengths, height, rack, shape)
+    p = {name: numbers(place) for name, place in car.points.items()}
+    k = {n: minus(p[n], p[BALL]) for n in (OUTER, LOWER, *CARRIED)}
+    lengths = {(a, b): dot(minus(p[a], p[b]), minus(p[a], p[b])) for a, b in DRAWN.links}
+    driven = {"arm_angle": size(minus(p[BALL], p[FRONT])) * mpmath.cos(theta), "rack": rack}
+    shape = {**k, AXIS: minus(p[TOP], p[LOWER]), END: minus(p[END], p[TOP])}
+    chassis = {n: p[n] for n in CHASSIS}
+    known = Known(DRAWN, chassis, numbers(car.up), numbers(car.right), lengths, driven, shape)
     every = list(poses(car, theta, rack))
     assert len(every) in (2, 4, 6, 8)
     for pose in every:
@@ -95,9 +98,11 @@ def test_what_is_drawn_comes_back(car: OffAxisCar) -> None:
     bound = closed.instant.error_bound["position"]
     assert apart(closed.instant.position, car.points) <= bound + WITHIN
     assert closed.farthest[1] <= 2 * bound
-    for got, want in zip((closed.arm_angle, closed.rack), car.drawn, strict=True):
+    for got, want in zip((closed.inputs["arm_angle"], closed.inputs["rack"]), car.drawn, strict=True):
         assert abs(got - want) < mpf("1e-70")
-    again = solve(car, {"arm_angle": (closed.arm_angle, 0, 0), "rack": (closed.rack, 0, 0)})
+    again = solve(
+        car, {"arm_angle": (closed.inputs["arm_angle"], 0, 0), "rack": (closed.inputs["rack"], 0, 0)}
+    )
     assert apart(again.position, car.points) <= again.radius
 
 
@@ -141,7 +146,7 @@ def test_a_tie_rod_drawn_off_the_rack_line_turns_the_knuckle_about_its_steering_
     off = {**CAR.points, "tie_rod_inner": (x + 9, y, z - 6)}
     closed = closed_drawing(off, closure="drawn")
     p = closed.instant.position
-    assert abs(closed.rack - 230) < mpf("1e-70")
+    assert abs(closed.inputs["rack"] - 230) < mpf("1e-70")
     assert apart({"tie_rod_inner": p["tie_rod_inner"]}, CAR.points) < mpf("1e-75")
     tie = minus(p["tie_rod_outer"], p["tie_rod_inner"])
     drawn = size(numbers(minus(off["tie_rod_outer"], off["tie_rod_inner"])))
@@ -172,16 +177,16 @@ def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
     }
     drawn_at = closed_drawing(straight, closure="drawn")
     for turn in (Fraction(0), Fraction(1, 5), Fraction(-1, 4)):
-        theta = drawn_at.arm_angle + number(turn)
+        theta = drawn_at.inputs["arm_angle"] + number(turn)
         inputs = {"arm_angle": (theta, 2, -3), "rack": (240, 100, 50), "heave": (10, 20, 30)}
         drawn, collinear = (solve_reference(straight, inputs, closure=c) for c in ("drawn", "collinear"))
         assert apart(drawn.position, collinear.position) <= drawn.radius + collinear.radius
         for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
             bound = drawn.error_bound[quantity] + collinear.error_bound[quantity]
             assert apart(getattr(drawn, quantity), getattr(collinear, quantity)) <= bound
-        bound = drawn.error_bound["angles"] + collinear.error_bound["angles"]
-        assert set(drawn.angles) == set(collinear.angles) == {"camber", "kingpin"}
-        assert all(abs(drawn.angles[n] - collinear.angles[n]) <= bound for n in drawn.angles)
+        bound = drawn.error_bound["effects"] + collinear.error_bound["effects"]
+        assert set(drawn.effects) == set(collinear.effects) == set(EFFECTS)
+        assert all(abs(drawn.effects[n] - collinear.effects[n]) <= bound for n in drawn.effects)
         assert drawn.choices == collinear.choices
 
 
@@ -222,7 +227,7 @@ def test_without_a_rack_centre_the_rack_line_passes_through_the_drawn_tie_rod_in
         moving = {name: place for name, place in without.position.items() if name != "rack_centre"}
         assert apart(moving, with_centre.position) <= with_centre.radius + without.radius
         assert without.position["rack_centre"] == CAR.points["tie_rod_inner"]
-        assert abs(closed_drawing(short, closure=closure).rack) == 0
+        assert abs(closed_drawing(short, closure=closure).inputs["rack"]) == 0
 
 
 @pytest.mark.parametrize("closure", ["drawn", "collinear"])
@@ -236,10 +241,10 @@ def test_camber_is_the_spin_axis_s_and_kingpin_the_steering_axis_s(closure: str,
         p = reference.position
         assert set(p) == set(points)
         axis = minus(p["wheel_centre"], p[inner])
-        assert abs(mpmath.tan(reference.camber) + axis[2] / (out * axis[1])) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.effects["camber"]) + axis[2] / (out * axis[1])) < mpf("1e-70")
         top = "strut_top" if closure == "drawn" else "strut_lower"
         steer = minus(p[top], p["lower_ball_joint"])
-        assert abs(mpmath.tan(reference.kingpin) + out * steer[1] / steer[2]) < mpf("1e-70")
+        assert abs(mpmath.tan(reference.effects["kingpin"]) + out * steer[1] / steer[2]) < mpf("1e-70")
         body = ("lower_ball_joint", "tie_rod_outer", "wheel_centre", inner)
         for a in body:
             for b in body:

@@ -110,19 +110,19 @@ def test_angles_follow_equations_16_and_17_and_are_those_of_the_mirrored_right_w
     left = solve_reference(table, inputs, closure="collinear")
     names = ("lower_ball_joint", "strut_lower", "wheel_centre")
     (y5, z5), (y7, z7), (y10, z10) = (left.position[name][1:] for name in names)
-    assert abs(left.kingpin - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
-    assert abs(left.camber - mpmath.atan((z7 - z10) / (y7 - y10))) < mpf("1e-58")
-    assert left.kingpin > 0  # point 5 lies outboard of 7
+    assert abs(left.effects["kingpin"] - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
+    assert abs(left.effects["camber"] - mpmath.atan((z7 - z10) / (y7 - y10))) < mpf("1e-58")
+    assert left.effects["kingpin"] > 0  # point 5 lies outboard of 7
 
     mirrored = {name: (x, -y, z) for name, (x, y, z) in table.items()}
     right = solve_reference(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
-    assert abs(right.kingpin - left.kingpin) < mpf("1e-58")
-    assert abs(right.camber - left.camber) < mpf("1e-58")
+    assert abs(right.effects["kingpin"] - left.effects["kingpin"]) < mpf("1e-58")
+    assert abs(right.effects["camber"] - left.effects["camber"]) < mpf("1e-58")
 
 
 def test_a_wheel_that_leans_out_at_the_top_has_positive_camber(table: Table) -> None:
     # The design's spin axis is level in the table; jounce (a smaller theta) leans this wheel out.
-    assert solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").camber > 0
+    assert solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").effects["camber"] > 0
     reference = solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
     outward = minus(reference.position["wheel_centre"], reference.position["strut_lower"])
     assert outward[2] < 0  # the axle points down and out

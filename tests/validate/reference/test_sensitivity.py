@@ -6,13 +6,13 @@ from fractions import Fraction
 
 import pytest
 from mpmath import mpf
-from off_axis_cars import BASE, closing
+from reference_cars import OFF_AXIS as POINTS
 
 from validate.reference import InfeasibleError, Instant, sensitivities, solve_reference
 from validate.reference.dual import Dual
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import minus, times
 
-POINTS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
 INPUTS = {
     "arm_angle": (Fraction(3, 2), Fraction(2), Fraction(-3)),
     "rack": (Fraction(240), Fraction(150), Fraction(-400)),
@@ -44,9 +44,11 @@ def test_sensitivities_are_the_derivatives_of_every_quantity(closure: str, name:
             want = times(minus(*pair), per)
             assert all(abs(x) <= off + slope.error_bound[quantity] for x in minus(got, want))
         assert slope.error_bound[quantity] < mpf("1e-60")
-    assert set(slope.angles) == {"camber", "kingpin"}
-    for one, got in slope.angles.items():
-        assert abs(got - (ahead.angles[one] - behind.angles[one]) * per) <= off + slope.error_bound["angles"]
+    assert set(slope.effects) == set(EFFECTS)
+    for one, got in slope.effects.items():
+        assert (
+            abs(got - (ahead.effects[one] - behind.effects[one]) * per) <= off + slope.error_bound["effects"]
+        )
 
 
 def test_an_input_that_cannot_be_reached_has_no_sensitivities() -> None:
@@ -57,7 +59,8 @@ def test_an_input_that_cannot_be_reached_has_no_sensitivities() -> None:
 def test_an_angle_that_is_undefined_has_no_sensitivity() -> None:
     inner = {**POINTS, "wheel_axis_inner": POINTS["wheel_centre"]}
     slope = sensitivities(inner, INPUTS, closure="drawn")["rack", "value"]
-    assert set(slope.angles) == {"kingpin"}
+    assert "kingpin" in slope.effects
+    assert "camber" not in slope.effects
 
 
 def test_a_dual_differentiates_a_rational_function_exactly() -> None:
