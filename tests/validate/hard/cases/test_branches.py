@@ -31,7 +31,7 @@ from validate.hard.cases.counting import (
     near_greatest_rack,
     near_lowest_arm,
 )
-from validate.hard.cases.oriented import followed, sides
+from validate.hard.cases.oriented import drawn_signs, followed, sides
 from validate.hard.trial import Tried, try_scene
 from validate.reference import InfeasibleError, count_assemblies, solve_reference
 
