@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from typing import get_args
 
 from pointcoord import (
     Motion,
@@ -13,7 +12,8 @@ from pointcoord import (
     SceneError,
     simulate,
 )
-from pointcoord.simulation import Method
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import METHODS, Method
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -26,6 +26,9 @@ from validate.output.closing import warnings_of
 from validate.output.console import STANDARD_OUTPUT, Console, shown
 from validate.output.files import require_known_ending, require_writable
 from validate.output.motion_tables import ENDINGS, write_csv, write_motion
+from validate.paper.printed import PRINTED
+
+BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -37,7 +40,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     parser.add_argument(
         "--method",
-        choices=get_args(Method),
+        choices=tuple(BY_NAME),
         default="series",
         help="a chain of power series; Newton's method at every instant; or that with the paper's formulas "
         "as printed, which are wrong in places",
@@ -65,7 +68,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene = load_scene(options.scene)
     name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
     try:
-        motion = simulate(scene, options.method)
+        motion = simulate(scene, BY_NAME[options.method])
         for warning in (*warnings_of(motion.closing), *scene.mechanism.doubts):
             console.warn(f"{name}: {warning}")
         said = {*warnings_of(motion.closing), *scene.mechanism.doubts}
@@ -74,7 +77,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
                 console.note(f"{name}: {note}")
         if motion.closing.moves and not motion.closing.noticeable:
             console.note(f"{name}: {motion.closing.words}")
-        if "wheel_angles" in scene.effects:
+        if any("wheel_axis" in EFFECTS[effect].axes for effect in scene.effects):
             for taken in scene.mechanism.defaults_taken:
                 console.note(f"{name}: {taken}")
         _write(target, motion, console)
