@@ -16,7 +16,7 @@ from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import exact_product, exact_square
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine
 
 Array = NDArray[np.float64]

@@ -84,7 +84,7 @@ class Topology:
     def strongest(self, forces: Array) -> tuple[str, ...]:
         """Names of the constraints that take part in a balance of forces.
 
-        What can lock, links and the strut's slide, comes first; what only says how a body is made, last.
+        What can lock, links and slides, comes first; what only says how a body is made, last.
 
         Args:
             forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
@@ -95,7 +95,7 @@ class Topology:
         ranks: dict[str, int] = {}
         for constraint in self.constraints:
             last = first + len(constraint.labels)
-            name = constraint.labels[0].removesuffix(" (x)")
+            name = constraint.name
             sizes[name] = float(np.abs(forces[first:last]).max())
             ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
             first = last

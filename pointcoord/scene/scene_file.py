@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from pointcoord.effects.effect import EFFECTS
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.even_instants import even_instants
@@ -122,15 +123,9 @@ class MechanismPart(Part):
     @property
     def doubts(self) -> tuple[str, ...]:
         """What looks wrong with the drawing although it can be solved, in words."""
-        topology = self.topology
-        return drawing_doubts(
-            {name: np.array(place) for name, place in self.points.items()},
-            np.array(self.up),
-            self.outboard,
-            topology.wheel_axis,
-            topology.steering_axis,
-            {"wheel_axis_inner"},
-        )
+        points = {name: np.array(place) for name, place in self.points.items()}
+        axes = CarAxes(np.array(self.up), np.array(self.right), self.outboard)
+        return drawing_doubts(self.topology, points, axes)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -239,13 +234,12 @@ class Scene(Part):
         return effects
 
     @model_validator(mode="after")
-    def _spin_axis_known(self) -> Self:
-        inner, centre = (self.mechanism.points[name] for name in self.mechanism.topology.wheel_axis)
-        if "wheel_angles" in self.effects and inner == centre:
-            raise ValueError(
-                "strut_lower and wheel_centre are at the same place, so that the wheel's spin axis has no "
-                "direction; give the axis a point of its own, wheel_axis_inner, or leave 'wheel_angles' out"
-            )
+    def _effects_have_a_meaning(self) -> Self:
+        topology, points = self.mechanism.topology, self.mechanism.points
+        for name in self.effects:
+            problem = EFFECTS[name].refusal(topology, points)
+            if problem:
+                raise ValueError(problem)
         return self
 
     @model_validator(mode="after")

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import argparse
-from typing import get_args
 
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
-from pointcoord.simulation import Method
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_quiet, add_scene, load_scene, name_of, place_of_result, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.motion_tables import ENDINGS, write_csv, write_motion
+from validate.paper.printed import PRINTED
+
+BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -23,7 +26,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     parser.add_argument(
         "--method",
-        choices=get_args(Method),
+        choices=tuple(BY_NAME),
         default="series",
         help="a chain of power series; Newton's method at every instant; or that with the paper's formulas "
         "as printed, which are wrong in places",
@@ -45,7 +48,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:
         with told_as(name):
-            motion = simulate(scene, options.method)
+            motion = simulate(scene, BY_NAME[options.method])
         _comment(scene, name, motion, console)
         _write(target, motion, console)
     except SceneError:
@@ -64,7 +67,7 @@ def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
     notes = [note for note in motion.notes if note not in warnings]
     if motion.closing.moves and not motion.closing.noticeable:
         notes.append(motion.closing.words)
-    if "wheel_angles" in scene.effects:
+    if any("wheel_axis" in EFFECTS[effect].axes for effect in scene.effects):
         notes += scene.mechanism.defaults_taken
     for note in notes:
         console.note(f"{name}: {note}")

@@ -8,7 +8,8 @@ import numpy as np
 
 from pointcoord import AssemblyError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import End, Standing
-from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.results.closing import ALLOWED
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_scene, load_scene, name_of, told_as
@@ -36,19 +37,20 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects)
+    evaluated = plan.derivatives(scene.mechanism.topology).values()
     name = name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {scene.mechanism.type}, {scene.mechanism.side} side; inputs: {', '.join(scene.inputs)}",
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
-        "computed: position of every point, mm",
+        *(f"computed: {effect.gives}" for effect in ALWAYS),
         *(f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects),
         *(
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
             for effect in plan.left_out
         ),
-        f"derivatives solved for: {plan.derivative}; evaluated for every point: {plan.derivative_of_points}, "
-        f"for the knuckle's points: {plan.derivative_of_knuckle}",
+        f"derivatives solved for: {plan.derivative}; evaluated for every point: {min(evaluated)}, "
+        f"for some: {max(evaluated)}",
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
@@ -68,7 +70,7 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
         for input_name, value in stands.inputs.items()
     ]
     inner = "wheel_axis_inner" if "wheel_axis_inner" in scene.mechanism.points else "strut_lower (by default)"
-    angles = ", ".join(f"{n} {_degrees(getattr(stands, n))} deg" for n in ("camber", "kingpin"))
+    angles = ", ".join(f"{name} {_degrees(angle)} deg" for name, angle in stands.angles.items())
     lines.append(f"there: {angles}; the wheel turns about the line from {inner} to wheel_centre")
     lines.append(stands.closing.words)
     console.say("\n".join(lines))

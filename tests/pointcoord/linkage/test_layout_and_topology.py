@@ -9,11 +9,12 @@ from pointcoord import UnknownName
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
+from pointcoord.suspensions import TOPOLOGIES
+from validate.paper.printed import PRINTED
 
 EVERY = [
     topology
-    for kinds in (TOPOLOGIES, PRINTED_TOPOLOGIES)
+    for kinds in (TOPOLOGIES, PRINTED.topologies)
     for closures in kinds.values()
     for topology in closures.values()
 ]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
-from pointcoord.effects.effect import EFFECTS
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.suspensions.macpherson import COLLINEAR
 
 POINTS = "\n".join(

@@ -8,14 +8,15 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, UnknownName, simulate
-from pointcoord.linkage.constraints.constraint import OnLine, PrintedParallel
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.newton import polish
-from pointcoord.printed import printed_body_rates, printed_square_velocity_term
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.pointwise import square_velocity_term
-from pointcoord.suspensions.macpherson import COLLINEAR, PRINTED
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.paper.printed import PRINTED, TOPOLOGY, PrintedQuotients, printed_square_velocity_term
+from validate.paper.printed_parallel import PrintedParallel
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
@@ -103,7 +104,7 @@ def test_printed_term_differs_in_the_rows_of_the_strut_only(table: Points) -> No
 
 def test_printed_formulation_has_the_same_positions_and_velocities(make_scene: Callable[..., Scene]) -> None:
     scene = make_scene(rack=(0.0, 20.0))
-    newton, printed = simulate(scene, "newton"), simulate(scene, "printed")
+    newton, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
     one, other = newton.proof(), printed.proof()
     for name in newton.position:
         gap = np.abs(newton.position[name] - printed.position[name]).max(axis=-1)
@@ -145,8 +146,8 @@ def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not
         # The axis is flat up to the rounding of the turn and of the pose.
         y, tolerance = pose.y, 16 * EPS + 4 * float(pose.bound / flat.unit)
     shape = replace(
-        PRINTED,
-        constraints=tuple(c for c in PRINTED.constraints if isinstance(c, PrintedParallel)),
+        TOPOLOGY,
+        constraints=tuple(c for c in TOPOLOGY.constraints if isinstance(c, PrintedParallel)),
     )
     z = np.zeros(shape.layout.size)
     for name in (*shape.moving, *shape.chassis):
@@ -168,7 +169,7 @@ def test_printed_quotient_fails_in_the_steering_scene_and_least_squares_do_not(
     make_scene: Callable[..., Scene],
 ) -> None:
     scene = make_scene(**STEER, samples=81)
-    ours, printed = simulate(scene, "newton"), simulate(scene, "printed")
+    ours, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
     omega = ours.angular_velocity["knuckle"]
     # The arm stands still, so the knuckle turns about the steering axis through points 5 and 4.
     axis = ours.position["strut_top"] - ours.position["lower_ball_joint"]
@@ -197,7 +198,7 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
     v = np.cross(omega, points)
     a = np.cross(alpha, points) + np.cross(omega, v)
     names = ("a", "b", "c")
-    found = printed_body_rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
+    found = PrintedQuotients().rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
     r = points[2] - points[0]
     for exact, value in zip((omega, alpha), found, strict=True):
         # v65 x v75 = omega (v65 . r75): a few roundings over the cosine that the quotient divides by.
@@ -206,7 +207,7 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
 
 
 def test_unknown_method_is_refused_with_the_methods_that_exist(make_scene: Callable[..., Scene]) -> None:
-    with pytest.raises(UnknownName, match="series, newton, printed"):
+    with pytest.raises(UnknownName, match="series, newton"):
         simulate(make_scene(), "newtom")
 
 
