@@ -33,6 +33,9 @@ class Method:
     square_velocity_term: SquareVelocityTerm = square_velocity_term
     effects: Mapping[str, Effect] = field(default_factory=dict)
 
+    def __str__(self) -> str:
+        return self.name
+
 
 SERIES = Method("series", by_series=True)
 """A chain of power series, dense in time."""
