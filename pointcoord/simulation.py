@@ -85,7 +85,7 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
 
 def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
     """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name."""
-    if scene.mechanism.closure == "drawn" and moved.changes_the_car:
+    if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
         raise SceneError(
             scene.title or "scene",
             "mechanism.points",
@@ -114,15 +114,15 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
     """
     part = scene.mechanism
     source = scene.title or "scene"
-    why = f": {method.only}" if method.only else ""
-    closures = method.topologies.get(part.type, {})
-    for key, value, allowed in (
-        ("type", part.type, method.topologies),
-        ("closure", part.closure, closures),
-    ):
-        if value not in allowed:
-            problem = f"the method {method.name!r} cannot solve {key} = {value!r}{why}"
-            raise SceneError(source, f"mechanism.{key}", problem, ", ".join(allowed))
+    closures = method.suspensions[part.type].closures if part.type in method.suspensions else {}
+    if part.closure not in closures:
+        why = f": {method.only}" if method.only else ""
+        raise SceneError(
+            source,
+            "mechanism.closure",
+            f"the method {method.name!r} cannot solve a {part.type} with closure = {part.closure!r}{why}",
+            ", ".join(f"{name} of a {s.type}" for s in method.suspensions.values() for name in s.closures),
+        )
     topology = closures[part.closure]
     try:
         return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
