@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
-from pointcoord.linkage.topology import Topology
 from pointcoord.solve.pointwise import SquareVelocityTerm, square_velocity_term
-from pointcoord.suspensions import TOPOLOGIES
+from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.suspensions.suspension import Suspension
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Method:
     Attributes:
         name: in results and messages.
         by_series: a chain of power series, dense in time; or Newton's method at each of the scene's instants.
-        topologies: the linkages that it can solve, by suspension and closure.
+        suspensions: those that it can solve, by type, with the closures that it can.
         only: why there are no others, in words.
         square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
             series have it in themselves.
@@ -28,10 +28,13 @@ class Method:
 
     name: str
     by_series: bool = False
-    topologies: Mapping[str, Mapping[str, Topology]] = field(default_factory=lambda: TOPOLOGIES)
+    suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
     only: str = ""
     square_velocity_term: SquareVelocityTerm = square_velocity_term
     effects: Mapping[str, Effect] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return self.name
 
 
 SERIES = Method("series", by_series=True)

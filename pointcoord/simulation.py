@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.plan import plan_effects
 from pointcoord.errors import (
-    AssemblyError,
     InputNotKnown,
     InputOutOfRange,
     MechanismError,
-    MotionTooLong,
-    MotionTooRough,
     SceneError,
 )
 from pointcoord.linkage.car_axes import CarAxes
@@ -23,7 +20,6 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES, Method, method_of
-from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import ALLOWED, Closing, closing
 from pointcoord.results.motion import Motion
 from pointcoord.results.readout import Readout
@@ -33,8 +29,8 @@ from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.pointwise import Solved, solve_instants
-from pointcoord.solve.taylor import COARSEST, FINEST, Chain, Settings, build_chain
+from pointcoord.solve.pointwise import solve_instants
+from pointcoord.solve.taylor import COARSEST, FINEST, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -55,14 +51,43 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
         InputOutOfRange: an input leaves the values for which it has a meaning.
         InputNotKnown: the terms of an input's law cancel so far that no pose can be proven with it.
-        AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there.
+        AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there, None if
+            there is none.
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
     """
     require_scene(scene)
-    method = method_of(method)
     # Its dictionaries can be written after it was read.
-    scene = Scene.checked(scene, scene.title or "scene")
+    task = _prepared(Scene.checked(scene, scene.title or "scene"), method_of(method))
+    solved = _by_series(task) if task.method.by_series else _at_instants(task)
+    motion = _motion(task, solved)
+    error = solved.states.status.error(motion)
+    if error is not None:
+        raise error
+    assert motion is not None  # what is complete has its first instant at least
+    return motion
+
+
+@dataclass(frozen=True)
+class Task:
+    """A scene ready to be solved: checked, its drawing closed and its first pose assembled.
+
+    Attributes:
+        functions: the laws of the inputs that drive the linkage.
+        start: the pose at the first instant.
+        closing: how far closing the drawing moved its points.
+    """
+
+    scene: Scene
+    method: Method
+    readout: Readout
+    functions: Mapping[str, TimeFunction]
+    start: Pose
+    closing: Closing
+
+
+def _prepared(scene: Scene, method: Method) -> Task:
+    """Check everything that can be checked before the motion, and assemble its start."""
     mechanism = scene_mechanism(scene, method)
     readout = Readout(
         mechanism=mechanism,
@@ -74,18 +99,58 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     _check_range(mechanism, functions, scene.instants)
     readout.chassis.states(scene.instants, readout.derivative_of_every_point)
     first = scene.time.start
-    path = close_drawing(mechanism, first)
-    moved = closing(mechanism, path.y)
+    closed = close_drawing(mechanism, first)
+    moved = closing(mechanism, closed.y)
     _require_the_drawn_car(scene, moved)
-    start = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    pose = assemble(mechanism, start, first, path)
-    solve = _by_series if method.by_series else _by_newton
-    return solve(scene, method, readout, functions, pose, moved)
+    inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
+    start = assemble(mechanism, inputs, first, closed)
+    return Task(scene, method, readout, functions, start, moved)
+
+
+def _by_series(task: Task) -> SolvedScene:
+    """Solve a motion as a chain of power series."""
+    mechanism, time = task.readout.mechanism, task.scene.time
+    tolerance = TRUNCATION_SHARE * task.scene.tolerance / float(mechanism.unit)
+    settings = Settings(tolerance=tolerance, derivative=task.readout.plan.derivative)
+    chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
+    notes = _tolerance_notes(task.scene, settings, mechanism)
+    states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
+    return SolvedScene(task.readout, task.functions, states)
+
+
+def _at_instants(task: Task) -> SolvedScene:
+    """Solve a motion at each of the scene's instants by itself."""
+    mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
+    term = task.method.square_velocity_term
+    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term)
+    return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
+
+
+def _motion(task: Task, solved: SolvedScene) -> Motion | None:
+    """The motion, whole or up to where it was solved; None if it is nowhere."""
+    times = solved.states.covered(task.scene.instants)
+    if not len(times):
+        return None
+    samples = solved.samples(times)
+    _require_known(solved, samples, task.scene.tolerance)
+    moved = (task.closing.words,) if task.closing.noticeable else ()
+    doubts, numbers = task.scene.mechanism.doubts, _missing_numbers(solved, samples)
+    return Motion(
+        times=samples.times,
+        numbers=samples.numbers,
+        method=task.method.name,
+        status=solved.states.status,
+        start=task.start,
+        closing=task.closing,
+        work=task.start.work + solved.states.work,
+        notes=(*moved, *doubts, *solved.states.notes, *numbers),
+        solved=solved,
+    )
 
 
 def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
     """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name."""
-    if scene.mechanism.closure == "drawn" and moved.changes_the_car:
+    if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
         raise SceneError(
             scene.title or "scene",
             "mechanism.points",
@@ -114,15 +179,15 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
     """
     part = scene.mechanism
     source = scene.title or "scene"
-    why = f": {method.only}" if method.only else ""
-    closures = method.topologies.get(part.type, {})
-    for key, value, allowed in (
-        ("type", part.type, method.topologies),
-        ("closure", part.closure, closures),
-    ):
-        if value not in allowed:
-            problem = f"the method {method.name!r} cannot solve {key} = {value!r}{why}"
-            raise SceneError(source, f"mechanism.{key}", problem, ", ".join(allowed))
+    closures = method.suspensions[part.type].closures if part.type in method.suspensions else {}
+    if part.closure not in closures:
+        why = f": {method.only}" if method.only else ""
+        raise SceneError(
+            source,
+            "mechanism.closure",
+            f"the method {method.name!r} cannot solve a {part.type} with closure = {part.closure!r}{why}",
+            ", ".join(f"{name} of a {s.type}" for s in method.suspensions.values() for name in s.closures),
+        )
     topology = closures[part.closure]
     try:
         return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
@@ -140,40 +205,6 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
-def _by_series(
-    scene: Scene,
-    method: Method,
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    pose: Pose,
-    moved: Closing,
-) -> Motion:
-    mechanism, plan, time = readout.mechanism, readout.plan, scene.time
-    tolerance = TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit)
-    settings = Settings(tolerance=tolerance, derivative=plan.derivative)
-
-    def motion(chain: Chain, instants: Array) -> Motion:
-        states = StatesOfChain(readout, functions, chain, time.start)
-        work = pose.work + chain.work + states.work
-        solved = SolvedScene(readout, functions, states)
-        found = _motion(scene, solved, instants, method, pose, moved, work)
-        said = (*_drawing_notes(scene, moved), *_tolerance_notes(scene, settings, mechanism))
-        return replace(found, notes=(*said, *found.notes))
-
-    try:
-        chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
-    except (AssemblyError, MotionTooLong, MotionTooRough) as error:
-        if isinstance(error.partial, Chain):
-            error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
-        raise
-    return motion(chain, scene.instants)
-
-
-def _drawing_notes(scene: Scene, moved: Closing) -> tuple[str, ...]:
-    """How the solved car differs from the drawn one, and what looks wrong with the drawing."""
-    return (*((moved.words,) if moved.noticeable else ()), *scene.mechanism.doubts)
-
-
 def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
     used = min(max(settings.tolerance, FINEST), COARSEST)
@@ -184,38 +215,6 @@ def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> 
     )
     held = used * float(mechanism.unit) / TRUNCATION_SHARE
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
-
-
-def _by_newton(
-    scene: Scene,
-    method: Method,
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    pose: Pose,
-    moved: Closing,
-) -> Motion:
-    def motion(solved: Solved) -> Motion:
-        states = StatesAtInstants(readout, solved)
-        work = pose.work + solved.work + states.work
-        found = _motion(
-            scene, SolvedScene(readout, functions, states), solved.times, method, pose, moved, work
-        )
-        return replace(found, notes=(*_drawing_notes(scene, moved), *found.notes))
-
-    try:
-        solved = solve_instants(
-            readout.mechanism,
-            functions,
-            pose,
-            scene.instants,
-            readout.plan.derivative,
-            method.square_velocity_term,
-        )
-    except AssemblyError as error:
-        if isinstance(error.partial, Solved):
-            error.partial = motion(error.partial)
-        raise
-    return motion(solved)
 
 
 def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
@@ -236,29 +235,6 @@ def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> N
         function, instant = solved.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
         raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
-
-
-def _motion(
-    scene: Scene,
-    solved: SolvedScene,
-    instants: Array,
-    method: Method,
-    pose: Pose,
-    moved: Closing,
-    work: Work,
-) -> Motion:
-    samples = solved.samples(instants)
-    _require_known(solved, samples, scene.tolerance)
-    return Motion(
-        times=samples.times,
-        numbers=samples.numbers,
-        method=method.name,
-        start=pose,
-        closing=moved,
-        work=work,
-        notes=_missing_numbers(solved, samples),
-        solved=solved,
-    )
 
 
 def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:

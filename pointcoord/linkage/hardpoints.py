@@ -34,9 +34,7 @@ def build_mechanism(
     _check_names(points, topology.points, "point")
     _check_names(directions, topology.directions, "direction")
     topology = topology.given(points)
-    standing = {name: points[other] for name, other in topology.stand_ins.items() if other in points}
-    taken = {name: place for name, place in standing.items() if name in topology.chassis}
-    located = _checked(taken | dict(points), topology.points, "point")
+    located = _checked(topology.with_defaults(points), topology.points, "point")
     turned = _checked(directions, topology.directions, "direction")
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -14,16 +14,20 @@ from pointcoord.results.closing import Closing
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.assembly import Pose
+from pointcoord.solve.status import Status
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
 class Motion(Samples):
-    """A solved scene at its own instants; it can be pickled, with all that it can still be asked for.
+    """A solved scene at its own instants, or at those before something stopped it.
+
+    It can be pickled, with all that it can still be asked for.
 
     Attributes:
         method: how it was solved: series, newton or another method's name.
+        status: whether it covers the whole scene, and if not, what stopped it.
         start: the assembled pose at the first instant, with its condition number and proven bound.
         closing: how far the drawing's points moved to close.
         work: what it cost.
@@ -33,6 +37,7 @@ class Motion(Samples):
     """
 
     method: str
+    status: Status
     start: Pose
     closing: Closing
     work: Work
@@ -42,7 +47,8 @@ class Motion(Samples):
     def __repr__(self) -> str:
         count = len(self.notes)
         noted = f"; {count} note{'s' if count > 1 else ''}" if count else ""
-        return f"<Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
+        part = "" if self.status.complete else "part of a "
+        return f"<{part}Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
 
     @property
     def unit(self) -> float:

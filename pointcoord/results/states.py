@@ -21,6 +21,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.pointwise import Solved
+from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
 
@@ -36,8 +37,22 @@ class SolvedStates(SolvedCoordinates, Protocol):
         ...
 
     @property
+    def status(self) -> Status:
+        """Whether they cover all that was asked for, and if not, what stopped the solver."""
+        ...
+
+    @property
     def work(self) -> Work:
-        """What reading them costs."""
+        """What solving took, and what reading them takes of each instant."""
+        ...
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where they were not solved for as the scene asks."""
+        ...
+
+    def covered(self, instants: Array) -> Array:
+        """Those of a scene's instants at which they are known."""
         ...
 
     def states(self, instants: Array) -> list[dict[str, Array]]:
@@ -55,7 +70,17 @@ class StatesAtInstants:
 
     readout: Readout
     solved: Solved
+    notes: tuple[str, ...] = ()
     dense: bool = False
+
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.solved.status
+
+    def covered(self, instants: Array) -> Array:
+        """Up to the last one that was reached."""
+        return instants[: len(self.solved.times)]
 
     def states(self, instants: Array) -> list[dict[str, Array]]:
         """States at some of the instants."""
@@ -86,10 +111,9 @@ class StatesAtInstants:
 
     @property
     def work(self) -> Work:
-        """What the states take of each instant."""
-        derivative = self.readout.plan.derivative
-        return Work(
-            derivatives_evaluated=derivative + 1,
+        """What solving took, and the states of each instant."""
+        return self.solved.work + Work(
+            derivatives_evaluated=self.readout.plan.derivative + 1,
             coordinates_evaluated=sum(3 * (highest + 1) for highest in self.readout.derivatives.values()),
         )
 
@@ -101,13 +125,25 @@ class StatesOfChain:
     Attributes:
         functions: the laws of the inputs that drive the linkage.
         start: of the chain, s.
+        notes: where the chain was not cut as the scene asks.
     """
 
     readout: Readout
     functions: Mapping[str, TimeFunction]
     chain: Chain
     start: float
+    notes: tuple[str, ...] = ()
     dense: bool = True
+
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.chain.status
+
+    def covered(self, instants: Array) -> Array:
+        """Those up to the end of the chain."""
+        segments = self.chain.segments
+        return instants[instants <= self.chain.stop] if segments else instants[:0]
 
     def states(self, instants: Array) -> list[dict[str, Array]]:
         """States at instants of shape (N,).
@@ -156,8 +192,8 @@ class StatesOfChain:
 
     @property
     def work(self) -> Work:
-        """What the sums take of each instant."""
-        return Work(
+        """What solving took, and the sums of each instant."""
+        return self.chain.work + Work(
             derivatives_evaluated=self.readout.plan.derivative + 1,
             coordinates_evaluated=sum(
                 3 * len(names) * (derivatives + 1) for names, derivatives in self._requests

@@ -16,7 +16,7 @@ from pointcoord.linkage.topology import Topology
 
 Array = NDArray[np.float64]
 
-SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no strut is shorter than the one and no car longer than the other
+SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no suspension is smaller, and no car longer
 
 
 def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[str, ...]:

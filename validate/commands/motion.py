@@ -79,8 +79,8 @@ def _advice(error: PointcoordError) -> str:
 
 def _kept(target: str | None, error: PointcoordError, console: Console) -> str:
     """Write what was solved before the motion stopped, and say where it is and how far it goes."""
-    partial = getattr(error, "partial", None)
-    if not isinstance(partial, Motion) or not len(partial.times):
+    partial: Motion | None = error.partial
+    if partial is None:
         return "; nothing is written"
     _write(target, partial, console)
     instants = f"{len(partial.times)} instants" if len(partial.times) > 1 else "one instant"

@@ -21,7 +21,8 @@ from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.method import Method
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.pointwise import square_velocity_term
-from pointcoord.suspensions.macpherson import COLLINEAR
+from pointcoord.suspensions.macpherson import COLLINEAR, MACPHERSON
+from pointcoord.suspensions.suspension import Suspension
 from validate.paper.printed_parallel import PrintedParallel
 
 Array = NDArray[np.float64]
@@ -102,7 +103,7 @@ def _quotient(a: Array, b: Array, r: Array) -> Array:
 
 PRINTED = Method(
     name="printed",
-    topologies={"macpherson": {"collinear": TOPOLOGY}},
+    suspensions={MACPHERSON.type: Suspension(MACPHERSON.type, {"collinear": TOPOLOGY})},
     only="the paper prints the strut with its ball joint on the strut axis",
     square_velocity_term=printed_square_velocity_term,
     effects={KNUCKLE_RATES.name: replace(KNUCKLE_RATES, formula=PrintedQuotients())},

@@ -9,14 +9,15 @@ from pointcoord import UnknownName
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions import TOPOLOGIES
+from pointcoord.method import SERIES
+from pointcoord.suspensions import SUSPENSIONS
 from validate.paper.printed import PRINTED
 
 EVERY = [
     topology
-    for kinds in (TOPOLOGIES, PRINTED.topologies)
-    for closures in kinds.values()
-    for topology in closures.values()
+    for method in (SERIES, PRINTED)
+    for suspension in method.suspensions.values()
+    for topology in suspension.closures.values()
 ]
 by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topology.name)
 
@@ -96,7 +97,7 @@ def test_unknown_name_raises_with_the_names_that_exist(
 
 
 def test_unknown_link_raises_with_the_links_that_exist() -> None:
-    layout = TOPOLOGIES["macpherson"]["drawn"].layout
+    layout = SUSPENSIONS["macpherson"].closures["drawn"].layout
     with pytest.raises(UnknownName, match="tie_rod_inner"):
         layout.squared_length("strut_top", "wheel_centre")
 

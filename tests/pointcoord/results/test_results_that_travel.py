@@ -33,7 +33,7 @@ def assert_same_proof(one: Motion, other: Motion) -> None:
         assert np.array_equal(getattr(first, field.name), getattr(second, field.name)), field.name
 
 
-@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=lambda method: method.name)
+@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=str)
 @pytest.mark.parametrize("law", [SINE, [0.8, 0.25]], ids=["sine", "polynomial"])
 def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for(
     make_scene: Callable[..., Scene], method: Method, law: object
@@ -51,7 +51,7 @@ def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for(
 
 @pytest.mark.parametrize("method", ["series", "newton"])
 @pytest.mark.parametrize("name", built_in_scenes())
-def test_motions_of_the_built_in_scenes_are_pickled_with_their_closing(name: str, method: str) -> None:
+def test_motions_of_the_built_in_scenes_are_pickled_with_their_closing(name: str, method: Method) -> None:
     motion = simulate(Scene.load(name), method)
     again = pickle.loads(pickle.dumps(motion))
     assert_same(motion, again)
