@@ -27,10 +27,9 @@ from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.output.motion_tables import write_motion
 from validate.reference import solve_reference
-from validate.reference.branches import candidate, choices_of_table
+from validate.reference.candidates import choices_of_table
 from validate.reference.certificate import certify, refine
-from validate.reference.design import Design, Driven, values_only
-from validate.reference.equations import unknown_of
+from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
 from validate.studies.chunk_store import Store
 
@@ -99,9 +98,9 @@ def uncertified() -> object:
     """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
     with ctx.workprec(bits(60)):
         design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
-        known = values_only(design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)})))
-        drawn = candidate(known, choices_of_table(design.table, design.up, "collinear"))
-        assembled = refine(unknown_of(drawn.points, known), known)
+        known = values_only(design.known(design.driven({"arm_angle": (1.5, 0, 0)})))
+        drawn = design.linkage.candidate(known, choices_of_table(design.table, design.up, design.linkage))
+        assembled = refine(design.linkage.unknown_of(drawn.points, known), known)
         assembled[0] = (assembled[0] + arb("1e-59")).mid()
         return certify(assembled, known, Fraction(1, 10**60))
 
@@ -271,11 +270,9 @@ RECIPES: dict[str, Recipe] = {
         {"name": "arm-higest"},
     ),
     "validate.reference.errors.NoReferenceError": Recipe(
-        lambda *_: (
-            solve_reference(
-                {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
-            ).camber
-        ),
+        lambda *_: solve_reference(
+            {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
+        ).effect("camber"),
         ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
     ),
     "validate.reference.errors.BadInputError": Recipe(

@@ -27,14 +27,14 @@ def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
     first = instants[0]
-    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
+    angles = [n for n in ("camber", "kingpin") if all(n in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
         "angular_velocity": _rounded([i.angular_velocity for i in instants], ("knuckle",)),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], ("knuckle",)),
-        "wheel": {n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
+        "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {

@@ -18,11 +18,10 @@ from validate.formulations.protocol import Solution
 from validate.hard.case import Answer, Trial
 from validate.hard.judged import judged_answer
 from validate.hard.trial import Measure, Tried, solved, try_scene
-from validate.reference import AmbiguousAssemblyError, Choices, Instant, NoReferenceError
-from validate.reference.branches import candidate
-from validate.reference.closures import equations_for
-from validate.reference.design import Design, Driven, exact_vector, values_only
+from validate.reference import AmbiguousAssemblyError, Instant, NoReferenceError
+from validate.reference.design import Design, exact_vector, values_only
 from validate.reference.instant import prove_instant
+from validate.reference.macpherson import Choices
 from validate.reference.solve import with_enough_digits
 from validate.reference.vectors import cross, dot, minus
 
@@ -30,7 +29,7 @@ DIGITS = 60
 
 
 def drawn_choices(scene: Scene) -> Choices:
-    """The four signs of a drawing, from exact products (see `validate.reference.Choices`).
+    """The four signs of a drawing, from exact products (see `validate.reference.macpherson.Choices`).
 
     Raises:
         AmbiguousAssemblyError: a product is exactly zero, so that nothing tells the side.
@@ -66,14 +65,14 @@ def instant_on_side(scene: Scene, time: float) -> Instant:
     """
     part, choices = scene.mechanism, drawn_choices(scene)
     design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure)
-    driven = Driven.from_mapping(inputs_at(scene, time))
+    driven = design.driven(inputs_at(scene, time))
 
     def attempt(working: int) -> Instant:
         known = design.known(driven)
         still = values_only(known)
-        chosen = candidate(still, choices)
+        chosen = design.linkage.candidate(still, choices)
         chosen.require_feasible(float(design.unit))
-        start = equations_for(part.closure).unknown_of(chosen.points, still)
+        start = design.linkage.unknown_of(chosen.points, still)
         return prove_instant(design, known, start, choices, DIGITS, working)
 
     return with_enough_digits(attempt, DIGITS)

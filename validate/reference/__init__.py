@@ -1,4 +1,4 @@
-"""The reference: the equations of both struts in many digits, with a proof of every one.
+"""The reference: the equations of every suspension in many digits, with a proof of every one.
 
 Third and independent: it shares no code with the formulations it judges. Where the project says
 "error" it means the distance from these numbers.
@@ -9,7 +9,6 @@ from validate.extras import MissingPackage
 try:
     from validate.reference.assemblies import Assemblies as Assemblies
     from validate.reference.assemblies import count_assemblies as count_assemblies
-    from validate.reference.branches import Choices as Choices
     from validate.reference.drawing import ClosedDrawing as ClosedDrawing
     from validate.reference.drawing import closed_drawing as closed_drawing
     from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
@@ -19,6 +18,7 @@ try:
     from validate.reference.errors import NotDecidedError as NotDecidedError
     from validate.reference.errors import SingularPoseError as SingularPoseError
     from validate.reference.instant import Instant as Instant
+    from validate.reference.linkage import Choices as Choices
     from validate.reference.sensitivity import Sensitivity as Sensitivity
     from validate.reference.sensitivity import sensitivities as sensitivities
     from validate.reference.solve import solve_reference as solve_reference

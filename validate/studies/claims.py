@@ -86,7 +86,7 @@ def _held(
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
-    return [instant.angles[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
+    return [instant.effects[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
 
 
 def _distance(found: float, exact: Any) -> float:

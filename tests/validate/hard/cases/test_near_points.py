@@ -14,19 +14,18 @@ from validate.hard.case import Case, wrong_without_warning
 from validate.hard.cases.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.content import paper_car
 from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
-from validate.reference import AmbiguousAssemblyError, Choices
-from validate.reference.equations import LINKS, NUMBER_OF
+from validate.reference import AmbiguousAssemblyError
+from validate.reference.macpherson import COLLINEAR, Choices
 
 EPS = float(np.finfo(float).eps)
-NAMES = {number: name for name, number in NUMBER_OF.items()}
 
 
 def test_the_assembled_car_has_the_links_of_the_paper_and_its_strut_on_a_line() -> None:
     p = assembled()
-    for i, j in LINKS:
-        drawn = np.linalg.norm(np.subtract(PAPER[NAMES[i]], PAPER[NAMES[j]]))
+    for a, b in COLLINEAR.links:
+        drawn = np.linalg.norm(np.subtract(PAPER[a], PAPER[b]))
         # Six coordinates below 600 mm are rounded, and the norms.
-        assert abs(np.linalg.norm(p[NAMES[i]] - p[NAMES[j]]) - drawn) < 8 * EPS * 600
+        assert abs(np.linalg.norm(p[a] - p[b]) - drawn) < 8 * EPS * 600
     axis = p["strut_top"] - p["lower_ball_joint"]
     for name in ("strut_lower", "strut_rod_end"):
         beside = np.cross(p[name] - p["lower_ball_joint"], axis / np.linalg.norm(axis))
