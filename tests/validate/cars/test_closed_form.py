@@ -10,8 +10,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from validate.cars.car import Car
 from validate.cars.closed_form import ClosedForm
-from validate.cars.input_limits import ARM, STRUT, TIE_ROD, Car, Linkage
+from validate.cars.input_limits import ARM, TIE_ROD, Linkage
+from validate.cars.macpherson import STRUT
 from validate.cars.near_singular import random_car
 from validate.cars.strategies import RIGHT, UP, cars
 

@@ -13,14 +13,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import (
-    NO_OBSTACLE,
-    judged,
-    judged_alone,
-    obstacle,
-    true_solution,
-    unanswered,
-)
+from validate.adjudication.reference_solution import reference_solution
+from validate.adjudication.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 from validate.cars.random_scenes import CLOSURES, KINDS, SEED, RandomCar, random_car
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
@@ -120,7 +114,7 @@ def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
     assert judged_alone(scene, answer) == "answer right"
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
     assert judged_alone(scene, replace(answer, position=moved)) == "answer wrong"
-    reference: Solution = true_solution(scene)
+    reference: Solution = reference_solution(scene)
     assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
 
