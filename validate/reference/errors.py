@@ -30,10 +30,9 @@ class InfeasibleError(NoReferenceError):
     """The inputs ask for a pose that the links cannot reach, and that is proven.
 
     Attributes:
-        closure: "arm" (the lower ball joint), "strut" (a drawn axis that passes the ball joint farther off
-            than the strut top is) or "tie_rod" (its outer end).
-        gap: how far the link is too short, mm (the 5-1 length for the arm, 5-4 for the strut, 6-5 for the
-            tie rod).
+        closure: "arm" (the lower ball joint), "tie_rod" (its outer end), or what the suspension's closed form
+            names (see its `branches`).
+        gap: how far a link of it is too short, mm.
     """
 
     def __init__(self, closure: str, gap: float) -> None:

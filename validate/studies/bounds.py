@@ -168,7 +168,7 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
             f"reference: {reference if isinstance(reference, str) else 'answers'}",
         )
     samples = motion.at(np.array([instant]))
-    proof = motion.prover(samples, False)
+    proof = motion.proof_of(samples)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, Variant.of(pose.car), distance, "pointcoord: no finite bound")

@@ -82,8 +82,8 @@ def test_a_fault_of_a_number_does_not_widen_what_is_claimed_of_it(
 
     def spoilt(motion: Motion, rates: bool = False) -> Proof:
         proof = prove(motion, rates)
-        wider = {name: bound + 1.0 for name, bound in getattr(proof.proven, quantity).items()}
-        return replace(proof, proven=replace(proof.proven, **{quantity: wider}))
+        wider = {name: bound + 1.0 for name, bound in proof.proven[quantity].items()}
+        return replace(proof, proven={**proof.proven, quantity: wider})
 
     right = formulation("pointcoord").solve(Scene.load("steer")).accuracy
     monkeypatch.setattr(Motion, "proof", spoilt)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from off_axis_cars import BASE, Points
+from closed_forms import Points
+from off_axis_cars import BASE
 from reference_cars import OFF_AXIS as POINTS
 
 from validate.reference import AmbiguousAssemblyError, BadInputError, closed_drawing, solve_reference

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from fractions import Fraction
 
@@ -9,8 +10,8 @@ import mpmath
 import pytest
 from mpmath import mpf
 
-from validate.reference import InfeasibleError, solve_reference, time_function_value
-from validate.reference.vectors import dot, minus
+from validate.reference import InfeasibleError, Instant, solve_reference, time_function_value
+from validate.reference.vectors import cross, dot, minus
 
 Table = dict[str, tuple[int, int, int]]
 
@@ -155,3 +156,38 @@ def test_floats_are_the_nearest_to_the_reference(table: Table) -> None:
         error = abs(mpf(value) - number)
         assert error <= min(abs(mpf(math.nextafter(value, to)) - number) for to in (-math.inf, math.inf))
         assert error + reference.radius < Fraction(math.ulp(value)) / 2 + Fraction(1, 10**50)
+
+
+def steering(table: Table, t: Fraction) -> Instant:
+    """The paper's steering scene."""
+    inputs = {"arm_angle": (1.5707963267948966, 0, 0), "rack": time_function_value(RACK, t, 100)}
+    return solve_reference(table, inputs, digits=90, closure="collinear")
+
+
+def test_steering_turns_the_knuckle_about_the_axis_5_4_at_1_46_rad_per_s(table: Table) -> None:
+    start = steering(table, Fraction(0))
+    omega = start.angular_velocity["knuckle"]
+    axis = minus(start.position["strut_top"], start.position["lower_ball_joint"])
+    size = dot(omega, omega) ** mpf("0.5")
+    assert size == pytest.approx(1.463, abs=5e-4)
+    sine = dot(cross(omega, axis), cross(omega, axis)) ** mpf("0.5") / size / dot(axis, axis) ** mpf("0.5")
+    assert sine < mpf("1e-80")
+
+
+def test_the_printed_quotient_for_omega_is_0_over_0_in_the_steering_scene(table: Table) -> None:
+    now = steering(table, Fraction(1, 5))
+    v5 = now.velocity["lower_ball_joint"]
+    v65, v75 = minus(now.velocity["tie_rod_outer"], v5), minus(now.velocity["strut_lower"], v5)
+    r75 = minus(now.position["strut_lower"], now.position["lower_ball_joint"])
+    assert abs(dot(v65, r75)) < mpf("1e-75")
+    assert max(abs(x) for x in cross(v65, v75)) < mpf("1e-75")
+    assert dot(now.angular_velocity["knuckle"], now.angular_velocity["knuckle"]) > 2
+
+
+def test_the_steering_rate_grows_slowly_where_the_printed_column_jumps(table: Table) -> None:
+    sizes = []
+    for step in range(9):
+        omega = steering(table, Fraction(step, 20)).angular_velocity["knuckle"]
+        sizes.append(float(dot(omega, omega) ** mpf("0.5")))
+    ratios = [b / a for a, b in itertools.pairwise(sizes)]
+    assert all(1 < ratio < 1.1 for ratio in ratios)

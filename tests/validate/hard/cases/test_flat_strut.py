@@ -14,6 +14,7 @@ from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array
 from validate.hard.case import Case
 from validate.hard.cases.flat_strut import CASES, quarter_turn_less
 from validate.hard.run import as_expected, examine
+from validate.paper.printed import PRINTED
 
 BY_NAME = {case.name: case for case in CASES}
 RISE = "z component of the strut's direction"
@@ -40,7 +41,7 @@ def test_each_pair_of_printed_rows_loses_one_exactly_where_the_strut_is_flat() -
     flat = quarter_turn_less(0, 0.0)
     nearly = quarter_turn_less(0, 1e-3)
     for turn, rank in ((np.eye(3), 15), (nearly, 15), (aside @ nearly, 15), (flat, 13), (aside @ flat, 13)):
-        assert np.linalg.matrix_rank(turned_jacobian(scene_mechanism(upright, printed=True), turn)) == rank
+        assert np.linalg.matrix_rank(turned_jacobian(scene_mechanism(upright, PRINTED), turn)) == rank
         ours = scene_mechanism(upright)
         assert np.linalg.matrix_rank(turned_jacobian(ours, turn)) == ours.map.unknowns
 
@@ -63,9 +64,9 @@ def test_the_printed_formulas_are_refused_for_the_row_that_they_lose(value: floa
     flat = Scene.from_mapping(scene_content(turned(UPRIGHT_CAR, quarter_turn_less(0, value)), 1.5))
     if outcome == "refused":
         with pytest.raises(SceneError, match="parallel"):
-            scene_mechanism(flat, printed=True)
+            scene_mechanism(flat, PRINTED)
     else:
-        scene_mechanism(flat, printed=True)
+        scene_mechanism(flat, PRINTED)
 
 
 def test_a_quarter_turn_as_such_does_not_lay_the_papers_strut_flat() -> None:
