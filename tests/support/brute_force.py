@@ -42,9 +42,8 @@ def look_for_pose(car: Car, angle: float, rack: float) -> Found:
     places = circle(front, axis, ball - front)
     height = (places - front) @ np.array(car.up) - math.cos(angle) * np.linalg.norm(ball - front)
     aside = np.cross(axis, car.up)
-    found = [
-        places[i] for i in crossings(height) if (aside @ (places[i] - front)) * (aside @ (ball - front)) > 0
-    ]
+    side = aside @ (ball - front)
+    found = [places[i] for i in crossings(height) if (aside @ (places[i] - front)) * side > 0]
     if not found:
         return Found(False, False)
     line = (

@@ -1,4 +1,4 @@
-"""The ends of the inputs are where a search for a pose finds none beyond, and say rightly what locks there."""
+"""Beyond the ends of the inputs a search finds no pose, and what is said to lock there does."""
 
 import brute_force
 import numpy as np
@@ -30,6 +30,8 @@ def test_an_input_ends_where_brute_force_finds_no_further_pose(suspension: str, 
                     continue
                 step = 1e-3 * (other[0] - this[0])
                 inside, beyond = (linkage.home | {driven: this[0] + step * s} for s in (1.0, -1.0))
+                if lock == TIE_ROD and not linkage.form.upper_spare(np.array(beyond["arm_angle"])) > 1e-2:
+                    continue  # right after the tie rod the upper end locks as well
                 assert brute_force.look_for_pose(car, inside["arm_angle"], inside["rack"]) == (True, True)
                 upper, rod = brute_force.look_for_pose(car, beyond["arm_angle"], beyond["rack"])
                 assert not rod
