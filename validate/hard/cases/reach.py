@@ -19,15 +19,15 @@ from validate.cars.scene_content import Law, scene_content
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
+from validate.hard.cars import CARS, paper_car
 from validate.hard.case import RIGHT, Answer, Case, Trial, decades
 from validate.hard.cases.blocked_ways import blocked_way
 from validate.hard.kept import fault_of_kept
-from validate.hard.last_values import LastValue, car_called, home, last_value
+from validate.hard.last_values import LastValue, home, last_value
 from validate.hard.trial import scene_case
 from validate.reference import InfeasibleError, NoReferenceError
 
-GROUP = "9. Reachable range"
+GROUP = "Reachable range"
 SHARE = 1e-9  # of the range: how exactly the last value must be found
 SAMPLES = 5
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -47,7 +47,7 @@ class Drive:
     """One input of one car, driven beyond one of its ends.
 
     Attributes:
-        car: a name that `car_called` knows.
+        car: a name that `CARS` knows.
         moving: driven there from home within 1 s; else it is there at the only instant.
     """
 
@@ -79,7 +79,7 @@ class Drive:
         start = self.home[self.driven]
         laws: dict[str, Law] = dict(self.home)
         laws[self.driven] = (start, goal - start) if self.moving else goal
-        car = car_called(self.car)
+        car = CARS[self.car]
         return Scene.from_mapping(
             scene_content(
                 car,
