@@ -1,0 +1,156 @@
+"""The axis that a body carries: its constants against rational arithmetic, wherever the axis passes."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.linkage.layout import Layout
+
+Array = NDArray[np.float64]
+Vector = list[Fraction]
+U = 2.0**-53
+
+BODY = Normal("n", "base", "first", "second")
+AXIS = AxisInBody("axis", "tail", "head", BODY)
+HELD = HeldOnAxis("end", "head", AXIS, "held")
+LAYOUT = Layout(
+    moving=("base", "first", "second", "tail", "head", "end"),
+    ratios=(),
+    chassis=(),
+    directions=(),
+    driven=(),
+    squared_lengths=(),
+    vectors=("n", "axis"),
+    constants=(*AXIS.constants, *HELD.constants),
+)
+
+
+def exact(vector: Array) -> Vector:
+    return [Fraction(c) for c in vector.tolist()]
+
+
+def less(a: Vector, b: Vector) -> Vector:
+    return [p - q for p, q in zip(a, b, strict=True)]
+
+
+def dot(a: Vector, b: Vector) -> Fraction:
+    return sum((p * q for p, q in zip(a, b, strict=True)), Fraction(0))
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+
+def drawn(seed: int, place: str, height: float) -> dict[str, Array]:
+    """Six points: a triangle of some height, an axis somewhere in or beside it, a point near the axis."""
+    rng = np.random.default_rng(seed)
+    base, along, off, tail = rng.uniform(-1.0, 1.0, (4, 3))
+    first, second = base + along, base + rng.uniform(0.3, 0.8) * along + height * off
+    if place == "an edge":
+        tail, head = base, base + rng.uniform(1.0, 3.0) * (second - base)
+    elif place == "the normal":
+        tail, head = second, second + np.cross(along, off)
+    else:
+        head = tail + rng.uniform(-1.0, 1.0, 3)
+    end = head + rng.uniform(-1.0, 1.0) * (head - tail) + 1e-3 * rng.uniform(-1.0, 1.0, 3)
+    return {"base": base, "first": first, "second": second, "tail": tail, "head": head, "end": end}
+
+
+places = st.sampled_from(["anywhere", "an edge", "the normal"])
+
+
+@given(seed=st.integers(0, 2**32 - 1), place=places, power=st.floats(-6.0, 0.0))
+def test_the_place_of_an_axis_in_its_body_is_right_to_its_stated_doubt(
+    seed: int, place: str, power: float
+) -> None:
+    points = drawn(seed, place, 10.0**power)
+    assume(np.linalg.norm(points["head"] - points["tail"]) > 1e-3)
+    direction, constants = AXIS.placed(LAYOUT, Drawing(points, np.array(1.0)))
+    base, first, second, tail, head = (exact(points[n]) for n in ("base", "first", "second", "tail", "head"))
+    scale = _scale(less(head, tail))
+    axis = [scale * c for c in less(head, tail)]
+    e1, e2 = less(first, base), less(second, base)
+    frame = [e1, e2, cross(e1, e2)]
+    volume = dot(frame[0], cross(frame[1], frame[2]))
+    for i in range(3):
+        columns = [axis if j == i else frame[j] for j in range(3)]
+        _is_right(constants, i, dot(columns[0], cross(columns[1], columns[2])) / volume)
+    # The doubt is of the order of u^2, so that it never shows beside the rounding of a pose.
+    height = np.linalg.norm(np.cross(points["first"] - points["base"], points["second"] - points["base"]))
+    assert np.max(constants.doubt) <= 1e5 * U**2 / height**4
+    # An unknown: it is drawn to rounding only.
+    assert np.allclose(direction.values, [float(c) for c in axis], rtol=4 * U, atol=0.0)
+
+
+@given(seed=st.integers(0, 2**32 - 1), place=places)
+def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, place: str) -> None:
+    points = drawn(seed, place, 1.0)
+    assume(np.linalg.norm(points["head"] - points["tail"]) > 1e-3)
+    (held,) = HELD.placed(LAYOUT, Drawing(points, np.array(1.0)))
+    tail, head, end = (exact(points[n]) for n in ("tail", "head", "end"))
+    scale = _scale(less(head, tail))
+    axis = [scale * c for c in less(head, tail)]
+    squared = dot(less(end, head), less(end, head)) / dot(axis, axis)
+    side = 1 if dot(less(end, head), axis) >= 0 else -1
+    found, lacks, doubt = _numbers(held, 0)
+    # found = side sqrt(squared) + e  gives  found^2 - squared = 2 found e - e^2
+    error = ((found + lacks) ** 2 - squared) / (2 * (found + lacks)) if squared else found
+    assert found * side >= 0
+    assert abs(error) <= doubt * Fraction(101, 100)
+    assert abs(lacks) <= 5 * U * abs(found)
+
+
+def test_an_axis_needs_two_points_apart_and_a_body_that_is_no_line() -> None:
+    points = drawn(1, "anywhere", 1.0)
+    with pytest.raises(MechanismError, match="tail - head has no length"):
+        AXIS.placed(LAYOUT, Drawing({**points, "head": points["tail"]}, np.array(1.0)))
+    flat = {**points, "second": 2.0 * points["first"] - points["base"]}
+    with pytest.raises(MechanismError, match=r"base, first, second lie in one line.*carry the axis"):
+        AXIS.placed(LAYOUT, Drawing(flat, np.array(1.0)))
+
+
+def test_cars_drawn_together_have_the_constants_that_they_have_alone() -> None:
+    cars = [drawn(seed, "anywhere", 1.0) for seed in range(5)]
+    together = Drawing({n: np.stack([car[n] for car in cars]) for n in cars[0]}, np.ones(5))
+    for kind in (AXIS, HELD, BODY):
+        for i, car in enumerate(cars):
+            for mine, all_of_them in zip(
+                kind.placed(LAYOUT, Drawing(car, np.array(1.0))), kind.placed(LAYOUT, together), strict=True
+            ):
+                assert np.array_equal(np.asarray(all_of_them.values)[i], mine.values)
+
+
+def test_a_constraint_brings_nothing_along_that_it_does_not_need() -> None:
+    link = Link("a", "b")
+    assert (link.vectors, link.slides, link.constants) == ((), (), ())
+    assert not link.is_length
+
+
+def _scale(vector: Vector) -> Fraction:
+    """The power of two that brings a length between 1/2 and 1."""
+    scale, squared = Fraction(1), dot(vector, vector)
+    while scale * scale * squared >= 1:
+        scale /= 2
+    while scale * scale * squared < Fraction(1, 4):
+        scale *= 2
+    return scale
+
+
+def _numbers(placed: Placed, i: int) -> tuple[Fraction, Fraction, Fraction]:
+    return tuple(Fraction(float(np.asarray(part)[i])) for part in (placed.values, placed.lacks, placed.doubt))
+
+
+def _is_right(placed: Placed, i: int, meant: Fraction) -> None:
+    found, lacks, doubt = _numbers(placed, i)
+    assert abs(found + lacks - meant) <= doubt
+    assert abs(lacks) <= 5 * U * abs(found)

@@ -1,0 +1,147 @@
+"""Every kind of constraint: its rows against its equation, its Jacobian against its own residual."""
+
+import importlib
+import pkgutil
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord.linkage import constraints
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
+from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.quadratic import quadratic_map
+
+Array = NDArray[np.float64]
+U = np.finfo(float).eps / 2
+LARGEST = 4.0
+
+BODY = Normal("n", "a", "b", "c")
+AXIS = AxisInBody("axis", "a", "b", BODY)
+HELD = HeldOnAxis("c", "d", AXIS, "held")
+LAYOUT = Layout(
+    moving=("a", "b", "c", "d"),
+    ratios=("place",),
+    chassis=("o",),
+    directions=("e",),
+    driven=("travel",),
+    squared_lengths=(("a", "b"), ("a", "o")),
+    vectors=("n", "axis"),
+    constants=(*AXIS.constants, *HELD.constants),
+)
+
+
+class Read:
+    """y by name."""
+
+    def __init__(self, y: Array) -> None:
+        self.y = y
+
+    def __getattr__(self, name: str) -> Array:
+        return self.y[list(LAYOUT.vector(name))]
+
+    def scalar(self, name: str) -> float:
+        return float(self.y[LAYOUT.scalar(name)])
+
+
+# Each kind with instances and its equation, written as vectors.
+CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
+    (
+        Link("a", "b"),
+        lambda p: np.array([(p.a - p.b) @ (p.a - p.b) - p.y[LAYOUT.squared_length("a", "b")]]),
+    ),
+    (
+        Link("a", "o"),
+        lambda p: np.array([(p.a - p.o) @ (p.a - p.o) - p.y[LAYOUT.squared_length("a", "o")]]),
+    ),
+    (OnLine("c", "a", "b", "place"), lambda p: p.c - p.a - p.scalar("place") * (p.b - p.a)),
+    (OnLine("c", "o", "b", "place"), lambda p: p.c - p.o - p.scalar("place") * (p.b - p.o)),
+    (Rack("a", "o", "e", "travel"), lambda p: p.a - p.o + p.scalar("travel") * p.e),
+    (Rise("a", "o", "e", "travel"), lambda p: np.array([(p.a - p.o) @ p.e - p.scalar("travel")])),
+    (BODY, lambda p: p.n - np.cross(p.b - p.a, p.c - p.a)),
+    (
+        AXIS,
+        lambda p: (
+            p.axis
+            - p.scalar("axis along b") * (p.b - p.a)
+            - p.scalar("axis along c") * (p.c - p.a)
+            - p.scalar("axis along n") * p.n
+        ),
+    ),
+    (OnAxis("b", "a", "axis", "place"), lambda p: p.b - p.a - p.scalar("place") * p.axis),
+    (OnAxis("o", "a", "axis", "place"), lambda p: p.o - p.a - p.scalar("place") * p.axis),
+    (HELD, lambda p: p.c - p.d - p.scalar("held") * p.axis),
+    (
+        PrintedParallel("a", "b", "c", "d"),
+        # x component as it is; the second row is minus the y component of the cross product
+        lambda p: np.cross(p.b - p.a, p.d - p.c)[:2] * np.array([1.0, -1.0]),
+    ),
+]
+
+
+def states() -> st.SearchStrategy[Array]:
+    """Coordinates up to LARGEST with the constants 0 and 1 in place."""
+
+    def settle(values: list[float]) -> Array:
+        y = np.array(values)
+        y[LAYOUT.zero], y[LAYOUT.one] = 0.0, 1.0
+        return y
+
+    return st.lists(
+        st.floats(-LARGEST, LARGEST, allow_subnormal=False), min_size=LAYOUT.size, max_size=LAYOUT.size
+    ).map(settle)
+
+
+def test_every_kind_of_constraint_takes_part_in_the_properties_below() -> None:
+    for module in pkgutil.iter_modules(constraints.__path__, f"{constraints.__name__}."):
+        importlib.import_module(module.name)
+    assert {type(constraint) for constraint, _ in CASES} == set(Constraint.__subclasses__())
+
+
+@pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)
+@settings(deadline=None)
+@given(y=states())
+def test_rows_are_the_equation(constraint: Constraint, equation: Callable[[Read], Array], y: Array) -> None:
+    rows = constraint.rows(LAYOUT)
+    assert len(rows) == len(constraint.labels) == len(set(constraint.labels))
+    system = quadratic_map(rows, LAYOUT.unknowns, LAYOUT.size)
+    # Four terms of differences up to 2 LARGEST, two evaluations with fewer than 10 roundings each.
+    tolerance = 2 * 10 * U * 4 * (2 * LARGEST) ** 2
+    assert np.abs(system.residual(y) - equation(Read(y))).max() <= tolerance
+
+
+@pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)
+@settings(deadline=None)
+@given(y=states())
+def test_jacobian_is_the_difference_of_the_residual(
+    constraint: Constraint, equation: Callable[[Read], Array], y: Array
+) -> None:
+    system = quadratic_map(constraint.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
+    step = np.zeros((LAYOUT.unknowns, LAYOUT.size))
+    step[:, : LAYOUT.unknowns] = np.eye(LAYOUT.unknowns)
+    slope = 0.5 * (system.residual(y + step) - system.residual(y - step)).T
+    # A central difference of a quadratic has no truncation error, whatever its step (1 here). What is
+    # left is rounding: y +- 1 is rounded (u LARGEST in each factor), then as many roundings as above, of
+    # factors up to 2 (LARGEST + 1) in four terms.
+    tolerance = (4 + 10) * U * 4 * (2 * (LARGEST + 1)) ** 2
+    assert np.abs(slope - system.jacobian(y)).max() <= tolerance
+
+
+@pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)
+def test_every_row_reacts_to_an_unknown(constraint: Constraint, equation: Callable[[Read], Array]) -> None:
+    system = quadratic_map(constraint.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
+    y = np.random.default_rng(1).normal(size=LAYOUT.size)
+    y[LAYOUT.zero], y[LAYOUT.one] = 0.0, 1.0
+    assert (np.abs(system.jacobian(y)).max(axis=1) > 0.0).all()

@@ -1,0 +1,116 @@
+"""The certificate where the known coordinates are uncertain, on systems whose solutions are at hand."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord.numerics.kantorovich import Certificate, certify
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.rounding import EPS
+
+Array = NDArray[np.float64]
+plain = settings(deadline=None)
+
+
+def linear_map(n: int) -> QuadraticMap:
+    """A u = b with known A and b: y = (u, A by rows, b, 0, 1)."""
+    zero, one = n + n * n + n, n + n * n + n + 1
+    rows = [
+        (
+            *(Product(1.0, (n + n * i + j, zero), (j, zero)) for j in range(n)),
+            Product(-1.0, (n + n * n + i, zero), (one, zero)),
+        )
+        for i in range(n)
+    ]
+    return quadratic_map(rows, unknowns=n, size=one + 1)
+
+
+def certified(matrix: Array, right: Array, u: Array, doubt: Array) -> Certificate:
+    """The certificate of u for matrix and right side, of which the entries may be off by `doubt`."""
+    n = len(right)
+    y = np.concatenate([u, matrix.ravel(), right, [0.0, 1.0]])
+    data = np.concatenate([np.zeros(n), doubt, [0.0, 0.0]])
+    system = linear_map(n)
+    return certify(system, y, factorise(system.jacobian(y)), data)
+
+
+@plain
+@given(seed=st.integers(0, 2**32 - 1), size=st.floats(-6.0, -1.3))
+def test_radius_covers_the_worst_solution_over_the_corners_of_the_data_box(seed: int, size: float) -> None:
+    rng = np.random.default_rng(seed)
+    matrix = np.eye(2) + rng.uniform(-0.3, 0.3, size=(2, 2))
+    right = rng.uniform(-1.0, 1.0, size=2)
+    doubt = 10.0**size * rng.uniform(0.0, 1.0, size=6)
+    u = np.linalg.solve(matrix, right)
+    certificate = certified(matrix, right, u, doubt)
+    worst, each = 0.0, np.zeros(2)
+    for signs in product((-1.0, 1.0), repeat=6):
+        moved = np.concatenate([matrix.ravel(), right]) + np.array(signs) * doubt
+        gap = np.abs(np.linalg.solve(moved[:4].reshape(2, 2), moved[4:]) - u)
+        worst, each = max(worst, float(gap.max())), np.maximum(each, gap)
+    # A solution of two equations with a condition number below 10 is right to 40 roundings.
+    noise = 40 * EPS * np.abs(u).max()
+    assert worst <= certificate.radius + noise
+    assert (each <= certificate.coordinates + noise).all()
+    # And it is of use: the rows of |X| d are reached at a corner each, z <= 0.2 (entries off by 0.05, |X|
+    # below 2.5 in each row's sum, two entries a row) costs a factor of 1 / (1 - z) at most twice.
+    assert certificate.radius <= 2.0 * worst + noise
+
+
+@pytest.mark.parametrize("doubt", [1e-9, 1e-4, 0.02])
+def test_radius_covers_the_roots_of_a_quadratic_with_uncertain_coefficients(doubt: float) -> None:
+    # u^2 + p u - q = 0 with p = 1, q = 2 at u = 1, y = (u, p, q, 0, 1).
+    system = quadratic_map(
+        [(Product(1.0, (0, 3), (0, 3)), Product(1.0, (1, 3), (0, 3)), Product(-1.0, (2, 3), (4, 3)))], 1, 5
+    )
+    y = np.array([1.0, 1.0, 2.0, 0.0, 1.0])
+    data = np.array([0.0, doubt, doubt, 0.0, 0.0])
+    certificate = certify(system, y, factorise(system.jacobian(y)), data)
+    roots = [
+        (-p + np.sqrt(p * p + 4 * q)) / 2
+        for p in (1.0 - doubt, 1.0 + doubt)
+        for q in (2.0 - doubt, 2.0 + doubt)
+    ]
+    worst = max(abs(root - 1.0) for root in roots)
+    assert worst - 8 * EPS <= certificate.radius <= 1.1 * worst + 8 * EPS
+
+
+def test_nothing_is_proven_of_a_matrix_that_is_regular_by_rounding_only() -> None:
+    # With x = 1 + 3/4 2^-53 the matrix (5 x, 7 x; 5, 7) has no inverse. As differences of two numbers 5 x
+    # is rounded to 5 and 7 x away from 7: what is computed has an inverse, and LAPACK finds it exactly.
+    tiny = 0.75 * 2.0**-53
+    zero, one, low_first, low_second = 6, 7, 8, 9
+    rows = [
+        (
+            Product(1.0, (2, low_first), (0, zero)),
+            Product(1.0, (3, low_second), (1, zero)),
+            Product(-1.0, (zero, zero), (one, zero)),
+        ),
+        (Product(1.0, (4, zero), (0, zero)), Product(1.0, (5, zero), (1, zero))),
+    ]
+    system = quadratic_map(rows, unknowns=2, size=10)
+    y = np.array([0.0, 0.0, 5.0, 7.0, 5.0, 7.0, 0.0, 1.0, -5.0 * tiny, -7.0 * tiny])
+    factors = factorise(system.jacobian(y))
+    assert np.array_equal(factors.preconditioner @ system.jacobian(y), np.eye(2))
+    certificate = certify(system, y, factors, np.zeros(10))
+    assert certificate.radius == np.inf
+    assert certificate.unique_within == 0.0
+
+
+@pytest.mark.parametrize(("condition", "proven"), [(1e10, True), (1e14, False)])
+def test_nothing_is_proven_where_the_sums_of_a_matrix_may_round_its_inverse_away(
+    condition: float, proven: bool
+) -> None:
+    # |X| |A| = condition for the first two unknowns. The rounding that is allowed for sums of n = 48 terms,
+    # gamma = (n + 2) eps, is 1.1e-14: z = gamma condition passes 1 at 9e13.
+    n = 48
+    matrix = np.eye(n)
+    matrix[:2, :2] = 1.0
+    matrix[1, 1] += 4.0 / condition
+    certificate = certified(matrix, np.zeros(n), np.zeros(n), np.zeros(n * n + n))
+    assert bool(np.isfinite(certificate.radius)) == proven

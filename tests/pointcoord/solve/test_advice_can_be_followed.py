@@ -1,0 +1,220 @@
+"""What an error advises is done, and helps."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import (
+    AssemblyError,
+    InputNotKnown,
+    InputOutOfRange,
+    MotionTooLong,
+    MotionTooRough,
+    NotComputed,
+    OutsideMotion,
+    Scene,
+    SceneError,
+    UnknownName,
+    simulate,
+)
+from pointcoord.linkage.constraints.on_line import FARTHEST
+
+Points = dict[str, tuple[float, float, float]]
+Make = Callable[..., Scene]
+# The arm jumps by 0.01 rad within a nanosecond: cubics of size 1e25 that rounding cannot hold.
+JUMP = {
+    "table": {
+        "times": (0.0, 0.2, 0.5, 0.5 + 1e-9, 0.8, 1.0),
+        "values": [1.6, 1.6, 1.6, 1.61, 1.61, 1.61],
+    }
+}
+
+
+def test_a_motion_too_long_is_solved_by_newton_or_slower_or_shorter(
+    make_scene: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 20)
+
+    def scene(frequency: float, stop: float) -> Scene:
+        law = {"sine": {"amplitude": 0.3, "angular_frequency": frequency, "offset": 1.5}}
+        return make_scene(law, samples=5, stop=stop)
+
+    with pytest.raises(MotionTooLong, match=r"shorten the time, slow the inputs down, or use .* 'newton'"):
+        simulate(scene(40.0, 2.0))
+    assert simulate(scene(40.0, 2.0), "newton").proof().bound.max() < 1e-10
+    assert len(simulate(scene(1.0, 2.0)).times) == len(simulate(scene(40.0, 0.05)).times) == 5
+
+
+def test_a_motion_too_rough_is_solved_by_newton_or_smoother_or_more_coarsely(make_scene: Make) -> None:
+    rough = make_scene(JUMP, start=0.5 - 2e-8, stop=0.5 + 2e-9)
+    with pytest.raises(MotionTooRough, match=r"smooth it there, allow a larger tolerance, or use .*'newton'"):
+        simulate(rough)
+    assert np.isfinite(simulate(rough, "newton").proof().bound).all()
+    assert len(simulate(rough.model_copy(update={"tolerance": 1e-3})).times) == 9
+    smooth = {"table": {**JUMP["table"], "times": (0.0, 0.2, 0.5, 0.6, 0.8, 1.0)}}
+    assert len(simulate(make_scene(smooth, stop=1.0)).times) == 9
+
+
+def test_a_larger_tolerance_is_no_advice_where_none_is_left(
+    make_scene: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rough = make_scene(JUMP, start=0.5 - 2e-8, stop=0.5 + 2e-9)
+    monkeypatch.setattr("pointcoord.solve.taylor.COARSEST", 1e-14)
+    with pytest.raises(MotionTooRough, match=r"smooth it there, or use the method 'newton'"):
+        simulate(rough)
+
+
+@pytest.mark.parametrize(("arm", "rack"), [([1.6], [0.0, 100.0]), ([1.6, 0.6], [0.0]), ([1.5], [0.0, -80.0])])
+def test_an_input_brought_back_to_where_assembly_stopped_is_reached(
+    make_scene: Make, arm: Any, rack: Any
+) -> None:
+    with pytest.raises(AssemblyError, match=r"bring '(rack|arm_angle)' back towards its value") as caught:
+        simulate(make_scene(arm, rack))
+    error = caught.value
+    # A thousandth of the way back from there to the drawing.
+    drawn = {"arm_angle": 1.65, "rack": 0.0}
+    values = {name: value + 1e-3 * (drawn[name] - value) for name, value in error.reached.items()}
+    scene = make_scene([values["arm_angle"]], [values["rack"]], start=0.0, stop=0.0, samples=1)
+    assert np.isfinite(simulate(scene).start.bound)
+
+
+def test_an_input_out_of_range_is_solved_in_its_range(make_scene: Make) -> None:
+    with pytest.raises(InputOutOfRange, match="allowed: 0 to pi rad"):
+        simulate(make_scene([-1.5]))
+    simulate(make_scene([1.5]))
+
+
+def cancelling(make_scene: Make, start: float, law: Mapping[str, Any]) -> Scene:
+    return make_scene([1.6], law, start=start, stop=start + 1.0, samples=5)
+
+
+def test_a_law_that_cancels_is_named_and_is_known_from_smaller_terms(make_scene: Make) -> None:
+    start, t = 2.0**15, np.polynomial.Polynomial([0.0, 1.0])
+    late = {"polynomial": (16.0 * (t - start) ** 6).coef.tolist()}
+    for method in ("series", "newton"):
+        with pytest.raises(InputNotKnown, match=r"input 'rack' is not known .* its polynomial") as caught:
+            simulate(cancelling(make_scene, start, late), method)
+        assert (caught.value.name, caught.value.law) == ("rack", "polynomial")
+    values = [16.0 * s**6 for s in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    table = {"table": {"times": [start + s for s in (0.0, 0.25, 0.5, 0.75, 1.0)], "values": values}}
+    simulate(cancelling(make_scene, start, table))
+    early = simulate(cancelling(make_scene, 0.0, {"polynomial": [0.0] * 6 + [16.0]}))
+    assert np.isfinite(early.proof().bound).all()
+
+
+def test_a_sine_that_cancels_is_named_as_one(make_scene: Make) -> None:
+    amplitude = 1e17
+    law = {
+        "sine": {
+            "amplitude": amplitude,
+            "angular_frequency": 1e-18,
+            "phase": 0.5,
+            "offset": -amplitude * float(np.sin(0.5)),
+        }
+    }
+    with pytest.raises(InputNotKnown, match="the terms of its sine cancel to"):
+        simulate(make_scene([1.6], law))
+
+
+def test_a_law_is_not_named_where_nothing_hangs_on_its_doubt(make_scene: Make) -> None:
+    start, t = 2.0**13, np.polynomial.Polynomial([0.0, 1.0])
+    law = {"polynomial": (16.0 * (t - start) ** 6).coef.tolist()}
+    motion = simulate(cancelling(make_scene, start, law))
+    # Off by less than a thousandth of a millimetre: the bound says so.
+    assert 1e-4 < motion.proof().bound.max() < 1e-2
+
+
+def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(make_scene: Make) -> None:
+    with pytest.raises(AssemblyError) as caught:
+        simulate(make_scene([1.6], [0.0, 200.0]))
+    # The end of the rack's range, where two assemblies meet: the law is known to 1e-29 mm, which is more
+    # than such a tolerance allows, and is not what leaves the pose unproven.
+    law = [caught.value.reached["rack"], 1e-300]
+    motion = simulate(make_scene([1.6], law, samples=2, effects=(), tolerance=1e-300), "newton")
+    assert not np.isfinite(motion.proof().bound).all()
+
+
+def with_rod(table: Points, share: float) -> tuple[Points, float]:
+    """The rod's end at a share of the least distance from its top, and how far the ball joint is."""
+    top, ball = np.array(table["strut_top"]), np.array(table["lower_ball_joint"])
+    end = top + share / FARTHEST * (ball - top)
+    return {**table, "strut_rod_end": tuple(end.tolist())}, float(np.linalg.norm(ball - top))
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+def test_strut_points_as_far_apart_as_they_must_be_are_solved(
+    make_scene: Make, table: Points, method: str
+) -> None:
+    points, _ = with_rod(table, 1.01)
+    motion = simulate(make_scene([1.6, 0.2], points=points, stop=1.0, samples=3), method)
+    assert motion.proof().bound.max() < 1e-9
+
+
+@pytest.mark.parametrize("share", [0.9, 0.1, 1e-3, 1e-8])
+def test_strut_points_too_near_are_told_with_their_distances(
+    make_scene: Make, table: Points, share: float
+) -> None:
+    points, reach = with_rod(table, share)
+    apart = share * reach / FARTHEST
+    with pytest.raises(SceneError, match="strut_top and strut_rod_end are") as caught:
+        simulate(make_scene(points=points))
+    message = str(caught.value)
+    assert f"are {apart:.3g} mm apart" in message
+    assert f"lower_ball_joint is {reach:.3g} mm along the line" in message
+    assert f"draw strut_rod_end at least {reach / FARTHEST:.2g} mm from strut_top" in message
+    assert caught.value.key == "mechanism.points"
+
+
+def test_an_effect_that_is_missing_is_added(make_scene: Make) -> None:
+    for name, point in (("velocity", "strut_top"), ("acceleration", "strut_top"), ("wheel", "camber")):
+        with pytest.raises(NotComputed, match=r"add '.*' to the scene's effects") as caught:
+            getattr(simulate(make_scene(effects=())), name)[point]
+        getattr(simulate(make_scene(effects=(caught.value.effect,))), name)[point]
+
+
+def test_a_method_that_knows_no_instants_between_is_changed(make_scene: Make) -> None:
+    with pytest.raises(NotComputed, match=r"by the method 'newton', was not computed; solve .* 'series'$"):
+        simulate(make_scene(), "newton").at(0.5)
+    simulate(make_scene(), "series").at(0.5)
+
+
+def test_names_and_times_that_are_offered_exist(make_scene: Make) -> None:
+    motion = simulate(make_scene())
+    with pytest.raises(UnknownName, match="did you mean 'wheel_centre'") as name:
+        motion.position["wheel_center"]
+    for valid in name.value.valid:
+        motion.position[valid]
+    with pytest.raises(OutsideMotion) as outside:
+        motion.at(3.0)
+    motion.at([outside.value.start, outside.value.stop])
+
+
+@pytest.mark.parametrize(
+    ("section", "fault", "keys"),
+    [
+        ((), "titel", "title, effects, tolerance, mechanism, inputs, time"),
+        (("time",), "step", "start, stop, samples"),
+        (("inputs", "rack"), "sin", "constant, polynomial, sine, table"),
+        (("inputs", "time"), "sin", "constant, polynomial, sine, table"),
+        (("inputs", "rack", "sine"), "frequency", "amplitude, angular_frequency, phase, offset"),
+        (("inputs", "rack", "table"), "time", "times, values"),
+    ],
+)
+def test_keys_that_are_offered_belong_to_the_place(
+    make_scene: Make, section: tuple[str, ...], fault: str, keys: str
+) -> None:
+    content = make_scene().model_dump(exclude_none=True)
+    if section[2:] == ("sine",):
+        content["inputs"]["rack"] = {"sine": {"amplitude": 1.0, "angular_frequency": 1.0}}
+    if section[2:] == ("table",):
+        content["inputs"]["rack"] = {"table": {"times": [0, 1, 2, 3], "values": [0, 0, 0, 0]}}
+    place = content
+    for key in section:
+        place = place.setdefault(key, {})
+    place[fault] = 1
+    with pytest.raises(SceneError) as caught:
+        Scene.from_mapping(content)
+    assert caught.value.allowed == keys
+    assert caught.value.key == ".".join((*section, fault))

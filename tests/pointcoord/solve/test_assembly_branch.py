@@ -1,0 +1,267 @@
+"""Assembly on the branch of the drawing: where it leads, where it ends, and what it says then."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, InputOutOfRange, Scene, simulate
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.linear import factorise
+from pointcoord.solve.assembly import Pose, assemble, follow, proven_step
+from pointcoord.suspensions.macpherson import COLLINEAR
+
+Array = NDArray[np.float64]
+Points = dict[str, tuple[float, float, float]]
+few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
+angles = st.floats(0.75, 2.4)
+
+# The ends of what can be assembled with the other input held, certified apart from this package.
+LOWEST_ANGLE, HIGHEST_ANGLE = np.deg2rad(32.228), np.deg2rad(152.013)
+LOWEST_RACK, HIGHEST_RACK = -89.066, 130.101
+
+
+def at(mechanism: Mechanism, angle: object, rack: object) -> Pose:
+    return assemble(mechanism, {"arm_angle": np.asarray(angle, float), "rack": np.asarray(rack, float)})
+
+
+def same(mechanism: Mechanism, first: Pose, second: Pose) -> bool:
+    """Whether two poses can be the same assembly: within the sum of their proven bounds, in mm."""
+    gap = np.abs(first.y - second.y)[..., : mechanism.layout.unknowns].max(axis=-1) * mechanism.unit
+    return bool((gap <= first.bound + second.bound).all())
+
+
+@few
+@given(angle=st.floats(0.75, 2.4), rack=st.floats(-40.0, 60.0), steps=st.integers(2, 60))
+def test_small_steps_of_the_inputs_lead_where_one_jump_leads(
+    strut: Mechanism, angle: float, rack: float, steps: int
+) -> None:
+    jump = at(strut, angle, rack)
+    start = at(strut, 1.5, 0.0)
+    y, n = start.y, strut.layout.unknowns
+    for share in np.linspace(0.0, 1.0, steps + 1)[1:]:
+        values = {"arm_angle": 1.5 + share * (angle - 1.5), "rack": share * rack}
+        if share == 1.0:
+            values = {"arm_angle": angle, "rack": rack}
+        known = strut.known_series({name: np.array([v]) for name, v in values.items()})[0]
+        path = follow(strut.map, y, known)
+        assert path.done == 1.0
+        y = path.y
+    # Walk and jump end with a Newton step that has shrunk to rounding, the condition number times eps of
+    # coordinates up to 2.
+    assert np.abs(y - jump.y)[:n].max() <= 4 * np.finfo(float).eps * jump.condition
+
+
+@few
+@given(first=angles, second=angles, rack=st.floats(-40.0, 40.0))
+def test_path_there_and_back_returns_to_the_same_pose(
+    strut: Mechanism, first: float, second: float, rack: float
+) -> None:
+    start, end = at(strut, first, rack), at(strut, second, rack)
+    n = strut.layout.unknowns
+    there = follow(strut.map, start.y, end.y[n:])
+    back = follow(strut.map, there.y, start.y[n:])
+    assert there.done == back.done == 1.0
+    # Each pose is where Newton's last step has shrunk to rounding, the condition number times eps of
+    # coordinates up to 2.
+    for found, pose in ((there, end), (back, start)):
+        assert np.abs(found.y - pose.y).max() <= 4 * np.finfo(float).eps * pose.condition
+
+
+def test_assembled_drawing_keeps_the_links_and_puts_the_strut_on_one_line(
+    strut: Mechanism, table: Points
+) -> None:
+    pose = at(strut, 1.5, 0.0)
+    place = {
+        name: pose.y[list(strut.layout.vector(name))] * strut.unit + strut.origin
+        for name in (*strut.layout.moving, *strut.layout.chassis)
+    }
+    for start, end in strut.layout.squared_lengths:
+        drawn = np.linalg.norm(np.subtract(table[start], table[end]))
+        # Both ends within the bound in each coordinate, and some roundings of the length.
+        tolerance = 4 * float(pose.bound) + 8 * np.finfo(float).eps * drawn
+        assert abs(np.linalg.norm(place[start] - place[end]) - drawn) <= tolerance
+    axis = place["strut_top"] - place["strut_rod_end"]
+    for name in ("lower_ball_joint", "strut_lower"):
+        off = np.linalg.norm(np.cross(place["strut_top"] - place[name], axis)) / np.linalg.norm(axis)
+        # As above; along 240 mm of rod the line is known to its bound, at most 3 times as far away.
+        assert off <= 16 * float(pose.bound)
+    # eq. (12) and (14) of the paper
+    arm = np.linalg.norm(np.subtract(table["lower_ball_joint"], table["lower_arm_front"]))
+    rise = place["lower_ball_joint"][2] - table["lower_arm_front"][2]
+    assert abs(rise - arm * np.cos(1.5)) <= 2 * float(pose.bound)
+    assert np.abs(place["tie_rod_inner"] - table["rack_centre"]).max() <= float(pose.bound)
+
+
+@pytest.mark.parametrize(
+    ("angle", "rack", "name"),
+    [
+        (LOWEST_ANGLE + np.deg2rad(0.001), 0.0, "arm_angle"),
+        (HIGHEST_ANGLE - np.deg2rad(0.001), 0.0, "arm_angle"),
+        (np.pi / 2, LOWEST_RACK + 0.001, "rack"),
+        (np.pi / 2, HIGHEST_RACK - 0.001, "rack"),
+    ],
+)
+def test_end_of_the_range_is_reached_just_inside_and_refused_just_outside(
+    strut: Mechanism, angle: float, rack: float, name: str
+) -> None:
+    inside = at(strut, angle, rack)
+    assert np.isfinite(inside.bound)
+    # Two thousandths of a degree or of a millimetre further.
+    outwards = np.sign(angle - np.pi / 2) * np.deg2rad(0.002), np.sign(rack) * 0.002
+    goal = (angle + outwards[0], rack) if name == "arm_angle" else (angle, rack + outwards[1])
+    with pytest.raises(AssemblyError, match="cannot be assembled") as caught:
+        at(strut, *goal)
+    error = caught.value
+    assert error.reduce == name
+    # The path is a straight line of cos(angle) and of the rack. It stops within the thousandth that the
+    # limit's printed digits leave open, and does not claim to have passed it.
+    limit = {"arm_angle": angle, "rack": rack}[name]
+    width = np.deg2rad(0.001) if name == "arm_angle" else 0.001
+    assert abs(error.reached[name] - limit) <= 2 * width
+    assert error.wanted[name] == pytest.approx(goal[0 if name == "arm_angle" else 1], rel=1e-12)
+    assert error.condition > 1e3
+    message = str(error)
+    for text in (
+        f"{name} = {error.reached[name]:.10g}",
+        f"{name} = {error.wanted[name]:.10g}",
+        f"bring '{name}' back",
+    ):
+        assert text in message
+
+
+def test_an_assembly_error_names_the_instant(make_scene: Callable[..., Scene]) -> None:
+    with pytest.raises(AssemblyError, match=r"at t = 3 s: wanted .*rack = 200;") as caught:
+        simulate(make_scene([np.pi / 2], [200.0], start=3.0, stop=4.0))
+    assert caught.value.instant == 3.0
+
+
+@pytest.mark.parametrize("bad", [-1e-9, np.pi + 1e-9, -2.0, 7.0, np.nan, np.inf])
+def test_arm_angle_that_the_cosine_cannot_tell_apart_is_refused(strut: Mechanism, bad: float) -> None:
+    with pytest.raises(InputOutOfRange, match="0 to pi rad") as caught:
+        at(strut, [1.5, bad], [0.0, 0.0])
+    assert caught.value.name == "arm_angle"
+    assert caught.value.value == bad or np.isnan(bad)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_rack_that_is_not_finite_is_refused_by_name(strut: Mechanism, bad: float) -> None:
+    with pytest.raises(InputOutOfRange, match="finite") as caught:
+        at(strut, [1.5, 1.5], [0.0, bad])
+    assert caught.value.name == "rack"
+
+
+@pytest.mark.parametrize("bad", [1e9, -1e200, 1.7e308])
+def test_rack_out_of_reach_is_refused_by_name(strut: Mechanism, bad: float) -> None:
+    with pytest.raises(AssemblyError) as caught:
+        at(strut, 1.5, bad)
+    assert caught.value.reduce == "rack"
+
+
+@few
+@given(values=st.lists(st.tuples(angles, st.floats(-40.0, 40.0)), min_size=1, max_size=5))
+def test_poses_of_a_batch_are_those_of_each(strut: Mechanism, values: list[tuple[float, float]]) -> None:
+    angle, rack = np.array(values).T
+    batch = at(strut, angle, rack)
+    for i, (one_angle, one_rack) in enumerate(values):
+        alone = at(strut, one_angle, one_rack)
+        gap = np.abs(batch.y[i] - alone.y).max() * strut.unit
+        assert gap <= batch.bound[i] + alone.bound
+
+
+def test_batch_of_cars_is_assembled_like_each_of_them(table: Points) -> None:
+    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+    factors = np.array([0.5, 1.0, 3.0])
+    cars = build_mechanism(COLLINEAR, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
+    batch = at(cars, 1.4, 0.0)
+    for i, factor in enumerate(factors):
+        car = build_mechanism(COLLINEAR, {n: factor * np.array(p) for n, p in table.items()}, axes)
+        alone = at(car, 1.4, 0.0)
+        assert np.abs(batch.y[i] - alone.y).max() * car.unit <= batch.bound[i] + alone.bound
+
+
+def test_batch_of_cars_of_which_one_cannot_be_assembled_names_its_inputs(table: Points) -> None:
+    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+    factors = np.array([1.0, 0.3])
+    cars = build_mechanism(COLLINEAR, {n: factors[:, None] * np.array(p) for n, p in table.items()}, axes)
+    with pytest.raises(AssemblyError, match="bring 'rack' back") as caught:
+        at(cars, np.pi / 2, 100.0)  # 100 mm are inside the range of the first car only
+    assert caught.value.wanted["rack"] == pytest.approx(100.0, rel=1e-12)
+    small = build_mechanism(COLLINEAR, {n: factors[1] * np.array(p) for n, p in table.items()}, axes)
+    with pytest.raises(AssemblyError) as alone:
+        at(small, np.pi / 2, 100.0)
+    # Both walks stop within 1e-5 of the path of 100 mm from the end of the second car's range.
+    assert caught.value.reached["rack"] == pytest.approx(alone.value.reached["rack"], abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("angle", "rack"), [(1.5, [0.0, 10.0]), ([1.4, 1.5], 0.0), ([[1.4], [1.5]], [0.0, 10.0])]
+)
+def test_inputs_of_different_shapes_are_combined(strut: Mechanism, angle: object, rack: object) -> None:
+    together = at(strut, angle, rack)
+    angle, rack = np.broadcast_arrays(angle, rack)
+    assert together.bound.shape == angle.shape
+    assert same(strut, together, at(strut, angle, rack))
+
+
+@few
+@given(angle=angles, rack=st.floats(-40.0, 40.0), seed=st.integers(0, 2**32 - 1))
+def test_proven_step_stays_within_newtons_reach_of_the_path(
+    strut: Mechanism, angle: float, rack: float, seed: int
+) -> None:
+    pose = at(strut, angle, rack)
+    n = strut.layout.unknowns
+    rng = np.random.default_rng(seed)
+    change = np.zeros(strut.layout.size)
+    for name in ("arm rise", "rack travel"):
+        change[strut.layout.scalar(name)] = rng.normal() * 10.0
+    tangent = change.copy()
+    factors = factorise(strut.map.jacobian(pose.y))
+    tangent[:n] = -factors.solve(2.0 * strut.map.polar(pose.y, change))
+    step = float(proven_step(strut.map, pose.y, factors, tangent))
+    assert 0.0 < step < np.inf
+    # What is proven: along the whole step the Jacobian stays regular. Its determinant keeps its sign.
+    shares = np.linspace(0.0, 0.999 * step, 40)
+    signs = np.linalg.slogdet(strut.map.jacobian(pose.y + shares[:, None] * tangent))[0]
+    assert (signs == signs[0]).all()
+
+
+def test_branch_is_kept_past_the_near_singular_place_at_35_degrees(strut: Mechanism) -> None:
+    # With the rack in the middle two branches nearly meet at 35.15 degrees. A branch cannot be left
+    # without the determinant of C_u passing zero.
+    walk = at(
+        strut, np.deg2rad(np.array([90.0, 60.0, 40.0, 36.0, 35.5, 35.2, 34.8, 34.0, 32.5])), np.zeros(9)
+    )
+    signs = np.linalg.slogdet(strut.map.jacobian(walk.y))[0]
+    assert (signs == signs[0]).all()
+    assert walk.condition[5] > walk.condition[:5].max()
+    assert walk.condition[5] > walk.condition[6:].max()
+
+
+def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
+    make_scene: Callable[..., Scene], table: Points
+) -> None:
+    # The strut's lower point 200 mm in front of its line: no input is to blame, the drawing is.
+    x, y, z = table["strut_lower"]
+    with pytest.raises(
+        AssemblyError, match=r"the drawing cannot be assembled.*; draw these nearer to closing"
+    ) as caught:
+        simulate(make_scene(points={**table, "strut_lower": (x - 200.0, y, z)}))
+    assert caught.value.reduce == ""
+    assert any("strut_lower" in name for name in caught.value.limits)
+
+
+def test_pieces_of_the_strut_that_would_turn_over_are_refused(
+    make_scene: Callable[..., Scene], table: Points
+) -> None:
+    # The knuckle's piece points up the strut; drawn at 100 degrees to the rod and at 120 to the way from
+    # ball joint to top, it has no sense that both agree on.
+    x, y, z = table["lower_ball_joint"]
+    folded = {**table, "strut_lower": (x + 60.0, y, z - 6.0), "strut_rod_end": (420.0, -180.0, 466.0)}
+    with pytest.raises(AssemblyError, match=r"can close in two ways, .* turns over against") as caught:
+        simulate(make_scene(points=folded))
+    assert caught.value.problem.startswith("the drawing")

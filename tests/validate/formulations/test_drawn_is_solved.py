@@ -1,0 +1,216 @@
+"""What is drawn is what is solved: struts whose ball joint lies anywhere beside their axis, by all mechanics.
+
+The closed form of the strut decides, in many digits; it is no part of any of the three.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given, note, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
+from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.cars.closed_form import ClosedForm
+from validate.cars.input_limits import Car, Linkage
+from validate.cars.paper_car import mirrored
+from validate.cars.random_struts import as_tuple
+from validate.cars.strategies import cars, make_scene
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.registry import formulation
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR, any_rotation, turned
+from validate.reference import NoReferenceError
+
+Array = NDArray[np.float64]
+Places = Mapping[str, Array]
+
+EPS = float(np.finfo(float).eps)
+MODELS = ("pointcoord", "pointcoord-newton", "absolute")
+SHARES = st.floats(-1.0, 1.0)
+CLOSING = cars(["drawn"], left_over=0.0)
+# A car is solved by three models at one or two places, so the short profile searches briefly.
+EXAMPLES = settings.default.max_examples if settings.default else 100
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
+
+
+@pytest.fixture(autouse=True)
+def digits() -> Iterator[None]:
+    with mpmath.workdps(40):
+        yield
+
+
+def scene_at(car: Car, angle: float, rack: float) -> Scene:
+    """A single instant of a car."""
+    inputs = {"arm_angle": {"constant": angle}, "rack": {"constant": rack}}
+    axes = {"side": car.side, "up": car.up, "right": car.right, "closure": car.closure}
+    return make_scene(car.points, inputs, samples=1, stop=0.0, effects=(), **axes)
+
+
+def solved(name: str, scene: Scene) -> Solution:
+    """A model's solution; a car that it cannot assemble, or is refused as another car, is passed over."""
+    try:
+        return formulation(name).solve(scene)
+    except FormulationError as error:
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange | SceneError))
+        raise
+    except SceneError:
+        assume(False)
+        raise
+
+
+def allowed(solution: Solution) -> float:
+    """What a model says that its points may be off by, mm, carried ones too."""
+    return max(float(claim.max()) for claim in solution.accuracy.position.values())
+
+
+def gain(name: str, scene: Scene) -> float:
+    """How many times as far as its carriers a carried point moves; of poses of bodies every point does."""
+    return max(1.0, float(simulate(scene).proof().carried_gain.max())) if name == "pointcoord" else 1.0
+
+
+def true_places(scene: Scene) -> Places:
+    try:
+        instant = true_instant(scene, inputs_at(scene, 0.0))
+    except NoReferenceError:
+        assume(False)
+        raise
+    return {name: np.array(instant.position_as_float(name)) for name in instant.position}
+
+
+def off(one: Places, two: Places) -> dict[str, float]:
+    return {name: float(np.abs(np.subtract(one[name], two[name])).max()) for name in one}
+
+
+def exact_pose(scene: Scene) -> Places:
+    part = scene.mechanism
+    form = ClosedForm.of(part.points, part.up, part.right, part.closure, mpmath.mpf)
+    angle, rack = (
+        np.array([mpmath.mpf(inputs_at(scene, 0.0)[n][0])], dtype=object) for n in ("arm_angle", "rack")
+    )
+    return {n: np.array([float(x) for x in place[0]]) for n, place in form.pose(angle, rack).items()}
+
+
+@given(CLOSING)
+def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(car: Car) -> None:
+    note(repr(car))
+    linkage = Linkage.of(car)
+    scene = scene_at(car, linkage.drawn_angle, linkage.drawn_rack)
+    first = solved("pointcoord", scene)
+    # The arm angle is rounded, by half a unit of its cosine and of itself, which raises the ball joint by up
+    # to 2 pi u of the arm; each coordinate is rounded by half a unit where it is put on a line or circle.
+    # The condition number says what comes of both.
+    far = max(float(np.abs(place).max()) for place in car.points.values())
+    raised = float(first.accuracy.condition.max()) * gain("pointcoord", scene)
+    rounding = raised * EPS * (math.pi * linkage.size + far)
+    drawing = {name: np.array(place) for name, place in car.points.items()}
+    for name in MODELS:
+        solution = first if name == "pointcoord" else solved(name, scene)
+        there = {n: place[0] for n, place in solution.position.items()}
+        for point, distance in off(drawing, there).items():
+            assert distance <= rounding + allowed(solution), (name, point)
+    for point, distance in off(drawing, true_places(scene)).items():
+        assert distance <= rounding, ("reference", point)
+
+
+@given(cars(["drawn"]), SHARES, SHARES)
+def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float, rack: float) -> None:
+    note(repr(car))
+    linkage = Linkage.of(car)
+    scene = scene_at(car, linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack)
+    exact = exact_pose(scene)
+    assume(all(np.isfinite(place).all() for place in exact.values()))
+    last = 2.0 * EPS * max(float(np.abs(place).max()) for place in exact.values())  # both are rounded
+    for name in MODELS:
+        solution = solved(name, scene)
+        there = {n: place[0] for n, place in solution.position.items()}
+        for point, distance in off(there, exact).items():
+            assert distance <= allowed(solution) + last, (name, point)
+    for point, distance in off(true_places(scene), exact).items():
+        assert distance <= last, ("reference", point)
+
+
+@searched
+@given(cars(["collinear"]), SHARES, SHARES)
+def test_a_collinear_strut_once_closed_and_drawn_so_moves_as_before(
+    car: Car, arm: float, rack: float
+) -> None:
+    linkage = Linkage.of(car)
+    home = true_places(scene_at(car, linkage.drawn_angle, linkage.drawn_rack))
+    points = {name: as_tuple(home[name]) for name in car.points}
+    closed = Car(points, car.side, car.up, car.right, "drawn")
+    inputs = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack
+    far = max(float(np.abs(place).max()) for place in home.values())
+    for name in MODELS:
+        before, after = (solved(name, scene_at(one, *inputs)) for one in (car, closed))
+        # The closed points are rounded, and the condition number says what comes of that.
+        condition = max(float(s.accuracy.condition.max()) for s in (before, after))
+        raised = condition * gain(name, scene_at(closed, *inputs))
+        room = allowed(before) + allowed(after) + raised * EPS * far
+        for point, place in before.position.items():
+            assert float(np.abs(place - after.position[point]).max()) <= room, (name, point)
+
+
+LAWS = ("mirrored", "turned", "moved", "scaled")
+
+
+def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
+    """The car elsewhere: with the sign and scale of its rack, and the matrix and shift of its points."""
+    if law == "mirrored":
+        other = "left" if car.side == "right" else "right"
+        points = mirrored(dict(car.points))
+        across = Car(points, other, car.up, car.right, car.closure)
+        return across, -1.0, 1.0, np.diag([1.0, -1.0, 1.0]), np.zeros(3)
+    if law == "turned":
+        turn = any_rotation(5)
+        return turned(car, turn), 1.0, 1.0, turn, np.zeros(3)
+    shift = np.array([4096.0, -8192.0, 2048.0]) if law == "moved" else np.zeros(3)
+    scale = 2.0**7 if law == "scaled" else 1.0
+    points = {name: as_tuple(scale * np.array(place) + shift) for name, place in car.points.items()}
+    return Car(points, car.side, car.up, car.right, car.closure), 1.0, scale, scale * np.eye(3), shift
+
+
+@searched
+@pytest.mark.parametrize("law", LAWS)
+@given(cars(["drawn"]), SHARES, SHARES)
+def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: float, rack: float) -> None:
+    linkage = Linkage.of(car)
+    angle, travel = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack
+    other, sign, scale, matrix, shift = transformed(car, law)
+    for name in MODELS:
+        here = solved(name, scene_at(car, angle, travel))
+        elsewhere = scene_at(other, angle, sign * scale * travel)
+        there = solved(name, elsewhere)
+        # Coordinates are rounded anew, and the condition number says what comes of that.
+        far = max(float(np.abs(place).max()) for place in there.position.values())
+        raised = gain(name, elsewhere) * float(there.accuracy.condition.max())
+        rounding = 2.0 * raised * EPS * far
+        room = scale * allowed(here) + allowed(there) + rounding
+        for point, place in here.position.items():
+            moved = place @ matrix.T + shift
+            assert float(np.abs(moved - there.position[point]).max()) <= room, (name, point)
+
+
+def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner() -> None:
+    points = dict(BESIDE_CAR.points)
+    points["tie_rod_inner"] = points["rack_centre"]
+    whole = Car(points, "left", BESIDE_CAR.up, BESIDE_CAR.right)
+    short = Car({n: p for n, p in points.items() if n != "rack_centre"}, "left", whole.up, whole.right)
+    for name in MODELS:
+        one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (whole, short))
+        for point, place in one.position.items():
+            assert np.array_equal(place, two.position[point]), (name, point)
+
+
+def test_the_two_kinds_of_strut_are_two_cars_where_the_ball_joint_is_off_the_axis() -> None:
+    """A check of the checks: 37 mm beside the axis the collinear strut is tens of millimetres elsewhere."""
+    bent = Car(BESIDE_CAR.points, "left", BESIDE_CAR.up, BESIDE_CAR.right, "collinear")
+    for name in MODELS:
+        one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (BESIDE_CAR, bent))
+        distance = np.abs(one.position["wheel_centre"] - two.position["wheel_centre"]).max()
+        assert distance > 5.0, name
+    drawn = Car(PAPER_CAR.points, "left", PAPER_CAR.up, PAPER_CAR.right, "drawn")
+    assert Linkage.of(drawn).drawn_angle == Linkage.of(PAPER_CAR).drawn_angle

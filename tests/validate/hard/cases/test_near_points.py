@@ -1,0 +1,124 @@
+"""Cars with points nearly in line or coincident: drawn as they are said to be, and judged by their side."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.cars.paper_car import PAPER
+from validate.hard.case import Case, wrong_without_warning
+from validate.hard.cases.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
+from validate.hard.content import paper_car
+from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
+from validate.reference import AmbiguousAssemblyError
+from validate.reference.macpherson import COLLINEAR, Choices
+
+EPS = float(np.finfo(float).eps)
+
+
+def test_the_assembled_car_has_the_links_of_the_paper_and_its_strut_on_a_line() -> None:
+    p = assembled()
+    for a, b in COLLINEAR.links:
+        drawn = np.linalg.norm(np.subtract(PAPER[a], PAPER[b]))
+        # Six coordinates below 600 mm are rounded, and the norms.
+        assert abs(np.linalg.norm(p[a] - p[b]) - drawn) < 8 * EPS * 600
+    axis = p["strut_top"] - p["lower_ball_joint"]
+    for name in ("strut_lower", "strut_rod_end"):
+        beside = np.cross(p[name] - p["lower_ball_joint"], axis / np.linalg.norm(axis))
+        assert np.abs(beside).max() < 8 * EPS * 600
+
+
+@pytest.mark.parametrize("value", [1.0, 1e-3, 1e-9])
+def test_points_are_as_near_as_the_value_says(value: float) -> None:
+    p = assembled()
+    # A difference of coordinates below 600 mm is known to their rounding.
+    rounding = 2 * EPS * 600
+    for moved, onto in (("strut_rod_end", "strut_top"), ("lower_arm_rear", "lower_arm_front")):
+        near = nearer(moved, onto)(value)
+        whole = float(np.linalg.norm(p[moved] - p[onto]))
+        assert abs(np.linalg.norm(near[moved] - near[onto]) - value * whole) < rounding
+        assert all(np.array_equal(near[name], p[name]) for name in p if name != moved)
+    rod = short_tie_rod(value)
+    whole = float(np.linalg.norm(p["tie_rod_outer"] - p["tie_rod_inner"]))
+    assert abs(np.linalg.norm(rod["tie_rod_outer"] - rod["tie_rod_inner"]) - value * whole) < rounding
+
+    def off_the_line(points: dict[str, np.ndarray]) -> float:
+        line = points["strut_lower"] - points["lower_ball_joint"]
+        arm = points["tie_rod_outer"] - points["lower_ball_joint"]
+        return float(np.linalg.norm(np.cross(line, arm)) / np.linalg.norm(line))
+
+    thin = {name: np.array(place) for name, place in thin_knuckle(value).items()}
+    assert abs(off_the_line(thin) - value * off_the_line(p)) < 4 * rounding
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_a_car_without_near_points_is_solved_by_all(case: Case) -> None:
+    trial = case.examine(1.0)
+    assert {answer.outcome for answer in trial.answers} == {"right"}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: Case) -> None:
+    trial = case.examine(1e-12)
+    assert not wrong_without_warning(trial)
+    assert not any(answer.outcome == "unjudged" for answer in trial.answers)
+
+
+def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
+    for rack in (-40.0, 0.0, 60.0):
+        scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
+        expected = true_instant(scene, inputs_at(scene, 0.0))
+        assert drawn_choices(scene) == expected.choices
+        assert instant_on_side(scene, 0.0).position == expected.position
+    mine, theirs = solution_on_side(scene), true_solution(scene)
+    for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
+        for name, array in getattr(theirs, quantity).items():
+            assert np.array_equal(getattr(mine, quantity)[name], array)
+    assert np.array_equal(mine.wheel["camber"], theirs.wheel["camber"])
+
+
+@pytest.mark.parametrize("lift", [1e-13, -1e-13])
+def test_a_drawn_side_is_told_however_near_the_plane(lift: float) -> None:
+    # In the plane y = 0 lie the strut and the tie rod's inner end; the outer end stands beside it.
+    points = {
+        "lower_arm_front": (-200.0, 300.0, 0.0),
+        "lower_arm_rear": (200.0, 300.0, 0.0),
+        "rack_centre": (100.0, 0.0, 80.0),
+        "strut_top": (0.0, 0.0, 500.0),
+        "lower_ball_joint": (0.0, 0.0, 0.0),
+        "tie_rod_outer": (110.0, lift, 100.0),
+        "strut_lower": (0.0, 0.0, 60.0),
+        "strut_rod_end": (0.0, 0.0, 300.0),
+        "tie_rod_inner": (100.0, 0.0, 80.0),
+        "wheel_centre": (0.0, -80.0, 60.0),
+    }
+    scene = Scene.from_mapping(paper_car(points=points))
+    assert drawn_choices(scene).tie == (1 if Fraction(lift) > 0 else -1)
+    flat = Scene.from_mapping(paper_car(points={**points, "tie_rod_outer": (110.0, 0.0, 100.0)}))
+    with pytest.raises(AmbiguousAssemblyError, match="tie choice"):
+        drawn_choices(flat)
+
+
+def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    # A tie rod of 1e-10 of its length: the reference cannot tell its side, the exact sign can. Told the
+    # opposite sign, what was right lies on the wrong side.
+    case = next(case for case in CASES if case.name == "tie-rod-short")
+    assert {a.outcome for a in case.examine(1e-10).answers if a.formulation != "absolute"} == {"right"}
+
+    def opposite(scene: Scene) -> Choices:
+        signs = drawn_choices(scene)
+        return Choices(signs.arm, signs.strut, signs.rod, -signs.tie)
+
+    monkeypatch.setattr("validate.hard.sides.drawn_choices", opposite)
+    trial = case.examine(1e-10)
+    assert {a.outcome for a in trial.answers if a.formulation != "absolute"} == {"wrong"}
+
+
+def test_a_scene_that_the_reference_can_judge_is_left_to_it() -> None:
+    trial = try_on_side(1.0, paper_car(), ("pointcoord-newton",))
+    assert trial.facts["reference"] == "answers"
+    assert trial.answers[0].outcome == "right"

@@ -1,0 +1,249 @@
+"""The catalogue is worth what its judge catches: wrong numbers, silence about them, and what crashes."""
+
+import json
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.registry import formulation
+from validate.hard import trial
+from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
+from validate.hard.judged import judged_answer
+from validate.hard.report import case_text, results_data, summary_text
+from validate.hard.run import as_expected, examine
+from validate.hard.trial import decades, paper_car, scene_case, try_scene
+from validate.output.document import json_text
+
+OURS = ("pointcoord", "absolute")
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return Scene.from_mapping(paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2))
+
+
+@pytest.fixture(scope="module")
+def reference(scene: Scene) -> Solution:
+    return true_solution(scene)
+
+
+@pytest.fixture(scope="module")
+def solution(scene: Scene) -> Solution:
+    return formulation("pointcoord").solve(scene)
+
+
+def planted(
+    solution: Solution, quantity: str, name: str, value: float, notes: tuple[str, ...] = ()
+) -> Solution:
+    """The solution with one number changed."""
+    arrays = {n: np.array(a) for n, a in getattr(solution, quantity).items()}
+    arrays[name][1, ...] = value + (arrays[name][1, ...] if math.isfinite(value) else 0.0)
+    changes: dict[str, Any] = {quantity: arrays, "notes": notes}
+    return replace(solution, **changes)
+
+
+def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Callable[[Scene], Solution]) -> None:
+    """Put something else in the place of every formulation."""
+
+    class Stand:
+        name = "stand-in"
+
+        def solve(self, scene: Scene) -> Solution:
+            return solve(scene)
+
+    monkeypatch.setattr(trial, "formulation", lambda name: Stand())
+
+
+def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition() -> None:
+    result = try_scene(1.0, paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2), (*OURS, "pointcoord-newton"))
+    assert [a.outcome for a in result.answers] == ["right"] * 3
+    for answer in result.answers:
+        assert answer.error is not None
+        assert answer.bound is not None
+        assert answer.share is not None
+        # Half a rounding of 570 mm at least separates the reference from what is stored of it.
+        assert 0.0 < answer.error <= answer.bound + 570 * np.finfo(float).eps
+        assert answer.share <= 1.0
+        assert answer.condition is not None
+        assert answer.condition > 1.0
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name", "change"),
+    [
+        ("position", "wheel_centre", 1e-9),
+        ("velocity", "strut_lower", 1e-8),
+        ("acceleration", "tie_rod_outer", 1e-7),
+        ("angular_velocity", "knuckle", 1e-8),
+        ("angular_acceleration", "knuckle", 1e-7),
+        ("wheel", "camber", 1e-10),
+    ],
+)
+def test_a_wrong_number_of_any_quantity_is_wrong(
+    scene: Scene, reference: Solution, solution: Solution, quantity: str, name: str, change: float
+) -> None:
+    assert judged_answer(scene, solution, reference).outcome == "right"
+    answer = judged_answer(scene, planted(solution, quantity, name, change), reference)
+    assert answer.outcome == "wrong"
+    assert f"{quantity.replace('_', ' ')} of {name}" in answer.reason
+
+
+def test_a_missing_number_is_wrong_unless_a_note_says_so(
+    scene: Scene, reference: Solution, solution: Solution
+) -> None:
+    note = ("angular velocity of knuckle is not a number at 1 of 3 instants",)
+    silent = planted(solution, "angular_velocity", "knuckle", math.nan)
+    assert judged_answer(scene, silent, reference).outcome == "wrong"
+    said = planted(solution, "angular_velocity", "knuckle", math.nan, note)
+    assert judged_answer(scene, said, reference).outcome == "noted"
+    # The note speaks of numbers that are not there, and of no other quantity.
+    other = planted(said, "acceleration", "strut_lower", 1.0, note)
+    assert judged_answer(scene, other, reference).outcome == "wrong"
+    off = planted(solution, "angular_velocity", "knuckle", 1.0, note)
+    assert judged_answer(scene, off, reference).outcome == "wrong"
+    lost = planted(solution, "position", "strut_lower", math.nan, note)
+    assert judged_answer(scene, lost, reference).outcome == "wrong"
+
+
+def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
+    scene: Scene, reference: Solution, solution: Solution
+) -> None:
+    """No partner is needed to test it: the reference is there."""
+    wide = {name: claim + 1.0 for name, claim in solution.accuracy.velocity.items()}
+    claimed = replace(solution, accuracy=replace(solution.accuracy, velocity=wide))
+    assert judged_answer(scene, claimed, reference).outcome == "right"
+    off = planted(claimed, "velocity", "strut_lower", 2.0)
+    assert judged_answer(scene, off, reference).outcome == "wrong"
+
+
+def test_the_reference_s_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
+    """A chassis that heaves evenly: no point accelerates, and the reference says so up to its 60 digits."""
+    even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
+    instants = [true_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
+    largest = max(abs(float(x)) for i in instants for a in i.acceleration.values() for x in a)
+    assert 0.0 < largest < 1e-100
+    still = true_solution(even)
+    assert all((array == 0.0).all() for array in still.acceleration.values())
+    assert (still.velocity["strut_top"] == [0.0, 0.0, 100.0]).all()
+
+
+def test_any_answer_is_wrong_where_the_links_cannot_meet(
+    monkeypatch: pytest.MonkeyPatch, solution: Solution
+) -> None:
+    stand_in(monkeypatch, lambda scene: solution)
+    (answer,) = try_scene(1.0, paper_car(rack=131.0), ("stand-in",)).answers
+    assert answer.outcome == "wrong"
+    assert "tie_rod closure" in answer.reason
+
+
+def test_a_refusal_is_no_wrong_number_and_keeps_its_reason() -> None:
+    result = try_scene(1.0, paper_car(rack=131.0), OURS)
+    assert [a.outcome for a in result.answers] == ["refused", "refused"]
+    assert "AssemblyError" in result.answers[0].reason
+    assert "InfeasibleError" in str(result.facts["reference"])
+
+
+def test_a_scene_that_cannot_be_read_is_refused_by_all() -> None:
+    result = try_scene(1.0, paper_car(math.nan), OURS)
+    assert [a.outcome for a in result.answers] == ["refused", "refused"]
+    assert "inputs.arm_angle.constant" in result.answers[0].reason
+
+
+def test_a_crash_is_a_wrong_answer_and_does_not_stop_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    def crash(scene: Scene) -> Solution:
+        raise ZeroDivisionError("in a row")
+
+    stand_in(monkeypatch, crash)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert (answer.outcome, answer.reason) == ("wrong", "fails: ZeroDivisionError: in a row")
+
+
+def test_a_warning_is_a_crash(monkeypatch: pytest.MonkeyPatch, solution: Solution) -> None:
+    def warn(scene: Scene) -> Solution:
+        warnings.warn("overflow", RuntimeWarning, stacklevel=1)
+        return solution
+
+    stand_in(monkeypatch, warn)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert answer.outcome == "wrong"
+    assert "RuntimeWarning" in answer.reason
+
+
+def made_case(answers: dict[float, Answer], expected: Expected = RIGHT, name: str = "absolute") -> Case:
+    """A case with given answers."""
+    return Case(
+        "made", "0. Made", "it is made", "a number", tuple(answers), {name: expected}, "none",
+        lambda value: Trial(value, (answers[value],), {"size": math.inf}),
+    )  # fmt: skip
+
+
+def test_a_wrong_number_without_warning_is_never_expected_but_of_the_printed_formulas() -> None:
+    wrong = Answer("absolute", "wrong", "far off", share=math.inf)
+    allowed = examine(made_case({1.0: wrong}, FAILS))
+    assert not allowed.unexpected
+    assert not as_expected([allowed])
+    printed = examine(made_case({1.0: replace(wrong, formulation="printed")}, FAILS, "printed"))
+    assert as_expected([printed])
+
+
+def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
+    refused = examine(
+        made_case({1.0: Answer("absolute", "right"), 0.1: Answer("absolute", "refused", "why")})
+    )
+    assert not as_expected([refused])
+    assert refused.gives_up("absolute") == (1, Answer("absolute", "refused", "why"))
+    assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in case_text(refused)
+    assert "gives up at 0.1: why" in case_text(refused)
+    assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in summary_text([refused])
+    # A value without an answer breaks the trial, not the run.
+    broken = examine(replace(made_case({1.0: Answer("absolute", "right")}), values=(1.0, 2.0)))
+    assert [answer.outcome for _, answer in broken.answers("absolute")] == ["right", "unjudged"]
+    assert "KeyError" in broken.answers("absolute")[1][1].reason
+    assert not as_expected([broken])
+
+
+def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -> None:
+    case = scene_case(
+        name="beyond",
+        group="0. Made",
+        why="it is made",
+        parameter="rack travel, mm",
+        values=(0.0, 131.0),
+        scene=lambda value: paper_car(rack=value),
+        expected={"pointcoord": FAILS, "absolute": RIGHT},
+        behaviour="none",
+    )
+    result = examine(case)
+    mended = replace(
+        result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
+    )
+    text = case_text(replace(result, trials=(result.trials[0], mended)), every_value=True)
+    assert "absolute gives up at 131, before pointcoord, which never gives up." in text
+    data = results_data([replace(result, trials=(result.trials[0], mended))])
+    written = json.loads(json_text(data))
+    assert written["cases"][0]["trials"][1]["answers"][0]["share"] is None
+    assert written["cases"][0]["expected"]["absolute"]["right_from"] is None
+
+
+def test_decades_are_evenly_spaced_going_in() -> None:
+    steps = np.diff(np.log10(decades(-12, 0)))
+    assert np.allclose(steps, -1.0, rtol=0, atol=1e-14)
+    assert decades(-12, 0)[0] == 1.0
+    assert decades(-12, 0)[-1] == 1e-12
+
+
+def test_a_formulations_refusal_is_told_by_its_own_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(scene: Scene) -> Solution:
+        raise FormulationError("stand-in", ValueError("its\n reason"))
+
+    stand_in(monkeypatch, refuse)
+    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    assert (answer.outcome, answer.reason) == ("refused", "ValueError: its reason")

@@ -1,0 +1,191 @@
+"""`pointcoord hard` as its users meet it: text, JSON, exit status, and one line for every mistake."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from validate.cli import main
+from validate.hard import catalogue
+from validate.hard.case import RIGHT, Answer, Case, Trial
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A catalogue of two small cases, of which one goes wrong."""
+
+    def case(name: str, formulation: str) -> Case:
+        answer = Answer(formulation, "wrong", "far off")
+        return Case(
+            name, "0. Made", "it is made", "a number", (1.0,), {formulation: RIGHT}, "none",
+            lambda value: Trial(value, (answer,)),
+        )  # fmt: skip
+
+    monkeypatch.setattr(catalogue, "CASES", (case("ours-fails", "pointcoord"), case("quiet", "absolute")))
+
+
+def test_a_named_case_prints_a_row_per_formulation_and_per_value(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "omega-in-the-knuckle-plane"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "== 4. Body rates" in out
+    assert "omega-in-the-knuckle-plane: omega lies in the plane" in out
+    for name in ("pointcoord", "pointcoord-newton", "absolute", "printed"):
+        # Once in the summary of the case, once for each of its 13 values, once in the counts.
+        assert sum(name in line.split() for line in out.splitlines()) >= 15
+    assert "error of it, printed [rad/s]" in out
+    assert "All as expected" in out
+
+
+def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "at-rest", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    data = json.loads(out)
+    assert data["as_expected"] is True
+    (case,) = data["cases"]
+    assert case["name"] == "at-rest"
+    assert len(case["trials"]) == len(case["values"]) == 13
+    assert all(len(trial["answers"]) == 3 for trial in case["trials"])
+    assert data["counts"]["absolute"] == {"right": 13}
+
+
+def test_json_goes_to_a_file_beside_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "hard.json"
+    assert main(["hard", "at-rest", "--json", str(target)]) == 0
+    assert "at-rest" in capsys.readouterr().out
+    assert json.loads(target.read_text())["cases"][0]["unit"] == "mm"
+
+
+def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "--list"]) == 0
+    out, _ = capsys.readouterr()
+    assert catalogue.CASES
+    for case in catalogue.CASES:
+        assert f"  {case.name}: {case.why}" in out.splitlines()
+        assert case.group in out.splitlines()
+
+
+@pytest.mark.parametrize("name", ["at-rests", "AT-REST"])
+def test_a_name_that_no_case_has_ends_with_2_and_near_names(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["hard", name]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert repr(name) in line
+    assert "near names: at-rest" in line
+    assert "pointcoord hard --list" in line
+
+
+@pytest.mark.usefixtures("made")
+def test_a_wrong_number_without_a_warning_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard"]) == 1
+    out, _ = capsys.readouterr()
+    assert "NOT AS EXPECTED: pointcoord is wrong at 1: far off" in out
+    assert "NOT as expected: 2 answers, 2 wrong without a warning, in ours-fails, quiet." in out
+    assert out.count("== 0. Made") == 1
+    assert "2 cases, 2 scenes:" in out
+
+
+@pytest.mark.usefixtures("made")
+def test_one_is_counted_as_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "quiet"]) == 1
+    out, _ = capsys.readouterr()
+    assert "1 case, 1 scene:" in out
+    assert "parameter: a number, 1, 1 value\n" in out
+    assert "NOT as expected: 1 answer, 1 wrong without a warning, in quiet." in out
+
+
+def test_names_are_unique_and_every_case_leads_somewhere() -> None:
+    names = [case.name for case in catalogue.CASES]
+    assert len(set(names)) == len(names)
+    for case in catalogue.CASES:
+        assert case.values, case.name
+        assert case.expected, case.name
+        assert len(set(case.values)) == len(case.values), case.name
+
+
+def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", "--list", "--json", "-"]) == 0
+    listed = json.loads(capsys.readouterr().out)["cases"]
+    assert [case["name"] for case in listed] == [case.name for case in catalogue.CASES]
+    assert all(case["why"] and case["values"] and case["expected"] for case in listed)
+    target = tmp_path / "list.json"
+    assert main(["hard", "at-rest", "--list", "--json", str(target)]) == 0
+    assert "  at-rest: " in capsys.readouterr().out
+    (case,) = json.loads(target.read_text())["cases"]
+    assert case["name"] == "at-rest"
+    assert "trials" not in case
+
+
+@pytest.mark.parametrize("more", [[], ["--list"]])
+def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
+    more: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(value: float) -> Trial:
+        raise AssertionError("tried")
+
+    case = Case("untried", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", never)
+    monkeypatch.setattr(catalogue, "CASES", (case,))
+    for target in (tmp_path / "no" / "x.json", tmp_path):
+        assert main(["hard", *more, "--json", str(target)]) == 4
+        out, err = capsys.readouterr()
+        assert out == ""
+        (line,) = err.splitlines()
+        assert f"{target}: cannot be written" in line
+
+
+@pytest.mark.parametrize("before", [None, "kept"])
+def test_an_interrupted_run_leaves_the_file_as_it_was(
+    before: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(value: float) -> Trial:
+        raise KeyboardInterrupt
+
+    case = Case("stop", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", interrupted)
+    monkeypatch.setattr(catalogue, "CASES", (case,))
+    target = tmp_path / "hard.json"
+    if before is not None:
+        target.write_text(before)
+    assert main(["hard", "--json", str(target)]) == 130
+    assert (target.read_text() if target.exists() else None) == before
+
+
+def test_an_interrupted_run_leaves_the_cases_that_are_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(value: float) -> Trial:
+        raise KeyboardInterrupt
+
+    def case(name: str, examine: Callable[[float], Trial]) -> Case:
+        return Case(name, "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", examine)
+
+    right = Trial(1.0, (Answer("absolute", "right"),))
+    cases = (*(case(f"done-{i}", lambda value: right) for i in range(3)), case("stop", interrupted))
+    monkeypatch.setattr(catalogue, "CASES", cases)
+    target = tmp_path / "hard.json"
+    assert main(["hard", "--json", str(target)]) == 130
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"pointcoord: interrupted; {target} holds 3 of 4 cases"
+    data = json.loads(target.read_text())
+    assert (data["complete"], data["exit_status"]) == (False, 130)
+    assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
+
+
+def test_without_the_packages_of_the_reference_one_line_says_what_to_install() -> None:
+    program = (
+        "import sys; sys.modules['flint'] = None\n"
+        "from validate.cli import main\n"
+        "raise SystemExit(main(['hard', '--list']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert "'flint'" in line
+    assert "pip install 'pointcoord[validate]'" in line

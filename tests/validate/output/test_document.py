@@ -1,0 +1,162 @@
+"""The JSON of every command keeps to the JSON Schema that is shipped, and says where it comes from."""
+
+import json
+import re
+import tomllib
+from datetime import UTC, datetime
+from importlib import metadata, resources
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from program import PAST_ITS_END, short_scene
+
+from validate.cli import main
+from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.output.console import Console
+from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
+from validate.paper.scenes import DEFAULT_SCENES
+from validate.studies import bounds
+
+SCHEMA = json.loads(schema_text())
+CHECK = jsonschema.Draft202012Validator(SCHEMA)
+
+
+def no_constant(name: str) -> None:
+    raise AssertionError(f"{name} is no JSON")
+
+
+def document(text: str) -> dict[str, Any]:
+    """The text as strict JSON that keeps to the schema."""
+    data = json.loads(text, parse_constant=no_constant)
+    CHECK.validate(data)
+    return data
+
+
+def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    assert main(["--schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == SCHEMA
+    assert SCHEMA["properties"]["schema_version"]["const"] == SCHEMA_VERSION
+    assert set(SCHEMA["$defs"]["status"]["enum"]) == set(ExitStatus)
+    assert set(SCHEMA["$defs"]["verdict"]["enum"]) == {status.verdict for status in ExitStatus}
+
+
+def test_the_schema_is_in_the_wheel() -> None:
+    """All files of the packages are, unless git ignores them."""
+    sources = Path(__file__).parents[3]
+    settings = tomllib.loads((sources / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
+    assert "validate" in settings["wheel"]["packages"]
+    assert "exclude" not in settings["wheel"]
+    ignored = (sources / ".gitignore").read_text().split()
+    assert (resources.files("validate.output") / "schema.json").is_file()
+    assert not [pattern for pattern in ignored if "json" in pattern]
+
+
+def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixture[str]) -> None:
+    before = datetime.now(UTC).replace(microsecond=0)
+    words = ["validate", "steer", "--json", "-"]
+    assert main(words) == 0
+    data = document(capsys.readouterr().out)
+    assert (data["schema_version"], data["kind"], data["complete"]) == (SCHEMA_VERSION, "validate", True)
+    assert (data["exit_status"], data["verdict"]) == (0, "agree")
+    assert data["program"] == {"name": "pointcoord", "version": metadata.version("pointcoord")}
+    assert data["command"] == ["pointcoord", *words]
+    assert data["command_line"] == "pointcoord validate steer --json -"
+    assert before <= datetime.fromisoformat(data["started"]) <= datetime.fromisoformat(data["written"])
+    assert data["machine"]["packages"]["numpy"] == np.__version__
+    assert data["machine"]["packages"]["pin"] == metadata.version("pin")
+    assert "OMP_NUM_THREADS" in data["machine"]["threads"]
+
+
+def test_numbers_that_do_not_exist_and_bytes_that_are_no_text_have_a_place_in_json() -> None:
+    text = json_text({"a": [float("nan"), float("inf"), 1.0], "b": ({"c": -float("inf")},), "d": "\udcff"})
+    assert document_part(text) == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
+
+
+def document_part(text: str) -> Any:
+    return json.loads(text, parse_constant=no_constant)
+
+
+def test_every_ending_of_a_comparison_keeps_to_the_schema(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good, past = short_scene(tmp_path), short_scene(tmp_path, "past.toml", samples="27", **PAST_ITS_END)
+    bad = short_scene(tmp_path, "bad.toml", samples="0")
+    endings = {
+        (good,): 0,
+        (good, "--second", "printed"): 1,
+        (bad,): 2,
+        (past,): 3,
+        (past, bad, good): 2,
+        (past, bad, good, "--second", "printed"): 1,
+    }
+    for words, status in endings.items():
+        assert main(["validate", *words, "--json", "-"]) == status, words
+        data = document(capsys.readouterr().out)
+        assert (data["exit_status"], data["verdict"]) == (status, ExitStatus(status).verdict)
+        assert [scene["scene"] for scene in data["scenes"]] == [word for word in words if "/" in word]
+        assert combined(ExitStatus(scene["exit_status"]) for scene in data["scenes"]) == status
+
+
+def test_the_main_job_keeps_to_the_schema(tmp_path: Path) -> None:
+    target = tmp_path / "all.json"
+    assert main(["validate", "--quiet", "--json", str(target)]) == 0
+    data = document(target.read_text())
+    pairs = [comparison["formulations"] for scene in data["scenes"] for comparison in scene["comparisons"]]
+    assert pairs == [["pointcoord", "absolute"], ["pointcoord-newton", "absolute"]] * len(DEFAULT_SCENES)
+    # The steering scene's printed omega is 0/0.
+    assert None in [finding["worst"]["difference"] for finding in data["printed_formulas"]]
+
+
+@pytest.mark.parametrize("words", [["at-rest"], ["--list"], ["at-rest", "--list"]])
+def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["hard", *words, "--json", "-"]) == 0
+    data = document(capsys.readouterr().out)
+    assert data["kind"] == ("hard-list" if "--list" in words else "hard")
+
+
+def test_the_study_of_bounds_keeps_to_the_schema(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert bounds.main(["--poses", "4", "--motions", "1", "--json", "-"]) == 0
+    assert document(capsys.readouterr().out)["kind"] == "bounds"
+
+
+@pytest.mark.parametrize("words", [["--help"], ["validate", "--help"], ["simulate", "-h"]])
+def test_every_status_is_explained_where_a_user_looks(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 0
+    said = capsys.readouterr().out
+    assert HELP in said
+    assert set(MEANINGS) == set(ExitStatus)
+    for status in ExitStatus:
+        assert re.search(rf"^ +{status.value}  {re.escape(MEANINGS[status])}$", said, flags=re.M)
+    assert {*ORDER, ExitStatus.INTERRUPTED} == set(ExitStatus)
+
+
+def test_writing_on_the_way_takes_a_small_part_of_the_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A clock that each writing moves by 1 s and each part by 0.5 s: of 100 parts some 8 are written."""
+    clock = [0.0]
+    monkeypatch.setattr("validate.output.document.time.monotonic", lambda: clock[0])
+    target = tmp_path / "x.json"
+    journal = Journal(str(target), Head.of("hard-list", ["pointcoord"]), Console())
+    written = []
+
+    def results(number: int) -> dict[str, Any]:
+        written.append(number)
+        clock[0] += 1.0
+        return {"cases": []}
+
+    for number in range(100):
+        clock[0] += 0.5
+        journal.keep(lambda number=number: results(number), "some")
+    assert written[0] == 0
+    assert len(written) <= 0.1 * clock[0] + 1
+    assert max(np.diff(written)) * 0.5 <= 10.0
+    assert document(target.read_text())["complete"] is False
+    journal.close(lambda: results(100), ExitStatus.AGREE, True, "all")
+    assert document(target.read_text())["complete"] is True
