@@ -1,7 +1,9 @@
 """Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
 from absolute.closing import ClosedDrawing, close_drawing
-from absolute.description import Axis, BranchSign, Carried, Input, Joint, Model
+from absolute.description import Axis, BranchSign, Carried, Corner, Input, Joint, Model
+from absolute.effects import EFFECTS
+from absolute.effects.effect import Effect
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
@@ -20,6 +22,7 @@ from absolute.suspensions.macpherson import macpherson
 from absolute.suspensions.suspension import Suspension
 
 __all__ = [
+    "EFFECTS",
     "SUSPENSIONS",
     "AbsoluteError",
     "AssemblyError",
@@ -28,7 +31,9 @@ __all__ = [
     "BranchSign",
     "Carried",
     "ClosedDrawing",
+    "Corner",
     "DescriptionError",
+    "Effect",
     "Input",
     "InputError",
     "Joint",

@@ -1,10 +1,11 @@
 """Solve a motion: assemble the drawing, track it through the instants, refine these to rounding."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from absolute.description import Model
+from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
 from absolute.initial_assembly import branch_error
 from absolute.input_arrays import chassis_series, doubt_series, input_series
@@ -24,6 +25,7 @@ def solve(
     conditions: bool = False,
     errors: bool = False,
     input_errors: Mapping[str, Array] | None = None,
+    effects: Sequence[str] = (),
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
 
@@ -38,23 +40,30 @@ def solve(
             costs about twice as much as the solution itself, of which nothing changes.
         input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
             where it is not given. What the chassis motion is off comes on top of every point alike.
+        effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives
+            over time brings the rates with it.
     Returns:
         Solution with one row per instant.
     Raises:
-        DescriptionError: an axis of the model has no length or its lines point apart.
-        InputError: names, shapes or values of inputs or chassis.
+        DescriptionError: an axis of the model has no length or its lines point apart; effects of a
+            linkage without a wheel.
+        InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
         BranchError: the drawing stands where its branches meet, or a pose is on another branch.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
     """
+    asked = effects_of(effects)
+    if asked:
+        model.require_corner()
+    rates = rates or any(effect.derivative > 0 for effect in asked)
     series = input_series(tuple(model.inputs), inputs)
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
     doubts = doubt_series(tuple(model.inputs), input_errors or {}, count) if errors else None
-    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts))
+    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked))
     try:
         # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         with np.errstate(over="ignore", invalid="ignore"):

@@ -37,7 +37,7 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.pointwise import Solved, solve_instants, square_velocity_term
 from pointcoord.solve.taylor import COARSEST, FINEST, Chain, Settings, build_chain
-from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
+from pointcoord.suspensions import PRINTED_TOPOLOGIES, SUSPENSIONS
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ def simulate(scene: Scene, method: Method = "series") -> Motion:
 
 def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
     """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name."""
-    if scene.mechanism.closure == "drawn" and moved.changes_the_car:
+    if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
         raise SceneError(
             scene.title or "scene",
             "mechanism.points",
@@ -119,15 +119,17 @@ def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
         SceneError: its hardpoints do not make one.
     """
     part = scene.mechanism
-    closures = (PRINTED_TOPOLOGIES if printed else TOPOLOGIES)[part.type]
+    closures = PRINTED_TOPOLOGIES.get(part.type, {}) if printed else SUSPENSIONS[part.type].closures
     source = scene.title or "scene"
     if part.closure not in closures:
         raise SceneError(
             source,
             "mechanism.closure",
-            f"the method 'printed' cannot solve closure = {part.closure!r}: the paper prints the strut with "
-            "its ball joint on the strut axis",
-            ", ".join(closures),
+            f"the method 'printed' cannot solve a {part.type} with closure = {part.closure!r}: it has the "
+            "constraints as a paper prints them",
+            ", ".join(
+                f"{name} of a {type}" for type, closures in PRINTED_TOPOLOGIES.items() for name in closures
+            ),
         )
     topology = closures[part.closure]
     try:

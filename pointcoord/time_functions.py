@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from pointcoord.numerics.double_double import exact_product, exact_sum
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 

@@ -2,8 +2,8 @@
 
 import math
 
-from absolute.description import Axis, BranchSign, Input, Joint
-from absolute.suspensions.suspension import Drawn, plain
+from absolute.description import Axis, BranchSign, Input, Joint, plain
+from absolute.suspensions.suspension import Drawn
 
 
 def arm_pivot(front: str, rear: str, body: str) -> Joint:

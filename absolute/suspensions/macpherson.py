@@ -15,6 +15,7 @@ def _linkage(drawn: Drawn) -> Model:
     The rod's line, strut_rod_end to strut_top, slides along an axis of the knuckle:
         "drawn"      strut_lower to strut_top as drawn, wherever the lower ball joint is;
         "collinear"  lower_ball_joint to strut_lower (the paper's strut, eqs. 1-11).
+    The steering axis leads to strut_top, or is that of the paper's eq. (16), to strut_lower.
     """
     front, rear, ball = ARM
     joints = {
@@ -28,7 +29,10 @@ def _linkage(drawn: Drawn) -> Model:
         "arm_angle": arm_angle(drawn, front, ball, "lower_arm"),
         "rack": rack_travel(drawn),
     }
-    return Model(drawn.points, "chassis", drawn.bodies, joints, inputs, _branch_signs(drawn))
+    inner = "wheel_axis_inner" if "wheel_axis_inner" in drawn.place else "strut_lower"
+    upper = "strut_top" if drawn.closure == "drawn" else "strut_lower"
+    corner = drawn.corner((inner, "wheel_centre"), ("lower_ball_joint", upper))
+    return Model(drawn.points, "chassis", drawn.bodies, joints, inputs, _branch_signs(drawn), corner)
 
 
 def _strut_axes(drawn: Drawn) -> tuple[Axis, Axis]:

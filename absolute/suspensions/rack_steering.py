@@ -7,8 +7,8 @@ convention.
 
 import numpy as np
 
-from absolute.description import Axis, BranchSign, Input, Joint
-from absolute.suspensions.suspension import Drawn, plain, unit
+from absolute.description import Axis, BranchSign, Input, Joint, plain, unit_of
+from absolute.suspensions.suspension import Drawn
 
 TIE_ROD = ("link tie_rod_inner - tie_rod_outer",)
 
@@ -21,7 +21,7 @@ def steering_joints(drawn: Drawn) -> dict[str, Joint]:
     sideways = min(
         (drawn.up, np.cross(drawn.right, drawn.up), drawn.right), key=lambda axis: abs(float(axis @ along))
     )
-    pin_of_rack = unit("tie_rod", plain(np.cross(along, sideways)))
+    pin_of_rack = unit_of("tie_rod", plain(np.cross(along, sideways)))
     pin_of_rod = np.cross(along, pin_of_rack)
     slide = plain(drawn.right)
     outer = Axis("tie_rod_outer")

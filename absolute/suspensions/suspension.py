@@ -5,12 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from absolute.description import Model, Vector, point_of, vector_of
+from absolute.description import Corner, Model, Vector, plain, point_of, unit_of, vector_of
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
+
+# Where outboard is, along right.
+SIDES = {"left": -1.0, "right": 1.0}
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,7 @@ class Drawn:
     Attributes:
         place: point name -> (3,) coordinates, mm.
         bodies: body name -> names of its points, without those that are not drawn.
-        up, right: (3,) unit vectors.
+        up, right, outboard: (3,) unit vectors.
         closure: one of those that the type knows.
     """
 
@@ -28,12 +31,18 @@ class Drawn:
     bodies: Mapping[str, tuple[str, ...]]
     up: Array
     right: Array
+    outboard: Array
     closure: str
 
     @property
     def points(self) -> dict[str, Vector]:
         """Coordinates as plain numbers."""
         return {name: plain(place) for name, place in self.place.items()}
+
+    def corner(self, wheel_axis: tuple[str, str], steering_axis: tuple[str, str]) -> Corner:
+        """The corner of the car whose wheel the body `knuckle` carries."""
+        directions = (plain(direction) for direction in (self.up, self.right, self.outboard))
+        return Corner("knuckle", wheel_axis, steering_axis, *directions)
 
     def line(self, start: str, end: str) -> Array:
         """Unit vector from one drawn point to another."""
@@ -43,7 +52,7 @@ class Drawn:
             raise DescriptionError(
                 f"points {start!r} and {end!r} coincide at {where}; move one of them", start, where
             )
-        return unit(start, plain(line))
+        return unit_of(start, plain(line))
 
 
 @dataclass(frozen=True)
@@ -82,6 +91,7 @@ class Suspension:
         *,
         up: Sequence[float] = (0.0, 0.0, 1.0),
         right: Sequence[float] = (0.0, 1.0, 0.0),
+        side: str = "left",
         closure: str = "drawn",
     ) -> Model:
         """The linkage of a drawing.
@@ -89,20 +99,23 @@ class Suspension:
         Args:
             points: all those of the type, mm; those named in `optional` if wanted.
             up, right: where the car's up and right point in the frame of the points; any length.
+            side: "left" or "right", the side of the car whose wheel it is; it decides the signs of effects.
             closure: one of `closures`.
         Raises:
             DescriptionError: a point is missing, unknown, not finite or beyond LARGEST_COORDINATE; the
-                closure is unknown; up and right are no directions at a right angle; points that make an
-                axis coincide.
+                side or the closure is unknown; up and right are no directions at a right angle; points that
+                make an axis coincide.
         """
         if closure not in self.closures:
             raise DescriptionError(
                 f"closure is {closure!r}; it must be one of {list(self.closures)}", "closure", closure
             )
+        if side not in SIDES:
+            raise DescriptionError(f"side is {side!r}; it must be one of {list(SIDES)}", "side", side)
         place = self._places(points)
         upward, rightward = (
-            unit("up", vector_of("up", "up", up)),
-            unit("right", vector_of("right", "right", right)),
+            unit_of("up", vector_of("up", "up", up)),
+            unit_of("right", vector_of("right", "right", right)),
         )
         skew = float(upward @ rightward)
         if abs(skew) > LARGEST_SKEW:
@@ -114,7 +127,7 @@ class Suspension:
         bodies = {
             body: tuple(point for point in names if point in place) for body, names in self.bodies.items()
         }
-        return self.linkage(Drawn(place, bodies, upward, rightward, closure))
+        return self.linkage(Drawn(place, bodies, upward, rightward, SIDES[side] * rightward, closure))
 
     def _places(self, points: Mapping[str, Sequence[float]]) -> dict[str, Array]:
         needed = [name for name in self.points if name not in self.optional]
@@ -135,18 +148,3 @@ class Suspension:
     def _may_be_left_out(self, point: str) -> bool:
         pair = {point, self.optional.get(point)}
         return any(pair <= set(names) for names in self.bodies.values()) and point in self.optional
-
-
-def unit(name: str, vector: Vector) -> Array:
-    """A direction of length 1, or a DescriptionError where `vector` is zero."""
-    array = np.array(vector)
-    largest = float(np.abs(array).max())
-    if largest == 0:
-        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
-    array = array / largest
-    return np.asarray(array / np.linalg.norm(array))
-
-
-def plain(vector: Array) -> Vector:
-    """Three numbers."""
-    return (float(vector[0]), float(vector[1]), float(vector[2]))

@@ -24,12 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.double_double import Pair
 from pointcoord.numerics.kantorovich import INFLATION, Certificate
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Carriers = tuple[Array, Array, Array]
-Pair = tuple[Array, Array]
+
 
 ROUNDINGS = 10.0 * UNIT_ROUNDOFF  # the nine of p and one for the distance from what is reported
 

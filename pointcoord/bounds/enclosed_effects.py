@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed, cross, dot, quotient
-from pointcoord.numerics.linear import EPS
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]

@@ -33,8 +33,9 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import Certificate
-from pointcoord.numerics.linear import EPS, Factors
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, QuadraticMap
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 

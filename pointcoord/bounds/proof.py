@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.body_fixed import Pair, apart, carried_errors
+from pointcoord.bounds.body_fixed import apart, carried_errors
 from pointcoord.bounds.reported_bounds import Bounds, Proven, Reported, joined, reported_bounds
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import exact_sum
+from pointcoord.numerics.double_double import Pair, exact_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, Certificate, certify
-from pointcoord.numerics.linear import EPS, Factors, factorise
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,8 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed, dot
 from pointcoord.numerics.kantorovich import INFLATION, Certificate
-from pointcoord.numerics.linear import EPS, Factors
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.rounding import EPS
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-r"""Rigid bodies seen through their points: carried points and rates of rotation.
+r"""Rigid bodies seen through their points: rates of rotation.
 
 The rates of a body come from all its points by least squares. With r_i from the points' centroid,
 
@@ -19,23 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import SingularConfiguration
-from pointcoord.numerics.power_series import cross_series
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
-
-EPS = float(np.finfo(float).eps)
-
-
-def carried_series(weights: Array, base: Array, first: Array, second: Array) -> Array:
-    """Series of a point that rides on three others: p = p_0 + a e1 + b e2 + c e1 x e2.
-
-    Args:
-        weights: (a, b, c), shape (..., 3).
-        base, first, second: series of the carriers, shape (..., order + 1, 3).
-    """
-    e1, e2 = first - base, second - base
-    a, b, c = (weights[..., i, None, None] for i in range(3))
-    return np.asarray(base + a * e1 + b * e2 + c * cross_series(e1, e2))
 
 
 def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:

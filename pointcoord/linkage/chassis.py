@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]

@@ -12,7 +12,6 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.constraints.constraint import Link, OnLine
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 
@@ -22,14 +21,16 @@ Piece = tuple[str, str]
 
 def pieces(topology: Topology) -> dict[Piece, tuple[Piece, ...]]:
     """By line, pairs of points that have a sense along it: links on it, and slides from its start."""
-    slides = [c for c in topology.constraints if isinstance(c, OnLine)]
+    on_lines: dict[Piece, list[str]] = {}
+    for constraint in topology.constraints:
+        if constraint.aligned:
+            start, end, point = constraint.aligned
+            on_lines.setdefault((start, end), []).append(point)
+    links = [ends for constraint in topology.constraints for ends in constraint.squared_lengths]
     found: dict[Piece, tuple[Piece, ...]] = {}
-    for start, end in dict.fromkeys((slide.start, slide.end) for slide in slides):
-        on_line = [slide.point for slide in slides if (slide.start, slide.end) == (start, end)]
-        members = {start, end, *on_line}
-        links = [(c.start, c.end) for c in topology.constraints if isinstance(c, Link)]
-        rigid = [link for link in links if members.issuperset(link)]
-        found[start, end] = (*rigid, *((start, point) for point in on_line))
+    for (start, end), slides in on_lines.items():
+        rigid = [link for link in links if {start, end, *slides}.issuperset(link)]
+        found[start, end] = (*rigid, *((start, point) for point in slides))
     return found
 
 

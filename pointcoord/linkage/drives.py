@@ -16,7 +16,7 @@ from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import exact_product, exact_square
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine
 
 Array = NDArray[np.float64]
@@ -38,6 +38,11 @@ class Drive(Protocol):
         """Name of the input."""
         ...
 
+    @property
+    def unit(self) -> str:
+        """Unit of the input, rad or mm."""
+        ...
+
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The coordinate's series from the input's."""
         ...
@@ -46,7 +51,7 @@ class Drive(Protocol):
         """What the computed coordinate of an input lacks, and how uncertain it is with that added.
 
         Args:
-            law: how far the input's value may be off, rad or mm.
+            law: how far the input's value may be off, in its unit.
         """
         ...
 
@@ -54,7 +59,7 @@ class Drive(Protocol):
         """Where the coordinate and its first and second derivative exactly are.
 
         Args:
-            law: the input's value, rate and acceleration, each (N,), rad or mm per s^d.
+            law: the input's value, rate and acceleration, each (N,), in its unit per s^d.
         """
         ...
 
@@ -83,6 +88,11 @@ class ArmAngle:
     pivot: str
     point: str
     direction: str
+
+    @property
+    def unit(self) -> str:
+        """Radians."""
+        return "rad"
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """d cos of the angle's series.
@@ -150,6 +160,11 @@ class Travel:
     origin: str
     point: str
     direction: str
+
+    @property
+    def unit(self) -> str:
+        """Millimetres."""
+        return "mm"
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The displacement in the mechanism's units."""

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import MechanismError, UnknownName
+from pointcoord.linkage.carried_points import carrier_weights
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.numerics.linear import EPS, factorise, null_directions
+from pointcoord.numerics.linear import factorise, null_directions
 
 Array = NDArray[np.float64]
 
@@ -33,9 +34,7 @@ def build_mechanism(
     _check_names(points, topology.points, "point")
     _check_names(directions, topology.directions, "direction")
     topology = topology.given(points)
-    standing = {name: points[other] for name, other in topology.stand_ins.items() if other in points}
-    taken = {name: place for name, place in standing.items() if name in topology.chassis}
-    located = _checked(taken | dict(points), topology.points, "point")
+    located = _checked(topology.with_defaults(points), topology.points, "point")
     turned = _checked(directions, topology.directions, "direction")
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -61,7 +60,7 @@ def build_mechanism(
         drawn_lacks=lacks,
         drawn_doubt=doubt,
         carrier_weights={
-            name: _carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
+            name: carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
         },
     )
     _check_determined(mechanism)
@@ -103,22 +102,6 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     for drive in topology.drives:
         y[..., layout.scalar(drive.coordinate)] = drive.drawn(drawing)
     return y, lacks, doubt
-
-
-def _carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str]) -> Array:
-    """(a, b, c) with p - p_0 = a e1 + b e2 + c e1 x e2 for the edges e of the carrying triangle."""
-    base, first, second = (drawing.vectors[point] for point in carriers)
-    e1, e2 = first - base, second - base
-    frame = np.stack(np.broadcast_arrays(e1, e2, np.cross(e1, e2)), axis=-1)
-    lengths = np.linalg.norm(e1, axis=-1) * np.linalg.norm(e2, axis=-1)
-    area = np.linalg.norm(np.cross(e1, e2), axis=-1)
-    if not (area > 8 * EPS * lengths).all():
-        raise MechanismError(
-            f"{', '.join(carriers)} lie in one line, so they cannot carry {name}; move one off the line",
-            carriers,
-        )
-    offset = np.broadcast_to(drawing.vectors[name] - base, frame.shape[:-1])
-    return np.asarray(np.linalg.solve(frame, offset[..., None])[..., 0])
 
 
 def _check_determined(mechanism: Mechanism) -> None:

@@ -85,7 +85,7 @@ class Layout:
         return self.size - len(self.squared_lengths) + self.squared_lengths.index((start, end))
 
     def describe(self, index: int) -> str:
-        """An unknown coordinate in words, such as 'y of tie_rod_outer'."""
+        """An unknown coordinate in words, such as 'y of' a point."""
         vectors = (*self.moving, *self.vectors)
         if index < 3 * len(vectors):
             return f"{'xyz'[index % 3]} of {vectors[index // 3]}"

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.rigid import carried_series
 from pointcoord.errors import InputOutOfRange, UnknownName
+from pointcoord.linkage.carried_points import carried_series
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology

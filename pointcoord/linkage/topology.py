@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,23 +16,29 @@ from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
 
 Array = NDArray[np.float64]
+Place = TypeVar("Place")
 
 
 @dataclass(frozen=True)
 class Topology:
-    """A linkage as points, bodies, constraints and inputs.
+    """A linkage as points, bodies, constraints and inputs, with names for the parts that others ask for.
 
     Attributes:
+        name: what messages call it.
         chassis: points that the chassis carries. moving: points to be solved for.
         bodies: points of each body of three or more points whose rates are of interest.
         carried: points that ride on a body and constrain nothing, with the three points that carry them.
         directions: unit vectors that the chassis carries.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
+        knuckle: the body that carries the wheel.
         steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
         wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
+        wheel_centre: a point of the knuckle.
+        inboard: a point of the chassis that lies nearer the car's middle than the wheel centre.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
+        puts_in_place: whether closing the drawing moves points on purpose, however far that is.
     """
 
     name: str
@@ -42,10 +49,14 @@ class Topology:
     directions: tuple[str, ...]
     constraints: tuple[Constraint, ...]
     drives: tuple[Drive, ...]
+    knuckle: str
     steering_axis: tuple[str, str]
     wheel_axis: tuple[str, str]
+    wheel_centre: str
+    inboard: str
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
+    puts_in_place: bool = False
 
     @property
     def points(self) -> tuple[str, ...]:
@@ -56,6 +67,15 @@ class Topology:
     def required_points(self) -> tuple[str, ...]:
         """Points that must be given."""
         return tuple(name for name in self.points if name not in self.stand_ins)
+
+    def with_defaults(self, points: Mapping[str, Place]) -> dict[str, Place]:
+        """Points of a car with those of the chassis that it leaves out, where others stand in for them."""
+        taken = {
+            name: points[other]
+            for name, other in self.stand_ins.items()
+            if name in self.chassis and other in points
+        }
+        return taken | dict(points)
 
     def given(self, points: Collection[str]) -> Topology:
         """The topology of a car that gives these points: what only rides on a body may be left out."""
@@ -77,6 +97,12 @@ class Topology:
         return (*self.required_inputs, *self.chassis_motion)
 
     @property
+    def input_units(self) -> dict[str, str]:
+        """The unit of every input, rad or mm."""
+        driven = {drive.input: drive.unit for drive in self.drives}
+        return driven | dict.fromkeys(self.chassis_motion, "mm")
+
+    @property
     def labels(self) -> tuple[str, ...]:
         """A name for each row of the map."""
         return tuple(label for constraint in self.constraints for label in constraint.labels)
@@ -84,7 +110,7 @@ class Topology:
     def strongest(self, forces: Array) -> tuple[str, ...]:
         """Names of the constraints that take part in a balance of forces.
 
-        What can lock, links and the strut's slide, comes first; what only says how a body is made, last.
+        What can lock, links and slides, comes first; what only says how a body is made, last.
 
         Args:
             forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
@@ -95,7 +121,7 @@ class Topology:
         ranks: dict[str, int] = {}
         for constraint in self.constraints:
             last = first + len(constraint.labels)
-            name = constraint.labels[0].removesuffix(" (x)")
+            name = constraint.name
             sizes[name] = float(np.abs(forces[first:last]).max())
             ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
             first = last

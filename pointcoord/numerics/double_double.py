@@ -14,9 +14,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF, QuadraticMap
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
+Pair = tuple[Array, Array]
+"""Numbers as high and low."""
 
 SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves whose products are exact
 # Rounding of the low parts in units of u^2 times a term, by the bounds below: a factor's low part is at most
@@ -24,6 +27,8 @@ SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves whose products are ex
 # parts of factors rounds twice each (24), their products (12), their sum (26), what it leaves out (36), the
 # coefficient (26), the sums of up to 8 terms and of their carries (176): 300, with as much again to spare.
 LEFT_OUT = 600.0
+# A product of pairs and a sum of four of them round some twenty times in units of u^2; three times that.
+PAIRS = 64.0 * UNIT_ROUNDOFF**2
 
 
 def exact_sum(a: Array, b: Array) -> tuple[Array, Array]:
@@ -54,6 +59,36 @@ def exact_square(a: Array, b: Array) -> tuple[Array, Array]:
     total, carry = exact_sum(square[..., 0], square[..., 1])
     total, last = exact_sum(total, square[..., 2])
     return total, carry + last + square_rest.sum(axis=-1)
+
+
+def pair_product(a: Pair, b: Pair) -> Pair:
+    """a b, to the working precision of the low part."""
+    high, low = exact_product(*np.broadcast_arrays(a[0], b[0]))
+    return high, low + (a[0] * b[1] + a[1] * b[0])
+
+
+def pair_sum(a: Pair, b: Pair) -> Pair:
+    """a + b, to the working precision of the low part."""
+    high, low = exact_sum(*np.broadcast_arrays(a[0], b[0]))
+    return high, low + (a[1] + b[1])
+
+
+def minus_pair(a: Pair) -> Pair:
+    """-a."""
+    return -a[0], -a[1]
+
+
+def pair_cross(a: Pair, b: Pair) -> Pair:
+    """a x b of vectors given as pairs, shape (..., 3)."""
+    (ax, ay, az), (bx, by, bz) = ([(high[..., i], low[..., i]) for i in range(3)] for high, low in (a, b))
+    parts = [
+        pair_sum(pair_product(ay, bz), minus_pair(pair_product(az, by))),
+        pair_sum(pair_product(az, bx), minus_pair(pair_product(ax, bz))),
+        pair_sum(pair_product(ax, by), minus_pair(pair_product(ay, bx))),
+    ]
+    high, low = (np.stack([part[i] for part in parts], axis=-1) for i in (0, 1))
+    # The sums of products may cancel, so their low parts are brought below the high ones again.
+    return exact_sum(high, low)
 
 
 def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:

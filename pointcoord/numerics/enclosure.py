@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.numerics.double_double import exact_product, exact_sum
-from pointcoord.numerics.quadratic import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

@@ -37,8 +37,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.double_double import doubled_residual
-from pointcoord.numerics.linear import EPS, Factors
+from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.rounding import EPS
 
-EPS = float(np.finfo(float).eps)
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

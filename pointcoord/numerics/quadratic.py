@@ -20,10 +20,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-
-UNIT_ROUNDOFF = float(np.finfo(float).eps) / 2
 
 
 @dataclass(frozen=True)

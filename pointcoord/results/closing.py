@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 
@@ -99,8 +100,8 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
         last = first + len(constraint.labels)
         miss = float(np.linalg.norm(residual[first:last]))
         # Rows are sums of a few products of coordinates below 1.
-        if constraint.is_length and miss > 64 * np.finfo(float).eps:
-            misses[constraint.labels[0].removesuffix(" (x)")] = unit * miss
+        if constraint.is_length and miss > 64 * EPS:
+            misses[constraint.name] = unit * miss
         first = last
     size = unit * float(np.max(np.ptp(stack, axis=0)))
     return Closing(movements, misses, size)

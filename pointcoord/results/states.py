@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.effects.effect import Plan
-from pointcoord.effects.rigid import carried_series
 from pointcoord.errors import OutsideMotion
+from pointcoord.linkage.carried_points import carried_series
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.results.motion import Samples

@@ -5,7 +5,7 @@ No rule here refuses anything: a car may be odd. Each says what is odd, with its
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,10 @@ from pointcoord.effects import wheel_angles as wheel
 
 Array = NDArray[np.float64]
 
-SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no strut is shorter than the one and no car longer than the other
+SMALLEST, LARGEST = (
+    50.0,
+    20_000.0,
+)  # mm: no suspension is smaller, and no car longer
 STEEPEST = 45.0  # degrees: no wheel and no steering axis leans that far
 STEEPEST_BY_DEFAULT = 10.0  # of a spin axis that nobody drew
 
@@ -25,7 +28,7 @@ def drawing_doubts(
     outboard: Array,
     wheel_axis: tuple[str, str],
     steering_axis: tuple[str, str],
-    given: Container[str],
+    spin_axis_drawn: bool,
 ) -> tuple[str, ...]:
     """What looks wrong, in the order of how much it changes.
 
@@ -33,7 +36,7 @@ def drawing_doubts(
         points: hardpoints, each (3,), mm.
         up, outboard: unit vectors, (3,).
         wheel_axis, steering_axis: the points that they run through, as in a topology.
-        given: points that are on those axes because the user says so.
+        spin_axis_drawn: whether the car gives the spin axis an inner point of its own.
     """
     doubts = []
     size = float(np.ptp(np.array(list(points.values())), axis=0).max())
@@ -44,7 +47,7 @@ def drawing_doubts(
     if float((centre - inner) @ outboard) <= 0.0:
         doubts.append(f"{wheel_axis[0]} lies outboard of {wheel_axis[1]}, so the spin axis points inboard")
     else:
-        limit = STEEPEST if wheel_axis[0] in given else STEEPEST_BY_DEFAULT
+        limit = STEEPEST if spin_axis_drawn else STEEPEST_BY_DEFAULT
         doubts += _steep("camber", wheel.camber_angle(inner, centre, up, outboard), wheel_axis, limit)
     kingpin = wheel.kingpin_angle(lower, upper, up, outboard)
     doubts += _steep("kingpin angle", kingpin, steering_axis, STEEPEST)

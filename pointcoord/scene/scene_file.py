@@ -15,7 +15,7 @@ from typing import IO, Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from pointcoord.effects.effect import EFFECTS
 from pointcoord.errors import SceneError
@@ -25,7 +25,7 @@ from pointcoord.scene.even_instants import even_instants
 from pointcoord.scene.messages import plain_number, shown
 from pointcoord.scene.scene_part import Part
 from pointcoord.scene.scene_text import parsed, read_file, read_stream
-from pointcoord.suspensions import TOPOLOGIES
+from pointcoord.suspensions import SUSPENSIONS
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Plain = BeforeValidator(plain_number)
@@ -40,24 +40,45 @@ MOST_SAMPLES = 10_000_000
 
 
 class MechanismPart(Part):
-    """The kind of suspension, its side of the car, its hardpoints in mm and the car's axes.
+    """The type of suspension, its side of the car, its hardpoints in mm and the car's axes.
 
-    `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, `collinear`
-    puts the ball joint and the strut's points on one line, as the paper does. `points` has an entry for
-    rack_centre also where the file leaves it to the drawn tie_rod_inner.
+    `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, others put
+    points in place (see the type's file in `suspensions`). `points` has an entry also for those points of the
+    chassis that the file leaves to others that stand in for them.
     """
 
-    type: Literal["macpherson"]
-    closure: Literal["drawn", "collinear"] = "drawn"
+    type: str
+    closure: str = "drawn"
     side: Literal["left", "right"] = "left"
     up: Vector = (0.0, 0.0, 1.0)
     right: Vector = (0.0, 1.0, 0.0)
     points: dict[str, Vector]
 
+    @field_validator("type")
+    @classmethod
+    def _known_type(cls, type: str) -> str:
+        if type not in SUSPENSIONS:
+            raise ValueError(f"no suspension is called {shown(type)}; allowed: {', '.join(SUSPENSIONS)}")
+        return type
+
+    @field_validator("closure")
+    @classmethod
+    def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
+        if "type" in others.data:  # or else that is the fault
+            type = others.data["type"]
+            closures = SUSPENSIONS[type].closures
+            if closure not in closures:
+                raise ValueError(
+                    f"a {type} has no closure called {shown(closure)}; allowed: {', '.join(closures)}"
+                )
+        return closure
+
     @field_validator("points")
     @classmethod
-    def _known_points(cls, points: dict[str, Vector]) -> dict[str, Vector]:
-        topology = TOPOLOGIES["macpherson"]["drawn"]
+    def _known_points(cls, points: dict[str, Vector], others: ValidationInfo) -> dict[str, Vector]:
+        if not {"type", "closure"} <= others.data.keys():
+            return points
+        topology = SUSPENSIONS[others.data["type"]].closures[others.data["closure"]]
         extra = [name for name in points if name not in topology.points]
         missing = [name for name in topology.required_points if name not in points]
         if extra:
@@ -69,9 +90,7 @@ class MechanismPart(Part):
         if missing:
             needed = ", ".join(topology.required_points)
             raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
-        standing = {name: points[other] for name, other in topology.stand_ins.items()}
-        taken = {name: place for name, place in standing.items() if name in topology.chassis}
-        return taken | points
+        return topology.with_defaults(points)
 
     @model_validator(mode="after")
     def _orthonormal(self) -> Self:
@@ -85,14 +104,14 @@ class MechanismPart(Part):
 
     @model_validator(mode="after")
     def _wheel_outboard(self) -> Self:
-        top, wheel = (np.array(self.points[name]) for name in ("strut_top", "wheel_centre"))
+        inner, wheel = self.topology.inboard, self.topology.wheel_centre
         with np.errstate(over="ignore", invalid="ignore"):
-            inboard = float((top - wheel) @ self.outboard)
+            inboard = float((np.array(self.points[inner]) - np.array(self.points[wheel])) @ self.outboard)
         if inboard >= 0.0:
             other = "right" if self.side == "left" else "left"
             raise ValueError(
-                f"wheel_centre lies {inboard:.6g} mm inboard of strut_top for side = {self.side!r}; allowed: "
-                f"a wheel outboard of its strut top, here towards {'-' if self.side == 'left' else '+'}right "
+                f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {self.side!r}; allowed: "
+                f"{wheel} outboard of {inner}, here towards {'-' if self.side == 'left' else '+'}right "
                 f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
                 f"if it is a wheel of the other side, try side = {other!r}"
             )
@@ -100,9 +119,10 @@ class MechanismPart(Part):
 
     @model_validator(mode="after")
     def _spin_axis(self) -> Self:
-        if self.points.get("wheel_axis_inner") == self.points["wheel_centre"]:
+        inner, outer = self._whole.wheel_axis
+        if self.points.get(inner) == self.points[outer]:
             raise ValueError(
-                "wheel_axis_inner and wheel_centre are at the same place, so that the wheel's spin axis has "
+                f"{inner} and {outer} are at the same place, so that the wheel's spin axis has "
                 "no direction; allowed: two points of the axis apart from each other"
             )
         return self
@@ -110,14 +130,25 @@ class MechanismPart(Part):
     @property
     def topology(self) -> Topology:
         """The linkage that its points are put on."""
-        return TOPOLOGIES[self.type][self.closure].given(self.points)
+        return self._whole.given(self.points)
+
+    @property
+    def _whole(self) -> Topology:
+        """The linkage with every point that a car may give."""
+        return SUSPENSIONS[self.type].closures[self.closure]
+
+    @property
+    def axis_point(self) -> str:
+        """The point by which a car can give its spin axis an inner end of its own."""
+        return self._whole.wheel_axis[0]
 
     @property
     def defaults_taken(self) -> tuple[str, ...]:
         """What the scene leaves to us and what is seen in the results, in words."""
-        if "wheel_axis_inner" in self.points:
+        taken = self.topology.wheel_axis[0]
+        if taken == self.axis_point:
             return ()
-        return ("wheel_axis_inner is not given: the wheel's spin axis starts at strut_lower",)
+        return (f"{self.axis_point} is not given: the wheel's spin axis starts at {taken}",)
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -129,7 +160,7 @@ class MechanismPart(Part):
             self.outboard,
             topology.wheel_axis,
             topology.steering_axis,
-            {"wheel_axis_inner"},
+            topology.wheel_axis[0] == self.axis_point,
         )
 
     @property
@@ -240,11 +271,12 @@ class Scene(Part):
 
     @model_validator(mode="after")
     def _spin_axis_known(self) -> Self:
-        inner, centre = (self.mechanism.points[name] for name in self.mechanism.topology.wheel_axis)
-        if "wheel_angles" in self.effects and inner == centre:
+        part = self.mechanism
+        inner, outer = part.topology.wheel_axis
+        if "wheel_angles" in self.effects and part.points[inner] == part.points[outer]:
             raise ValueError(
-                "strut_lower and wheel_centre are at the same place, so that the wheel's spin axis has no "
-                "direction; give the axis a point of its own, wheel_axis_inner, or leave 'wheel_angles' out"
+                f"{inner} and {outer} are at the same place, so that the wheel's spin axis has no direction; "
+                f"give the axis a point of its own, {part.axis_point}, or leave 'wheel_angles' out"
             )
         return self
 

@@ -222,7 +222,7 @@ def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -
     if pair is None:
         return
     one, other = (" - ".join(piece) for piece in pair)
-    problem = f"the drawing has no one meaning, {one} turns over against {other} where it closes"
+    problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"
     known = mechanism.drawn[..., mechanism.map.unknowns :]
     raise stopped(mechanism, problem, drawing.y, known, drawing.factors, bad, instant)
 

@@ -19,9 +19,10 @@ from pointcoord.errors import AssemblyError, MotionTooLong, MotionTooRough
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import EPS, Factors, factorise
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, polish
 from pointcoord.numerics.power_series import expand
+from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, stopped
 from pointcoord.time_functions import TimeFunction
 

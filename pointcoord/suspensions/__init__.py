@@ -1,10 +1,16 @@
-"""The linkages that can be solved, by the name that a scene gives them and by how it closes its drawing."""
+"""The types of suspension that can be solved, by the name that a scene gives them."""
+
+from collections.abc import Mapping
 
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN, PRINTED
+from pointcoord.suspensions.double_wishbone import DOUBLE_WISHBONE
+from pointcoord.suspensions.macpherson import MACPHERSON, PRINTED
+from pointcoord.suspensions.suspension import Suspension
 
-TOPOLOGIES: dict[str, dict[str, Topology]] = {"macpherson": {"drawn": DRAWN, "collinear": COLLINEAR}}
-"""Each linkage by its closures: `drawn` takes the drawing as it stands, others put its points in place."""
+SUSPENSIONS: Mapping[str, Suspension] = {
+    suspension.type: suspension for suspension in (MACPHERSON, DOUBLE_WISHBONE)
+}
+"""Everything that is said about types, closures, points and inputs is read off these."""
 
 PRINTED_TOPOLOGIES: dict[str, dict[str, Topology]] = {"macpherson": {"collinear": PRINTED}}
 """Each linkage with its constraints as a paper prints them."""

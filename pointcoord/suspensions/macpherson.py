@@ -5,16 +5,25 @@ The paper's numbers: 1 lower_arm_front, 2 lower_arm_rear, 3 rack_centre, 4 strut
 
 Two kinds of strut. The general one takes the drawing as it stands: the strut axis is fixed in the knuckle,
 through strut_lower and strut_top as drawn, and the lower ball joint lies anywhere beside it. The paper's
-puts the ball joint on the axis too, which makes the axis an edge of the knuckle: (a, b, c) of `AxisInBody`
-is then (0, 1, 0), and its three vectors drop out.
+("collinear") puts the ball joint and the strut's points on one line, which makes the axis an edge of the
+knuckle: (a, b, c) of `AxisInBody` is then (0, 1, 0), and its three vectors drop out. Its table 1 needs that.
 """
 
 from __future__ import annotations
 
-from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
-from pointcoord.linkage.constraints.constraint import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
+from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.drives import ArmAngle, Travel
 from pointcoord.linkage.topology import Topology
+from pointcoord.suspensions.suspension import Suspension
 
 KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
 
@@ -49,7 +58,9 @@ _DRIVEN = (
 )
 
 
-def _macpherson(name: str, strut: tuple[Constraint, ...], steering_axis: tuple[str, str]) -> Topology:
+def _macpherson(
+    name: str, strut: tuple[Constraint, ...], steering_axis: tuple[str, str], puts_in_place: bool = True
+) -> Topology:
     return Topology(
         name=name,
         chassis=("lower_arm_front", "lower_arm_rear", "rack_centre", "strut_top"),
@@ -62,16 +73,20 @@ def _macpherson(name: str, strut: tuple[Constraint, ...], steering_axis: tuple[s
             ArmAngle("arm rise", "arm_angle", "lower_arm_front", "lower_ball_joint", "up"),
             Travel("rack travel", "rack", "rack_centre", "tie_rod_inner", "right"),
         ),
+        knuckle="knuckle",
         steering_axis=steering_axis,
         wheel_axis=("wheel_axis_inner", "wheel_centre"),
+        wheel_centre="wheel_centre",
+        inboard="strut_top",
         stand_ins={"rack_centre": "tie_rod_inner", "wheel_axis_inner": "strut_lower"},
         chassis_motion={"heave": "up"},
+        puts_in_place=puts_in_place,
     )
 
 
 _EQ_16 = ("lower_ball_joint", "strut_lower")
 
-DRAWN = _macpherson("macpherson", (*_LINKS, _TIE_ROD, *_GENERAL), ("lower_ball_joint", "strut_top"))
+DRAWN = _macpherson("macpherson", (*_LINKS, _TIE_ROD, *_GENERAL), ("lower_ball_joint", "strut_top"), False)
 """The strut as drawn: its axis fixed in the knuckle, the ball joint anywhere beside it."""
 
 COLLINEAR = _macpherson("macpherson, collinear", (*_LINKS, _ROD_END, _TIE_ROD, *_COLLINEAR), _EQ_16)
@@ -79,3 +94,5 @@ COLLINEAR = _macpherson("macpherson, collinear", (*_LINKS, _ROD_END, _TIE_ROD, *
 
 PRINTED = _macpherson("macpherson, as printed", (*_LINKS, _ROD_END, _TIE_ROD, *_PRINTED), _EQ_16)
 """The paper's strut with its cross-product rows (8)-(11)."""
+
+MACPHERSON = Suspension("macpherson", {"drawn": DRAWN, "collinear": COLLINEAR})

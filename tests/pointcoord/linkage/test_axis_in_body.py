@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal
-from pointcoord.linkage.constraints.constraint import Link
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
 

@@ -1,5 +1,7 @@
 """Every kind of constraint: its rows against its equation, its Jacobian against its own residual."""
 
+import importlib
+import pkgutil
 from collections.abc import Callable
 
 import numpy as np
@@ -8,10 +10,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.linkage.constraints import body_axis
-from pointcoord.linkage.constraints import constraint as constraints
-from pointcoord.linkage.constraints.body_axis import AxisInBody, HeldOnAxis, Normal, OnAxis
-from pointcoord.linkage.constraints.constraint import Constraint, Link, OnLine, PrintedParallel, Rack, Rise
+from pointcoord.linkage import constraints
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
+from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
 
@@ -96,13 +105,9 @@ def states() -> st.SearchStrategy[Array]:
 
 
 def test_every_kind_of_constraint_takes_part_in_the_properties_below() -> None:
-    kinds = {
-        item
-        for module in (constraints, body_axis)
-        for item in vars(module).values()
-        if isinstance(item, type) and item.__module__ == module.__name__ and item is not Constraint
-    }
-    assert {type(constraint) for constraint, _ in CASES} == kinds
+    for module in pkgutil.iter_modules(constraints.__path__, f"{constraints.__name__}."):
+        importlib.import_module(module.name)
+    assert {type(constraint) for constraint, _ in CASES} == set(Constraint.__subclasses__())
 
 
 @pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)

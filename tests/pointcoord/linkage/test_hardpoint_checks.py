@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pointcoord import MechanismError, Scene, UnknownName, simulate
-from pointcoord.linkage.constraints.constraint import Link
+from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology

@@ -9,14 +9,10 @@ from pointcoord import UnknownName
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions import PRINTED_TOPOLOGIES, TOPOLOGIES
+from pointcoord.suspensions import PRINTED_TOPOLOGIES, SUSPENSIONS
 
-EVERY = [
-    topology
-    for kinds in (TOPOLOGIES, PRINTED_TOPOLOGIES)
-    for closures in kinds.values()
-    for topology in closures.values()
-]
+CLOSURES = [*(suspension.closures for suspension in SUSPENSIONS.values()), *PRINTED_TOPOLOGIES.values()]
+EVERY = [topology for closures in CLOSURES for topology in closures.values()]
 by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topology.name)
 
 
@@ -95,7 +91,7 @@ def test_unknown_name_raises_with_the_names_that_exist(
 
 
 def test_unknown_link_raises_with_the_links_that_exist() -> None:
-    layout = TOPOLOGIES["macpherson"]["drawn"].layout
+    layout = SUSPENSIONS["macpherson"].closures["drawn"].layout
     with pytest.raises(UnknownName, match="tie_rod_inner"):
         layout.squared_length("strut_top", "wheel_centre")
 

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.numerics.kantorovich import Certificate, certify
-from pointcoord.numerics.linear import EPS, factorise
+from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 plain = settings(deadline=None)

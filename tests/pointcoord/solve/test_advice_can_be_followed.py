@@ -19,7 +19,7 @@ from pointcoord import (
     UnknownName,
     simulate,
 )
-from pointcoord.linkage.constraints.constraint import FARTHEST
+from pointcoord.linkage.constraints.on_line import FARTHEST
 
 Points = dict[str, tuple[float, float, float]]
 Make = Callable[..., Scene]

@@ -262,6 +262,6 @@ def test_pieces_of_the_strut_that_would_turn_over_are_refused(
     # ball joint to top, it has no sense that both agree on.
     x, y, z = table["lower_ball_joint"]
     folded = {**table, "strut_lower": (x + 60.0, y, z - 6.0), "strut_rod_end": (420.0, -180.0, 466.0)}
-    with pytest.raises(AssemblyError, match=r"no one meaning, .* turns over against") as caught:
+    with pytest.raises(AssemblyError, match=r"can close in two ways, .* turns over against") as caught:
         simulate(make_scene(points=folded))
     assert caught.value.problem.startswith("the drawing")

@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, UnknownName, simulate
-from pointcoord.linkage.constraints.constraint import OnLine, PrintedParallel
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.newton import polish

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pointcoord.errors import AssemblyError, PointcoordError
-from pointcoord.linkage.constraints.constraint import Link, Rise
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.drives import ArmAngle
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism

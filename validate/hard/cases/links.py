@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pointcoord import MechanismError
-from pointcoord.linkage.constraints.body_axis import AxisInBody, Normal
-from pointcoord.linkage.constraints.constraint import Constraint, Link
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN

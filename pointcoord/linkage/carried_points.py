@@ -1,0 +1,50 @@
+r"""Points that ride on a body, known by three points that carry them, with the edges e1 and e2:
+
+    p = p_0 + a e1 + b e2 + c e1 x e2.
+
+The weights a, b, c come from the drawing and stay; so the point needs no equation of its own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.numerics.power_series import cross_series
+from pointcoord.numerics.rounding import EPS
+
+Array = NDArray[np.float64]
+
+
+def carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str]) -> Array:
+    """(a, b, c) of a drawn point, shape (..., 3).
+
+    Raises:
+        MechanismError: the carriers lie in one line.
+    """
+    base, first, second = (drawing.vectors[point] for point in carriers)
+    e1, e2 = first - base, second - base
+    frame = np.stack(np.broadcast_arrays(e1, e2, np.cross(e1, e2)), axis=-1)
+    lengths = np.linalg.norm(e1, axis=-1) * np.linalg.norm(e2, axis=-1)
+    area = np.linalg.norm(np.cross(e1, e2), axis=-1)
+    if not (area > 8 * EPS * lengths).all():
+        raise MechanismError(
+            f"{', '.join(carriers)} lie in one line, so they cannot carry {name}; move one off the line",
+            carriers,
+        )
+    offset = np.broadcast_to(drawing.vectors[name] - base, frame.shape[:-1])
+    return np.asarray(np.linalg.solve(frame, offset[..., None])[..., 0])
+
+
+def carried_series(weights: Array, base: Array, first: Array, second: Array) -> Array:
+    """Series of a carried point, shape (..., order + 1, 3).
+
+    Args:
+        weights: (a, b, c), shape (..., 3).
+        base, first, second: series of the carriers, shape (..., order + 1, 3).
+    """
+    e1, e2 = first - base, second - base
+    a, b, c = (weights[..., i, None, None] for i in range(3))
+    return np.asarray(base + a * e1 + b * e2 + c * cross_series(e1, e2))
