@@ -15,26 +15,26 @@ Array = NDArray[np.float64]
 Arrays = dict[str, Array]
 
 UNIT_ROUNDOFF = float(np.finfo(float).eps) / 2
-# The truth is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest" means.
+# The reference is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest"
+# means.
 DUST = 1e-50
 
 
 def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
-    """The truth at instants, rounded to doubles.
+    """The reference at instants, rounded to doubles.
 
-    Numbers that are zero up to the truth's own proven error, which it claims, are zero: the middles of its
-    intervals about 0 are some 1e-170. An angle that one of the
-    instants leaves out is left out.
+    Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
+    its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
     first = instants[0]
-    angles = [n for n in ("camber", "kingpin") if all(n in i.angles for i in instants)]
+    angles = [n for n in ("camber", "kingpin") if all(n in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
         "angular_velocity": _rounded([i.angular_velocity for i in instants], ("knuckle",)),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], ("knuckle",)),
-        "wheel": {n: np.array([float(i.angles[n]) for i in instants]) for n in angles},
+        "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {
@@ -46,7 +46,7 @@ def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
         for q, arrays in swept.items()
     }
     accuracy = Accuracy(condition=np.ones(len(times)), proven=True, **claims)
-    return Solution("truth", times, accuracy=accuracy, notes=(), **swept)
+    return Solution("reference", times, accuracy=accuracy, notes=(), **swept)
 
 
 def scales(numbers: Mapping[str, Arrays]) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Who is right when two models differ, or when only one of them answers: both are held to the truth."""
+"""Who is right when two models differ, or when only one of them answers: both are held to the reference."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from validate.adjudication.true_solution import as_solution
 from validate.comparison.compare import compare_solutions
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
-from validate.reference import InfeasibleError, TruthError, solve_truth
+from validate.reference import InfeasibleError, NoReferenceError, solve_reference
 from validate.reference.instant import Instant
 
 NO_OBSTACLE = "no obstacle found"
@@ -20,35 +20,37 @@ BETWEEN = 24  # instants between the first and the last at which a pose is looke
 
 
 def judged(scene: Scene, one: Solution, two: Solution) -> str:
-    """Which of two disagreeing solutions is not the truth, or why that cannot be said."""
+    """Which of two disagreeing solutions the reference contradicts, or why that cannot be said."""
     try:
-        truth = true_solution(scene)
-    except TruthError as error:
+        reference = true_solution(scene)
+    except NoReferenceError as error:
         return _unproven(error)
-    scene = _without_missing_angles(scene, truth)
-    wrong = [s.formulation for s in (one, two) if compare_solutions(scene, s, truth, "judged").disagreements]
+    scene = _without_missing_angles(scene, reference)
+    wrong = [
+        s.formulation for s in (one, two) if compare_solutions(scene, s, reference, "judged").disagreements
+    ]
     return f"{' and '.join(wrong)} wrong" if wrong else NEITHER_WRONG
 
 
 def judged_alone(scene: Scene, answer: Solution) -> str:
-    """Whether the positions of a solution that stands alone are the truth."""
+    """Whether the positions of a solution that stands alone are those of the reference."""
     scene = scene.model_copy(update={"effects": ()})
     try:
-        truth = true_solution(scene)
-    except TruthError as error:
+        reference = true_solution(scene)
+    except NoReferenceError as error:
         return _unproven(error)
-    wrong = compare_solutions(scene, answer, truth, "judged").disagreements
+    wrong = compare_solutions(scene, answer, reference, "judged").disagreements
     return "answer wrong" if wrong else "answer right"
 
 
 def unanswered(scene: Scene) -> str:
-    """Why a scene that nobody answers has no answer, as far as the truth can say."""
+    """Why a scene that nobody answers has no answer, as far as the reference can say."""
     try:
         for time in scene.instants.tolist():
             true_instant(scene, inputs_at(scene, time))
     except InfeasibleError:
         return "an instant has no pose"
-    except TruthError as error:
+    except NoReferenceError as error:
         return _unproven(error)
     return obstacle(scene)
 
@@ -73,7 +75,7 @@ def _first_without_pose(scene: Scene, way: list[dict[str, tuple[float, ...]]]) -
             true_instant(scene, inputs)
         except InfeasibleError:
             return "no pose"
-        except TruthError:
+        except NoReferenceError:
             return "no provable pose"
     return None
 
@@ -100,35 +102,35 @@ def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
 
 
 def true_instant(scene: Scene, inputs: Mapping[str, tuple[float, ...]]) -> Instant:
-    """The truth for given inputs.
+    """The reference for given inputs.
 
     Raises:
-        TruthError: there is no pose, or none can be proven.
+        NoReferenceError: there is no pose, or none can be proven.
     """
     part = scene.mechanism
-    return solve_truth(
+    return solve_reference(
         dict(part.points), inputs, up=part.up, right=part.right, side=part.side, closure=part.closure
     )
 
 
 def true_solution(scene: Scene) -> Solution:
-    """The truth at a scene's instants, rounded, in the form that `compare_solutions` takes.
+    """The reference at a scene's instants, rounded, in the form that `compare_solutions` takes.
 
     Raises:
-        TruthError: an instant has no pose, or none can be proven.
+        NoReferenceError: an instant has no pose, or none can be proven.
     """
     return as_solution(
         scene.instants, [true_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
     )
 
 
-def _without_missing_angles(scene: Scene, truth: Solution) -> Scene:
-    if len(truth.wheel) == 2:
+def _without_missing_angles(scene: Scene, reference: Solution) -> Scene:
+    if len(reference.wheel) == 2:
         return scene
     return scene.model_copy(update={"effects": tuple(e for e in scene.effects if e != "wheel_angles")})
 
 
-def _unproven(error: TruthError) -> str:
+def _unproven(error: NoReferenceError) -> str:
     return (
         "no such pose, proven"
         if isinstance(error, InfeasibleError)

@@ -3,7 +3,7 @@
 The lower arm has two dead points, where its ball joint is highest or lowest on its circle. The slide runs out
 where the ball joint is as near to the strut's top as it lies beside the strut's axis; a strut whose axis
 passes through the ball joint never does. Tie rod and steering arm can come to lie in line. All three are
-taken from the closed form, apart from the models and from the truth.
+taken from the closed form, apart from the models and from the reference.
 """
 
 from __future__ import annotations

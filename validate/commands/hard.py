@@ -1,4 +1,4 @@
-"""`pointcoord hard`: the cases that are known to be hard, held to the truth."""
+"""`pointcoord hard`: the cases that are known to be hard, held to the reference."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from validate.output.document import Head, Journal
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "hard", help="try the cases that are known to be hard, and hold them to the truth"
+        "hard", help="try the cases that are known to be hard, and hold them to the reference"
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
@@ -29,11 +29,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Raises:
         UsageError: no case has such a name, or no file.
-        MissingPackage: the truth, or a formulation, is not there.
+        MissingPackage: the reference, or a formulation, is not there.
         OutputError: the results cannot be written.
     """
     require_target(options.json, "--json")
-    # The truth needs packages that the solvers do without.
+    # The reference needs packages that the solvers do without.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run

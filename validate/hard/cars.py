@@ -11,7 +11,7 @@ from validate.cars.input_limits import Car
 from validate.cars.paper_car import PAPER, Points, mirrored
 from validate.cars.random_struts import as_tuple
 from validate.hard.content import Law, paper_car
-from validate.reference import solve_truth
+from validate.reference import solve_reference
 
 Array = NDArray[np.float64]
 
@@ -89,7 +89,7 @@ def car_content(
 
 def drawn_at(car: Car, arm_angle: float, rack: float) -> Car:
     """The car drawn anew at the pose of these inputs, rad and mm: nothing is left to assemble."""
-    pose = solve_truth(
+    pose = solve_reference(
         car.points,
         {"arm_angle": (arm_angle, 0, 0), "rack": (rack, 0, 0)},
         up=car.up,

@@ -1,8 +1,8 @@
-"""The truth of cars drawn so near to where their assemblies meet that their side is a matter of rounding.
+"""The reference of cars drawn so near to where assemblies meet that their side is a matter of rounding.
 
-A drawing need not be assembled, so `solve_truth` calls a side unclear that is less than 1e-9 of the lengths
-that it is made of. A hard case draws such cars on purpose, and its coordinates are exact: the sign of an
-exact product of them is the side that was drawn, however small the product is.
+A drawing need not be assembled, so `solve_reference` calls a side unclear that is less than 1e-9 of the
+lengths that it is made of. A hard case draws such cars on purpose, and its coordinates are exact: the sign of
+an exact product of them is the side that was drawn, however small the product is.
 """
 
 from __future__ import annotations
@@ -18,11 +18,10 @@ from validate.formulations.protocol import Solution
 from validate.hard.case import Answer, Trial
 from validate.hard.judged import judged_answer
 from validate.hard.trial import Measure, Tried, solved, try_scene
-from validate.reference import AmbiguousAssemblyError, Choices, Instant, TruthError
-from validate.reference.branches import candidate
-from validate.reference.closures import equations_for
-from validate.reference.design import Design, Driven, exact_vector, values_only
+from validate.reference import AmbiguousAssemblyError, Instant, NoReferenceError
+from validate.reference.design import Design, exact_vector, values_only
 from validate.reference.instant import prove_instant
+from validate.reference.macpherson import Choices
 from validate.reference.solve import with_enough_digits
 from validate.reference.vectors import cross, dot, minus
 
@@ -30,7 +29,7 @@ DIGITS = 60
 
 
 def drawn_choices(scene: Scene) -> Choices:
-    """The four signs of a drawing, from exact products (see `validate.reference.Choices`).
+    """The four signs of a drawing, from exact products (see `validate.reference.macpherson.Choices`).
 
     Raises:
         AmbiguousAssemblyError: a product is exactly zero, so that nothing tells the side.
@@ -62,28 +61,28 @@ def instant_on_side(scene: Scene, time: float) -> Instant:
     """The proven instant on the side of the drawing.
 
     Raises:
-        TruthError: there is no pose, or none can be proven.
+        NoReferenceError: there is no pose, or none can be proven.
     """
     part, choices = scene.mechanism, drawn_choices(scene)
     design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure)
-    driven = Driven.from_mapping(inputs_at(scene, time))
+    driven = design.driven(inputs_at(scene, time))
 
     def attempt(working: int) -> Instant:
         known = design.known(driven)
         still = values_only(known)
-        chosen = candidate(still, choices)
+        chosen = design.linkage.candidate(still, choices)
         chosen.require_feasible(float(design.unit))
-        start = equations_for(part.closure).unknown_of(chosen.points, still)
+        start = design.linkage.unknown_of(chosen.points, still)
         return prove_instant(design, known, start, choices, DIGITS, working)
 
     return with_enough_digits(attempt, DIGITS)
 
 
 def solution_on_side(scene: Scene) -> Solution:
-    """The truth at all instants of a scene, on the side of its drawing.
+    """The reference at all instants of a scene, on the side of its drawing.
 
     Raises:
-        TruthError: an instant has no pose, or none can be proven.
+        NoReferenceError: an instant has no pose, or none can be proven.
     """
     return as_solution(scene.instants, [instant_on_side(scene, t) for t in scene.instants.tolist()])
 
@@ -91,21 +90,21 @@ def solution_on_side(scene: Scene) -> Solution:
 def try_on_side(
     value: float, content: Mapping[str, Any], formulations: Sequence[str], measure: Measure | None = None
 ) -> Trial:
-    """As `try_scene`, and where the drawn side is unclear to the truth, by the exact signs of the drawing."""
+    """As `try_scene`; where the drawn side is unclear to the reference, by the exact signs of the drawing."""
     trial = try_scene(value, content, formulations, measure)
     if all(answer.outcome != "unjudged" for answer in trial.answers):
         return trial
     scene = Scene.from_mapping(content)
     try:
-        truth = solution_on_side(scene)
-    except TruthError as error:
-        return replace(trial, facts={**trial.facts, "truth": f"{type(error).__name__}: {error}"})
+        reference = solution_on_side(scene)
+    except NoReferenceError as error:
+        return replace(trial, facts={**trial.facts, "reference": f"{type(error).__name__}: {error}"})
     tried = {name: solved(name, scene) for name in formulations}
     solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
     answers = tuple(
-        one if isinstance(one, Answer) else judged_answer(scene, one, truth) for one in tried.values()
+        one if isinstance(one, Answer) else judged_answer(scene, one, reference) for one in tried.values()
     )
-    facts = {**trial.facts, "truth": "on the side of the exact sign of the drawing"}
+    facts = {**trial.facts, "reference": "on the side of the exact sign of the drawing"}
     if measure is not None:
-        facts |= measure(Tried(value, scene, solutions, truth))
+        facts |= measure(Tried(value, scene, solutions, reference))
     return Trial(value, answers, facts)

@@ -1,6 +1,6 @@
-r"""pointcoord's proven bounds held against the truth, a pose at a time.
+r"""pointcoord's proven bounds held against the reference, a pose at a time.
 
-The error of a pose is its distance from the truth, whose own is below 1e-40 of the car. It must never
+The error of a pose is its distance from the reference, whose own is below 1e-40 of the car. It must never
 exceed the bound:
 
     error <= bound,    and    loss = error / (eps (condition size + far))    must not grow to the end,
@@ -27,20 +27,20 @@ from pointcoord.suspensions.macpherson import DRAWN
 from validate.cars.closed_form import Closure
 from validate.cars.near_singular import NearPose, near_pose
 from validate.formulations.input_rates import rates
-from validate.reference import InfeasibleError, Instant, TruthError, solve_truth
+from validate.reference import InfeasibleError, Instant, NoReferenceError, solve_reference
 from validate.reference.exact import as_fraction
 
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
 EPS = float(np.finfo(float).eps)
-DIGITS = 40  # of the truth: its error is 1e-20 of any error in double precision
+DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
 INSTANTS = 4  # per motion
 
 
 @dataclass(frozen=True)
 class Check:
-    """One pose of pointcoord held against the truth; lengths in mm.
+    """One pose of pointcoord held against the reference; lengths in mm.
 
     Attributes:
         number, driven, lock, distance: of the `NearPose`; distance of the instant, for a motion.
@@ -152,23 +152,23 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
     # The distance of a motion shrinks with the part of its way that is left.
     rate = (*(scene.inputs[pose.driven].polynomial or ()), 0.0)[1]
     distance = pose.distance + abs(rate) * (1.0 - instant) / pose.reach
-    truth = _answer(lambda: _truth(pose, scene, instant))
-    if isinstance(motion, str) or (isinstance(truth, str) and truth != InfeasibleError.__name__):
+    reference = _answer(lambda: _reference(pose, scene, instant))
+    if isinstance(motion, str) or (isinstance(reference, str) and reference != InfeasibleError.__name__):
         return Refusal(
             pose.number,
             pose.car.closure,
             distance,
             f"pointcoord: {motion if isinstance(motion, str) else 'answers'}; "
-            f"truth: {truth if isinstance(truth, str) else 'answers'}",
+            f"reference: {reference if isinstance(reference, str) else 'answers'}",
         )
     samples = motion.at(np.array([instant]))
     proof = motion.proof_of(samples)
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return Refusal(pose.number, pose.car.closure, distance, "pointcoord: no finite bound")
-    error = carried_error = math.inf  # where the truth has no such assembly
-    if isinstance(truth, Instant):
-        each = {name: _error(truth, name, place[0]) for name, place in samples.position.items()}
+    error = carried_error = math.inf  # where the reference has no such assembly
+    if isinstance(reference, Instant):
+        each = {name: _error(reference, name, place[0]) for name, place in samples.position.items()}
         carried_error = max(each.pop(name) for name in DRAWN.carried if name in each)
         error = max(each.values())
     return Check(
@@ -192,16 +192,16 @@ def _answer(ask: Callable[[], Answer]) -> Answer | str:
     """What is asked for, or the name of the error that refuses it."""
     try:
         return ask()
-    except (PointcoordError, TruthError) as error:
+    except (PointcoordError, NoReferenceError) as error:
         return type(error).__name__
 
 
-def _truth(pose: NearPose, scene: Scene, instant: float) -> Instant:
-    """The truth for the values that the laws have in double precision, as the bound is for these."""
+def _reference(pose: NearPose, scene: Scene, instant: float) -> Instant:
+    """The reference for the values that the laws have in double precision, as the bound is for these."""
     at = np.array([instant])
     inputs = {name: (float(rates(law, at)[0, 0]), 0, 0) for name, law in scene.inputs.items()}
     car = pose.car
-    return solve_truth(
+    return solve_reference(
         car.points,
         inputs,
         up=car.up,
@@ -212,7 +212,7 @@ def _truth(pose: NearPose, scene: Scene, instant: float) -> Instant:
     )
 
 
-def _error(truth: Instant, name: str, place: Array) -> float:
+def _error(reference: Instant, name: str, place: Array) -> float:
     """Largest component of the distance of a computed point from the true one, mm."""
-    pairs = zip(truth.position[name], place, strict=True)
+    pairs = zip(reference.position[name], place, strict=True)
     return max(float(abs(as_fraction(exact, name) - Fraction(float(found)))) for exact, found in pairs)

@@ -23,7 +23,7 @@ from validate.studies.bounds_report import bounds_data, bounds_text
 
 
 def study(poses: int, seed: int, motions: int | None = None) -> BoundStudy:
-    """Hold poses and instants of motions against the truth.
+    """Hold poses and instants of motions against the reference.
 
     Args:
         poses: how many cars are held close to the end of an input.

@@ -1,7 +1,7 @@
 """Whether what a formulation claims of its accuracy holds, number by number, and how loose it is.
 
 Random scenes by number (see `random_cars`), a tenth of them close to a singular pose, each number of every
-instant held against the truth:
+instant held against the reference:
 
     python -m validate.studies.claims --formulation pointcoord --count 300
 """
@@ -24,7 +24,7 @@ from validate.cars.random_scenes import RandomCar, random_car
 from validate.formulations.protocol import NUMBERS_OF, FormulationError, Solution
 from validate.formulations.registry import NAMES, formulation
 from validate.output.report import table
-from validate.reference import TruthError
+from validate.reference import NoReferenceError
 from validate.reference.exact import as_fraction
 from validate.reference.instant import Instant
 
@@ -34,7 +34,7 @@ LEVELS = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class Held:
-    """The numbers of one quantity of one scene, held against the truth.
+    """The numbers of one quantity of one scene, held against the reference.
 
     Attributes:
         scene, kind: its number, and what it comes close to.
@@ -57,24 +57,24 @@ class Held:
 
 
 def held_scene(car: RandomCar, name: str) -> list[Held]:
-    """All quantities of a scene; none where the formulation refuses it or there is no truth."""
+    """All quantities of a scene; none where the formulation refuses it or there is no reference."""
     scene = car.scene
     try:
         solution = formulation(name).solve(scene)
         instants = [true_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
-    except (FormulationError, SceneError, TruthError):
+    except (FormulationError, SceneError, NoReferenceError):
         return []
-    truth = as_solution(scene.instants, instants)
-    return [_held(car, quantity, solution, truth, instants) for quantity in NUMBERS_OF]
+    reference = as_solution(scene.instants, instants)
+    return [_held(car, quantity, solution, reference, instants) for quantity in NUMBERS_OF]
 
 
 def _held(
-    car: RandomCar, quantity: str, solution: Solution, truth: Solution, instants: Sequence[Instant]
+    car: RandomCar, quantity: str, solution: Solution, reference: Solution, instants: Sequence[Instant]
 ) -> Held:
     found: list[tuple[float, float]] = []
-    # The truth's own error is that of numbers as large as the largest ones that a number is made of.
-    dust = DUST * scales({q: getattr(truth, q) for q in NUMBERS_OF})[quantity]
-    for name in getattr(truth, quantity):
+    # The reference's own error is that of numbers as large as the largest ones that a number is made of.
+    dust = DUST * scales({q: getattr(reference, q) for q in NUMBERS_OF})[quantity]
+    for name in getattr(reference, quantity):
         numbers = getattr(solution, quantity)[name].reshape(len(instants), -1)
         claims = getattr(solution.accuracy, quantity)[name].reshape(len(instants), -1)
         for row, claim, instant in zip(numbers, claims, instants, strict=True):
@@ -86,7 +86,7 @@ def _held(
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
-    return [instant.angles[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
+    return [instant.effects[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
 
 
 def _distance(found: float, exact: Any) -> float:
@@ -94,7 +94,7 @@ def _distance(found: float, exact: Any) -> float:
 
 
 def study(cars: Iterable[RandomCar], name: str) -> list[Held]:
-    """Every quantity of every scene that is answered and has a truth."""
+    """Every quantity of every scene that is answered and has a reference."""
     return [held for car in cars for held in held_scene(car, name)]
 
 
@@ -121,7 +121,7 @@ def study_text(helds: Sequence[Held]) -> str:
     head = ("quantity", "numbers", "exact", "largest error / claim", "scene")
     levels = tuple(f"claim / error at {100 * level:g}%" for level in LEVELS)
     scenes = len({held.scene for held in helds})
-    return f"{scenes} scenes held against the truth\n{table((*head, *levels), rows)}"
+    return f"{scenes} scenes held against the reference\n{table((*head, *levels), rows)}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

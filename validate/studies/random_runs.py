@@ -4,7 +4,7 @@
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
 in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
-to the truth, in every quantity. Nothing is folded away: the table at the end counts them all.
+to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
 
 The store goes on where it ended, whatever ended it. It belongs to one state of the models: after a change to
 them give another file.
@@ -43,14 +43,14 @@ from validate.studies.random_runs_table import table_text
 
 MODELS = ("pointcoord", "absolute")
 ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
-HELD = 20  # every so many scenes are held to the truth although both models agree
+HELD = 20  # every so many scenes are held to the reference although both models agree
 # What makes the status 1; an answer that stands alone and is wrong is one of them.
 FAULTY = (
     "disagreed",
     " fails: ",
-    "agreed, the truth: pointcoord",
-    "agreed, the truth: absolute",
-    "agreed, the truth: no such pose",
+    "agreed, the reference: pointcoord",
+    "agreed, the reference: absolute",
+    "agreed, the reference: no such pose",
     "answer wrong",
 )
 
@@ -112,7 +112,7 @@ def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
     if outcome.agreed:
         verdict = judged(car.scene, first, second)
         right = verdict == NEITHER_WRONG
-        name = "agreed, and with the truth" if right else f"agreed, the truth: {verdict}"
+        name = "agreed, and with the reference" if right else f"agreed, the reference: {verdict}"
         return Result(name, "", _shares(outcome), not right)
     worst = (*outcome.disagreements, *outcome.undecided)[0]
     reason = (

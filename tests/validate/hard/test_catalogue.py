@@ -31,7 +31,7 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def truth(scene: Scene) -> Solution:
+def reference(scene: Scene) -> Solution:
     return true_solution(scene)
 
 
@@ -69,7 +69,7 @@ def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition()
         assert answer.error is not None
         assert answer.bound is not None
         assert answer.share is not None
-        # Half a rounding of 570 mm at least separates the truth from what is stored of it.
+        # Half a rounding of 570 mm at least separates the reference from what is stored of it.
         assert 0.0 < answer.error <= answer.bound + 570 * np.finfo(float).eps
         assert answer.share <= 1.0
         assert answer.condition is not None
@@ -88,44 +88,44 @@ def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition()
     ],
 )
 def test_a_wrong_number_of_any_quantity_is_wrong(
-    scene: Scene, truth: Solution, solution: Solution, quantity: str, name: str, change: float
+    scene: Scene, reference: Solution, solution: Solution, quantity: str, name: str, change: float
 ) -> None:
-    assert judged_answer(scene, solution, truth).outcome == "right"
-    answer = judged_answer(scene, planted(solution, quantity, name, change), truth)
+    assert judged_answer(scene, solution, reference).outcome == "right"
+    answer = judged_answer(scene, planted(solution, quantity, name, change), reference)
     assert answer.outcome == "wrong"
     assert f"{quantity.replace('_', ' ')} of {name}" in answer.reason
 
 
 def test_a_missing_number_is_wrong_unless_a_note_says_so(
-    scene: Scene, truth: Solution, solution: Solution
+    scene: Scene, reference: Solution, solution: Solution
 ) -> None:
     note = ("angular velocity of knuckle is not a number at 1 of 3 instants",)
     silent = planted(solution, "angular_velocity", "knuckle", math.nan)
-    assert judged_answer(scene, silent, truth).outcome == "wrong"
+    assert judged_answer(scene, silent, reference).outcome == "wrong"
     said = planted(solution, "angular_velocity", "knuckle", math.nan, note)
-    assert judged_answer(scene, said, truth).outcome == "noted"
+    assert judged_answer(scene, said, reference).outcome == "noted"
     # The note speaks of numbers that are not there, and of no other quantity.
     other = planted(said, "acceleration", "strut_lower", 1.0, note)
-    assert judged_answer(scene, other, truth).outcome == "wrong"
+    assert judged_answer(scene, other, reference).outcome == "wrong"
     off = planted(solution, "angular_velocity", "knuckle", 1.0, note)
-    assert judged_answer(scene, off, truth).outcome == "wrong"
+    assert judged_answer(scene, off, reference).outcome == "wrong"
     lost = planted(solution, "position", "strut_lower", math.nan, note)
-    assert judged_answer(scene, lost, truth).outcome == "wrong"
+    assert judged_answer(scene, lost, reference).outcome == "wrong"
 
 
-def test_a_wide_claim_is_right_or_wrong_by_the_truth_however_wide_it_is(
-    scene: Scene, truth: Solution, solution: Solution
+def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
+    scene: Scene, reference: Solution, solution: Solution
 ) -> None:
-    """No partner is needed to test it: the truth is there."""
+    """No partner is needed to test it: the reference is there."""
     wide = {name: claim + 1.0 for name, claim in solution.accuracy.velocity.items()}
     claimed = replace(solution, accuracy=replace(solution.accuracy, velocity=wide))
-    assert judged_answer(scene, claimed, truth).outcome == "right"
+    assert judged_answer(scene, claimed, reference).outcome == "right"
     off = planted(claimed, "velocity", "strut_lower", 2.0)
-    assert judged_answer(scene, off, truth).outcome == "wrong"
+    assert judged_answer(scene, off, reference).outcome == "wrong"
 
 
-def test_the_truths_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
-    """A chassis that heaves evenly: no point accelerates, and the truth says so up to its 60 digits."""
+def test_the_reference_s_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
+    """A chassis that heaves evenly: no point accelerates, and the reference says so up to its 60 digits."""
     even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
     instants = [true_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
     largest = max(abs(float(x)) for i in instants for a in i.acceleration.values() for x in a)
@@ -148,7 +148,7 @@ def test_a_refusal_is_no_wrong_number_and_keeps_its_reason() -> None:
     result = try_scene(1.0, paper_car(rack=131.0), OURS)
     assert [a.outcome for a in result.answers] == ["refused", "refused"]
     assert "AssemblyError" in result.answers[0].reason
-    assert "InfeasibleError" in str(result.facts["truth"])
+    assert "InfeasibleError" in str(result.facts["reference"])
 
 
 def test_a_scene_that_cannot_be_read_is_refused_by_all() -> None:

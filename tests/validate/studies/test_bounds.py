@@ -1,4 +1,4 @@
-"""Proven bounds against the truth on random cars, up to the poses where they lock."""
+"""Proven bounds against the reference on random cars, up to the poses where they lock."""
 
 import math
 from typing import Any
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from validate.cars.input_limits import Linkage
 from validate.cars.near_singular import approach, near_pose
 from validate.cars.strategies import cars
-from validate.reference import InfeasibleError, solve_truth
+from validate.reference import InfeasibleError, solve_reference
 from validate.studies.bound_checks import Check, Refusal, held_pose, moving_instants
 from validate.studies.bounds import main, study
 from validate.studies.bounds_report import (
@@ -121,7 +121,7 @@ def test_numbers_give_the_same_poses_again() -> None:
 
 @pytest.mark.parametrize("number", range(12))
 def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int) -> None:
-    # The end is where the truth says so too, to 1e-12 of the range on either side.
+    # The end is where the reference says so too, to 1e-12 of the range on either side.
     pose = near_pose(number, seed=5, nearest=1e-12, farthest=1e-11)
     step = pose.distance * pose.reach
     linkage = Linkage.of(pose.car)
@@ -134,7 +134,7 @@ def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int) -> None:
     car = pose.car
     laws = {name: (value, 0, 0) for name, value in beyond.items()}
     with pytest.raises(InfeasibleError) as caught:
-        solve_truth(car.points, laws, up=car.up, right=car.right, side=car.side, closure=car.closure)
+        solve_reference(car.points, laws, up=car.up, right=car.right, side=car.side, closure=car.closure)
     assert caught.value.closure == pose.lock
 
 
@@ -147,5 +147,5 @@ def test_power_laws_are_fitted() -> None:
 
 
 def test_refusals_carry_their_reason() -> None:
-    refusal = Refusal(3, "drawn", 1e-12, "pointcoord: AssemblyError; truth: answers")
+    refusal = Refusal(3, "drawn", 1e-12, "pointcoord: AssemblyError; reference: answers")
     assert refusal.reason in bounds_text(study(0, 0).__class__(0, (), (), (refusal,)))

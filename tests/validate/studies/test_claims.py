@@ -1,4 +1,4 @@
-"""What both models claim of every number holds against the truth, up to singular poses."""
+"""What both models claim of every number holds against the reference, up to singular poses."""
 
 import numpy as np
 import pytest

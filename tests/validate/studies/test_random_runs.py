@@ -96,7 +96,7 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
     assert judged(scene, solutions["pointcoord"], solutions["absolute"]) == f"{model} wrong"
 
 
-def test_a_fault_that_both_models_share_is_found_by_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     honest = deep._solved
 
     def shared(name: str, car: RandomCar) -> Solution:
@@ -105,23 +105,23 @@ def test_a_fault_that_both_models_share_is_found_by_the_truth(monkeypatch: pytes
         return replace(solution, position={**solution.position, "wheel_centre": moved})
 
     cars = (random_car(number) for number in range(0, 200, deep.HELD))
-    car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the truth")
+    car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the reference")
     monkeypatch.setattr(deep, "_solved", shared)
     found = deep.examine(car)
-    assert found.outcome == "agreed, the truth: pointcoord and absolute wrong"
+    assert found.outcome == "agreed, the reference: pointcoord and absolute wrong"
     assert found.kept
     assert any(word in found.outcome for word in deep.FAULTY)
 
 
-def test_an_answer_that_stands_alone_is_held_to_the_truth() -> None:
+def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
     scene = Scene.load("bounce").model_copy(update={"effects": ()})
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 3})})
     answer = formulation("absolute").solve(scene)
     assert judged_alone(scene, answer) == "answer right"
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
     assert judged_alone(scene, replace(answer, position=moved)) == "answer wrong"
-    truth: Solution = true_solution(scene)
-    assert truth.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
+    reference: Solution = true_solution(scene)
+    assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
 
 

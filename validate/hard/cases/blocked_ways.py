@@ -1,4 +1,4 @@
-"""Where the way from the drawing to a first instant is blocked, held to the truth on both sides of the block.
+"""Where the way from the drawing to a first instant is blocked, held to the reference on both sides.
 
 When both inputs differ from the drawing, a model takes them there together, and what it reaches lies on its
 own way: straight in ball joint height and rack travel for pointcoord, in arm angle and rack travel for the

@@ -1,9 +1,10 @@
 """Two assemblies close together, starts far from the drawing, large steps: the branch must be the drawing's.
 
-Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The truth
-is that assembly, so a solution that has jumped to another one is wrong however well its links close. What is
-measured besides: the oriented products themselves (see `oriented`), how far apart the two assemblies are, and
-how many there are (a polynomial of degree 64 bounds them; a search from a thousand starts lists them).
+Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The
+reference is that assembly, so a solution that has jumped to another one is wrong however well its links
+close. What is measured besides: the oriented products themselves (see `oriented`), how far apart the two
+assemblies are, and how many there are (a polynomial of degree 64 bounds them; a search from a thousand starts
+lists them).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Group 7, third part: laws whose terms all but cancel, so that the input is small beside what it is made of.
 
-The input itself is an ordinary one. The truth, and the absolute model, take each law in many digits and round
-it once; pointcoord sums in twice the working precision and counts what that may be off into its bound.
+The input itself is an ordinary one. The reference, and the absolute model, take each law in many digits and
+round it once; pointcoord sums in twice the working precision and counts what that may be off into its bound.
 """
 
 from __future__ import annotations

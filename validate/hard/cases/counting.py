@@ -7,6 +7,7 @@ exist. The literature reduces this strut to a polynomial of degree 64, which bou
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import astuple
 from functools import cache, partial
 
 import numpy as np
@@ -86,9 +87,8 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
 
 
 def signs(choices: Choices) -> str:
-    """The name of an assembly: the signs of its four choices."""
-    each = (choices.arm, choices.strut, choices.rod, choices.tie)
-    return "".join("+" if sign > 0 else "-" for sign in each)
+    """The name of an assembly: the signs of its choices."""
+    return "".join("+" if sign > 0 else "-" for sign in astuple(choices))
 
 
 def counting_cases(group: str, expected: Expected) -> tuple[Case, ...]:

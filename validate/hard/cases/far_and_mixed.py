@@ -66,11 +66,11 @@ def at_home(name: str, car: str = "paper") -> tuple[Solution, Mapping[str, float
     return solution, errors(solution, true_solution(scene))
 
 
-def errors(solution: Solution, truth: Solution) -> dict[str, float]:
+def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     """Largest error of each quantity that does not know where the origin is."""
     return {
         quantity: max(
-            float(np.abs(array - getattr(truth, quantity)[name]).max())
+            float(np.abs(array - getattr(reference, quantity)[name]).max())
             for name, array in getattr(solution, quantity).items()
         )
         for quantity in RATES
@@ -84,12 +84,12 @@ def far(value: float, car: str = "paper") -> Trial:
 
     def measure(tried: Tried) -> Mapping[str, float | str]:
         found.append(tried)
-        if tried.truth is None:
+        if tried.reference is None:
             return {}
         ratios: dict[str, float | str] = {}
         for name, solution in tried.solutions.items():
             home = at_home(name, car)[1]
-            for quantity, error in errors(solution, tried.truth).items():
+            for quantity, error in errors(solution, tried.reference).items():
                 text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
                 ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
         return ratios
@@ -97,7 +97,7 @@ def far(value: float, car: str = "paper") -> Trial:
     trial = try_scene(value, content, SOLVERS, measure)
     tried = found[0]
     answers = tuple(
-        _as_at_home(a, tried, car) if a.outcome == "right" and tried.truth is not None else a
+        _as_at_home(a, tried, car) if a.outcome == "right" and tried.reference is not None else a
         for a in trial.answers
     )
     return replace(trial, answers=answers)
@@ -109,13 +109,13 @@ def _as_at_home(answer: Answer, tried: Tried, car: str) -> Answer:
     Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
     angles are allowed nothing more than at home.
     """
-    assert tried.truth is not None
+    assert tried.reference is not None
     solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, car)[0]
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
-    for away, position in ((farthest, places), (nearest, tried.truth.position)):
+    for away, position in ((farthest, places), (nearest, tried.reference.position)):
         strict = replace(solution, position=position, accuracy=_held_to(home.accuracy, EPS * away))
-        judged = judged_answer(tried.scene, strict, tried.truth)
+        judged = judged_answer(tried.scene, strict, tried.reference)
         if judged.outcome != "right":
             return replace(
                 answer, outcome="wrong", reason=f"by the bounds of the car at home: {judged.reason}"

@@ -71,9 +71,9 @@ def flat_turn(value: float) -> Array:
 
 def strut_rise(tried: Tried) -> dict[str, float | str]:
     """How flat the strut stands: the z component of its direction."""
-    if tried.truth is None:
+    if tried.reference is None:
         return {}
-    along = tried.truth.position["strut_top"][0] - tried.truth.position["lower_ball_joint"][0]
+    along = tried.reference.position["strut_top"][0] - tried.reference.position["lower_ball_joint"][0]
     return {"z component of the strut's direction": float(abs(along[2]) / np.linalg.norm(along))}
 
 

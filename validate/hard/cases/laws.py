@@ -63,7 +63,7 @@ def _stopping_scene(start: float, stop: float) -> dict[str, Any]:
 
 
 def rate_rounding(tried: Tried) -> Facts:
-    """What evaluating the rack's rate in double precision is off, where the truth takes it; 0 is no error."""
+    """What the rack's rate in double precision is off, where the reference takes it; 0 is no error."""
     part = tried.scene.inputs["rack"]
     exact = [Fraction(c) for c in part.polynomial or ()]
     worst = max(

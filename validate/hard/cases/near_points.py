@@ -19,7 +19,7 @@ from validate.hard.cars import PAPER_CAR
 from validate.hard.case import Case, Expected
 from validate.hard.content import decades, paper_car
 from validate.hard.sides import try_on_side
-from validate.reference import solve_truth
+from validate.reference import solve_reference
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -40,7 +40,7 @@ def drawn_angle() -> float:
 @cache
 def assembled() -> dict[str, Array]:
     """The paper's car at its own inputs, each coordinate the nearest number to the true one, mm."""
-    instant = solve_truth(PAPER, {"arm_angle": (drawn_angle(), 0, 0)}, closure="collinear")
+    instant = solve_reference(PAPER, {"arm_angle": (drawn_angle(), 0, 0)}, closure="collinear")
     return {name: np.array(instant.position_as_float(name)) for name in PAPER}
 
 

@@ -73,7 +73,7 @@ def everywhere(number: object) -> Callable[[float], Trial]:
 
 
 PAIRS = tuple(itertools.combinations(PAPER, 2))
-# A rod without length has no truth: which way its end lies is not drawn.
+# A rod without length has no answer in the reference: which way its end lies is not drawn.
 PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != ("strut_top", "strut_rod_end"))
 # Pairs that hold each other at a distance, or make a line together: they cannot be in one place.
 APART = frozenset(

@@ -25,7 +25,7 @@ from validate.hard.content import Law, decades, paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import LastValue, car_called, home, last_value
 from validate.hard.trial import scene_case
-from validate.reference import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, NoReferenceError
 
 GROUP = "9. Reachable range"
 SHARE = 1e-9  # of the range: how exactly the last value must be found
@@ -125,7 +125,7 @@ def _answered(name: str, scene: Scene) -> Answer:
         true_instant(scene, inputs_at(scene, scene.time.stop))
     except InfeasibleError as error:
         return Answer(name, "wrong", f"answers beyond the end: {error}")
-    except TruthError as error:
+    except NoReferenceError as error:
         return Answer(name, "unjudged", f"{type(error).__name__}: {error}")
     return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
 

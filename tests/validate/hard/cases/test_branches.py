@@ -33,20 +33,22 @@ from validate.hard.cases.oriented import followed, sides
 from validate.hard.content import paper_car
 from validate.hard.sides import drawn_choices, try_on_side
 from validate.hard.trial import Tried
-from validate.reference import InfeasibleError, count_assemblies, solve_truth
+from validate.reference import InfeasibleError, count_assemblies, solve_reference
 
 BY_NAME = {case.name: case for case in CASES}
 
 
 def feasible(angle: float, rack: float) -> bool:
     try:
-        solve_truth(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15, closure="collinear")
+        solve_reference(
+            PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15, closure="collinear"
+        )
     except InfeasibleError:
         return False
     return True
 
 
-def test_branches_meet_where_the_truth_loses_its_pose() -> None:
+def test_branches_meet_where_the_reference_loses_its_pose() -> None:
     angle, rack = meeting()
     assert round(math.degrees(angle), 1) == 35.1
     # Known to some 1e-12 mm: the rounding of `spare`, 1e-15, over its slope of 0.015 per mm, and more.

@@ -14,19 +14,18 @@ from validate.hard.case import Case, wrong_without_warning
 from validate.hard.cases.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
 from validate.hard.content import paper_car
 from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
-from validate.reference import AmbiguousAssemblyError, Choices
-from validate.reference.equations import LINKS, NUMBER_OF
+from validate.reference import AmbiguousAssemblyError
+from validate.reference.macpherson import COLLINEAR, Choices
 
 EPS = float(np.finfo(float).eps)
-NAMES = {number: name for name, number in NUMBER_OF.items()}
 
 
 def test_the_assembled_car_has_the_links_of_the_paper_and_its_strut_on_a_line() -> None:
     p = assembled()
-    for i, j in LINKS:
-        drawn = np.linalg.norm(np.subtract(PAPER[NAMES[i]], PAPER[NAMES[j]]))
+    for a, b in COLLINEAR.links:
+        drawn = np.linalg.norm(np.subtract(PAPER[a], PAPER[b]))
         # Six coordinates below 600 mm are rounded, and the norms.
-        assert abs(np.linalg.norm(p[NAMES[i]] - p[NAMES[j]]) - drawn) < 8 * EPS * 600
+        assert abs(np.linalg.norm(p[a] - p[b]) - drawn) < 8 * EPS * 600
     axis = p["strut_top"] - p["lower_ball_joint"]
     for name in ("strut_lower", "strut_rod_end"):
         beside = np.cross(p[name] - p["lower_ball_joint"], axis / np.linalg.norm(axis))
@@ -69,7 +68,7 @@ def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: Case) -> None
     assert not any(answer.outcome == "unjudged" for answer in trial.answers)
 
 
-def test_exact_signs_are_those_of_the_truth_where_the_truth_can_tell() -> None:
+def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
     for rack in (-40.0, 0.0, 60.0):
         scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
         expected = true_instant(scene, inputs_at(scene, 0.0))
@@ -105,7 +104,7 @@ def test_a_drawn_side_is_told_however_near_the_plane(lift: float) -> None:
 
 
 def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    # A tie rod of 1e-10 of its length: the truth cannot tell its side, the exact sign can. Told the
+    # A tie rod of 1e-10 of its length: the reference cannot tell its side, the exact sign can. Told the
     # opposite sign, what was right lies on the wrong side.
     case = next(case for case in CASES if case.name == "tie-rod-short")
     assert {a.outcome for a in case.examine(1e-10).answers if a.formulation != "absolute"} == {"right"}
@@ -119,7 +118,7 @@ def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> N
     assert {a.outcome for a in trial.answers if a.formulation != "absolute"} == {"wrong"}
 
 
-def test_a_scene_that_the_truth_can_judge_is_left_to_it() -> None:
+def test_a_scene_that_the_reference_can_judge_is_left_to_it() -> None:
     trial = try_on_side(1.0, paper_car(), ("pointcoord-newton",))
-    assert trial.facts["truth"] == "answers"
+    assert trial.facts["reference"] == "answers"
     assert trial.answers[0].outcome == "right"

@@ -142,7 +142,7 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
         (lambda r, end: {}, "does not say how far"),
     ],
 )
-def test_a_way_is_blocked_where_the_truth_loses_its_pose(
+def test_a_way_is_blocked_where_the_reference_loses_its_pose(
     change: Callable[[dict[str, float], dict[str, float]], dict[str, Any]], says: str
 ) -> None:
     end = blocked_ways.goal(0.1)

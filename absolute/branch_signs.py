@@ -8,18 +8,17 @@ from numpy.typing import NDArray
 from absolute.description import Carried, Model, Vector
 from absolute.drawing import Drawing
 from absolute.features import Features, Pick
+from absolute.precision import EPS
 from absolute.rows import Angle
 from absolute.solution import Array, Counts
 from absolute.vectors import cross
-
-EPS = float(np.finfo(float).eps)
 
 # Drawn vectors have relative errors of two roundings, and a product of three of them adds nine: a
 # smaller share than this many roundings has no sign.
 ROUNDINGS = 16
 
 
-class SideVector(NamedTuple):
+class SignVector(NamedTuple):
     """A vector from one feature to another, and what it is in the drawing, in units of size."""
 
     start: Pick
@@ -27,13 +26,13 @@ class SideVector(NamedTuple):
     drawn: Array
 
 
-def side_vectors(
+def sign_vectors(
     model: Model, drawing: Drawing, senses: tuple[Angle, ...], features: Features
-) -> dict[str, list[SideVector]]:
-    """The vectors of each side, put into the table of features.
+) -> dict[str, list[SignVector]]:
+    """The vectors of each branch sign, put into the table of features.
 
     Between two points of one body the vector itself is a feature, so that its relative error is
-    that of a rotation however short it is. The sides of the model come first, then one per pair of
+    that of a rotation however short it is. Those of the model come first, then one per pair of
     joint axes that must keep its sense.
     """
     nothing = features.add(0, np.zeros(3), False)
@@ -41,10 +40,10 @@ def side_vectors(
         point: [body for body in drawing.bodies if point in model.bodies[body]] for point in model.points
     }
 
-    def fixed(body: int, line: Array) -> SideVector:
-        return SideVector(nothing, features.add(body, line, False), line)
+    def fixed(body: int, line: Array) -> SignVector:
+        return SignVector(nothing, features.add(body, line, False), line)
 
-    def vector_of(vector: tuple[str, str] | Vector | Carried) -> SideVector:
+    def vector_of(vector: tuple[str, str] | Vector | Carried) -> SignVector:
         if isinstance(vector, Carried):
             return fixed(drawing.bodies[vector.body], drawing.line(vector.start, vector.end))
         if len(vector) == 3:
@@ -58,34 +57,38 @@ def side_vectors(
             features.add(drawing.bodies[body], drawing.arm(body, point), True)
             for body, point in ((holders[point][0], point) for point in vector)
         )
-        return SideVector(start, end, line)
+        return SignVector(start, end, line)
 
-    sides = {name: [vector_of(vector) for vector in side.vectors] for name, side in model.sides.items()}
+    vectors = {
+        name: [vector_of(vector) for vector in sign.vectors] for name, sign in model.branch_signs.items()
+    }
     for number, sense in enumerate(senses):
-        sides[f"sense {number} of joint {sense.owner}"] = [
+        vectors[f"sense {number} of joint {sense.owner}"] = [
             fixed(sense.first, sense.direction),
             fixed(sense.second, sense.partner),
         ]
-    return sides
+    return vectors
 
 
-class Sides:
+class BranchSigns:
     """Products of vectors of a model, evaluated from placed features; their drawn signs name the branch.
 
     Attributes:
-        names: of the sides of the model, then of the joints.
-        limits: of each side, the links that are at their dead point where it is zero.
-        told: whether the model has sides; without any, nothing here tells assemblies apart.
-        wanted: (sides,) signs in the drawing; 0 where the drawing stands at zero within rounding.
-        drawn: (sides,) products in the drawing as shares, see `shares`.
+        names: of the branch signs of the model, then of the joints.
+        limits: of each, the links that are at their dead point where it is zero.
+        told: whether the model has branch signs; without any, nothing here tells assemblies apart.
+        wanted: (signs,) signs in the drawing; 0 where the drawing stands at zero within rounding.
+        drawn: (signs,) products in the drawing as shares, see `shares`.
     """
 
-    def __init__(self, model: Model, sides: dict[str, list[SideVector]], features: Features) -> None:
-        self.told = bool(model.sides)
+    def __init__(self, model: Model, vectors: dict[str, list[SignVector]], features: Features) -> None:
+        self.told = bool(model.branch_signs)
         # Products of three first, so that one vector product serves them all.
-        ordered = sorted(sides.items(), key=lambda side: -len(side[1]))
+        ordered = sorted(vectors.items(), key=lambda sign: -len(sign[1]))
         self.names = tuple(name for name, _ in ordered)
-        self.limits = tuple(model.sides[name].limits if name in model.sides else () for name in self.names)
+        self.limits = tuple(
+            model.branch_signs[name].limits if name in model.branch_signs else () for name in self.names
+        )
         self._count = len(ordered)
         self._triples = sum(len(vectors) == 3 for _, vectors in ordered)
         every = [
@@ -97,26 +100,26 @@ class Sides:
         flat = np.array(features.flat(picks), dtype=np.int64).reshape(-1, 2)
         self._starts: Counts = flat[:, 0].copy()
         self._ends: Counts = flat[:, 1].copy()
-        # The drawing's own differences: a side may be short beside the car.
+        # The drawing's own differences: a vector may be short beside the car.
         drawn = np.array([vector.drawn for vector in every]).reshape(-1, 3)
         self.drawn = self._shares(drawn)
         self.wanted = np.where(np.abs(self.drawn) > ROUNDINGS * EPS, np.sign(self.drawn), 0.0)
 
     def products(self, world: Array) -> Array:
-        """(..., sides) a . b or (a x b) . c from placed features (..., features, 3)."""
+        """(..., signs) a . b or (a x b) . c from placed features (..., features, 3)."""
         return self._products(self._vectors(world))
 
     def shares(self, world: Array) -> Array:
-        """(sides,) products divided by the lengths of their factors, between -1 and 1."""
+        """(signs,) products divided by the lengths of their factors, between -1 and 1."""
         return self._shares(self._vectors(world))
 
     def kept(self, world: Array) -> NDArray[np.bool_]:
-        """(...) whether all sides are those of the drawing."""
+        """(...) whether all signs are those of the drawing."""
         kept: NDArray[np.bool_] = np.asarray((self.products(world) * self.wanted > 0.0).all(-1))
         return kept
 
     def lost(self, world: Array) -> int:
-        """The side whose share is furthest on the wrong side at one pose."""
+        """The place of the product whose share is furthest from its sign at one pose."""
         return int(np.argmin(self.shares(world) * self.wanted))
 
     def _vectors(self, world: Array) -> Array:

@@ -1,19 +1,19 @@
 """From instant to instant by one tangent step and one correction each, close to every pose.
 
-What is found lies a small correction from the exact pose and on its branch; `finish` takes all
+What is found lies a small correction from the exact pose and on its branch; `refine` takes all
 instants to rounding together. Where a single step does not do, the careful continuation goes on.
 """
 
 import math
 from typing import NamedTuple
 
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
 from absolute.backend import eigenpy
 from absolute.continuation import LONGEST_STEP
+from absolute.continue_to import continue_to
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.newton import Pose, correct
 from absolute.solution import Array
-from absolute.travel import travel
 
 # Poses nearer to a fold than this are left to the careful continuation: branches are at least
 # about this far apart elsewhere.
@@ -41,7 +41,7 @@ class Found(NamedTuple):
     corrections: int
 
 
-class March:
+class Tracking:
     """The way through all instants of a motion; begins with the assembled drawing."""
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -80,19 +80,19 @@ class March:
             if not self._careful:
                 there = glide(self.mechanism, self._here, target - self._target, target)
             if there is None:
-                there, spent = self._travel(value)
+                there, spent = self._careful_way(value)
             self.found.append(Found(there.q, spent + self._spent))
             self._here, self._values, self._target, self._spent = there, value, target, 0
             self._instant += 1
             self._careful = False
         return self.found
 
-    def _travel(self, goal: list[float]) -> tuple[Rough, int]:
+    def _careful_way(self, goal: list[float]) -> tuple[Rough, int]:
         """The careful way, from the pose here made exact (or from the last exact one)."""
         settled = correct(self.mechanism, self._here.q, self._target, SAFE_RCOND)
         if settled.pose is not None:
             self._exact, self._exact_values = settled.pose, self._values
-        pose, spent = travel(self.mechanism, self._exact, self._exact_values, goal, self._instant)
+        pose, spent = continue_to(self.mechanism, self._exact, self._exact_values, goal, self._instant)
         self._exact, self._exact_values = pose, goal
         return rough_of(pose), spent + settled.corrections
 

@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.assembly import Mechanism
 from absolute.backend import eigenpy
-from absolute.march import Found
-from absolute.newton import EPS, MOST_CORRECTIONS, rounding_of
+from absolute.mechanism import Mechanism
+from absolute.newton import MOST_CORRECTIONS, rounding_of
+from absolute.precision import EPS
 from absolute.solution import Array, Counts
+from absolute.tracking import Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 32
@@ -18,7 +19,7 @@ BATCH = 32
 ROUNDING = 32 * EPS
 
 
-class Finished(NamedTuple):
+class Refined(NamedTuple):
     """Exact poses of N instants in units of size, with their rates.
 
     Attributes:
@@ -44,7 +45,7 @@ class Finished(NamedTuple):
     world: Array
 
 
-def finish(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool) -> Finished:
+def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool) -> Refined:
     """Newton with a fresh Jacobian each time until corrections and rows are rounding, for all together.
 
     The Jacobian of the last, negligible correction is that of the pose itself: its factors serve
@@ -101,15 +102,15 @@ def finish(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
         acceleration = solved(factors, targets[2] - drift)
     residual = np.abs(targets[0] - placed.values).max(axis=1)
-    kept = mechanism.sides.kept(placed.world)
-    return Finished(
+    kept = mechanism.branch_signs.kept(placed.world)
+    return Refined(
         rotation, origin, velocity, acceleration, corrections, residual, previous, closed, kept, placed.world
     )
 
 
-def solved(factors: list[eigenpy.PartialPivLU], sides: Array) -> Array:
+def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
     """Solutions (N, rows) of N factorised systems for their right-hand sides (N, rows)."""
-    return np.array([lu.solve(side) for lu, side in zip(factors, sides, strict=True)])
+    return np.array([lu.solve(column) for lu, column in zip(factors, right_hand, strict=True)])
 
 
 def poses_of(mechanism: Mechanism, q: list[Array]) -> tuple[Array, Array]:

@@ -29,23 +29,34 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from validate.reference.equations import CARRIED, Known
 from validate.reference.errors import BadInputError
+from validate.reference.linkage import Known, Link
+from validate.reference.macpherson.points import (
+    BALL,
+    CARRIED,
+    END,
+    FRONT,
+    INNER,
+    LOWER,
+    OUTER,
+    RACK,
+    REAR,
+    TOP,
+)
 from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
 
-LINKS: tuple[tuple[int, int], ...] = ((5, 1), (5, 2), (8, 4), (9, 6))
+LINKS: tuple[Link, ...] = ((BALL, FRONT), (BALL, REAR), (END, TOP), (INNER, OUTER))
 SIZE = 13  # unknowns, and equations
 COORDINATES = 3  # of the unknowns are coordinates of points; the others follow from points
 SLIDE = 12  # its place in y
-KINGPIN_TOP = 4  # the steering axis runs from 5 to this point
 PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))  # of columns of R
-AXIS = 4  # u is kept under the number of the point that it leads to
+AXIS = TOP  # u is kept under the name of the point that it leads to
 
 Frame = tuple[Vector, Vector, Vector]
 
 
-def knuckle_of(table: Mapping[int, Vector]) -> dict[int, Vector]:
-    """k_6, k_7 and those of the carried points, u (as 4), and the direction from 4 to 8 on the axis (as 8).
+def shape(table: Mapping[str, Vector]) -> dict[str, Vector]:
+    """k_6, k_7 and those of the carried points, u, and the direction from 4 to 8 on the axis (as 8).
 
     u is 7-4 as drawn times a power of two, which makes it about as long as the mechanism: then s is no
     great number where 7 is drawn close to 4.
@@ -54,37 +65,35 @@ def knuckle_of(table: Mapping[int, Vector]) -> dict[int, Vector]:
         BadInputError: the axis has no direction, the knuckle's points all lie on it, or the rod's end is
             drawn square to it.
     """
-    shape = {n: minus(table[n], table[5]) for n in (6, 7, *CARRIED) if n in table}
-    axis = minus(table[4], table[7])
+    places = {n: minus(table[n], table[BALL]) for n in (OUTER, LOWER, *CARRIED) if n in table}
+    axis = minus(table[TOP], table[LOWER])
     longest = max(abs(x) for x in axis)
     if longest == 0:
-        raise BadInputError("the strut's axis", "points 7 and 4 in one place", "strut_lower below strut_top")
+        raise BadInputError("the strut's axis", f"{LOWER} and {TOP} in one place", f"{LOWER} below {TOP}")
     shorter = longest.denominator.bit_length() - longest.numerator.bit_length()
     axis = times(axis, Fraction(2) ** shorter)
-    if all(_parallel(axis, minus(table[n], table[5])) for n in (6, 7)):
-        what = "points 5 and 6 on the strut's axis"
-        raise BadInputError("the knuckle", what, "lower_ball_joint or tie_rod_outer beside the axis")
-    side = dot(minus(table[8], table[4]), axis)
+    if all(_parallel(axis, minus(table[n], table[BALL])) for n in (OUTER, LOWER)):
+        what = f"{BALL} and {OUTER} on the strut's axis"
+        raise BadInputError("the knuckle", what, f"{BALL} or {OUTER} beside the axis")
+    side = dot(minus(table[END], table[TOP]), axis)
     if side == 0:
-        what = "drawn square to the strut's axis at strut_top"
-        raise BadInputError(
-            "points['strut_rod_end']", what, "a point above or below strut_top along the axis"
-        )
-    return {**shape, AXIS: axis, 8: axis if side > 0 else times(axis, -1)}
+        what = f"drawn square to the strut's axis at {TOP}"
+        raise BadInputError(f"points[{END!r}]", what, f"a point above or below {TOP} along the axis")
+    return {**places, AXIS: axis, END: axis if side > 0 else times(axis, -1)}
 
 
-def points_of(unknown: Sequence[Scalar], known: Known) -> dict[int, Vector]:
-    """All points by number."""
+def points_of(unknown: Sequence[Scalar], known: Known) -> dict[str, Vector]:
+    """All points."""
     return points_of_knuckle(_vector(unknown, 0), _frame(unknown), known)
 
 
-def points_of_knuckle(p5: Vector, frame: Frame, known: Known) -> dict[int, Vector]:
+def points_of_knuckle(p5: Vector, frame: Frame, known: Known) -> dict[str, Vector]:
     """All points where the knuckle has point 5 in p5 and is turned by the frame's columns."""
-    carried = {n: plus(p5, turned(frame, k)) for n, k in known.knuckle.items() if n not in (AXIS, 8)}
-    along = known.knuckle[8]
-    longer = (known.squared_length[8, 4] / dot(along, along)).sqrt()
-    p8 = plus(known.chassis[4], times(turned(frame, along), longer))
-    return {**known.chassis, 5: p5, **carried, 8: p8, 9: _rack_end(known)}
+    carried = {n: plus(p5, turned(frame, k)) for n, k in known.knuckle.items() if n not in (AXIS, END)}
+    along = known.knuckle[END]
+    longer = (known.squared_length[END, TOP] / dot(along, along)).sqrt()
+    p8 = plus(known.chassis[TOP], times(turned(frame, along), longer))
+    return {**known.chassis, BALL: p5, **carried, END: p8, INNER: _rack_end(known)}
 
 
 def turned(frame: Frame, k: Vector) -> Vector:
@@ -97,25 +106,25 @@ def knuckle_frame(unknown: Sequence[Scalar], known: Known) -> tuple[Vector, Vect
     return _vector(unknown, 3), _vector(unknown, 6)
 
 
-def unknown_of(points: Mapping[int, Vector], known: Known) -> list[Scalar]:
+def unknown_of(points: Mapping[str, Vector], known: Known) -> list[Scalar]:
     """The unknowns y of an assembly that is given by its points."""
-    return [*points[5], *implied(points, known)]
+    return [*points[BALL], *implied(points, known)]
 
 
-def implied(points: Mapping[int, Vector], known: Known) -> list[Scalar]:
+def implied(points: Mapping[str, Vector], known: Known) -> list[Scalar]:
     """R by columns, and s, of assembled points.
 
     Two vectors a, b of the knuckle that are k, m in its own frame give R: it takes k, m, k x m to a, b,
     a x b. Of the pairs of r6, r7 and the rod the one is taken that errors of the points harm least.
     """
-    along = known.knuckle[8]
-    shorter = (dot(along, along) / known.squared_length[8, 4]).sqrt()
-    vectors = [(known.knuckle[n], minus(points[n], points[5])) for n in (6, 7)]
-    vectors.append((along, times(minus(points[8], points[4]), shorter)))
+    along = known.knuckle[END]
+    shorter = (dot(along, along) / known.squared_length[END, TOP]).sqrt()
+    vectors = [(known.knuckle[n], minus(points[n], points[BALL])) for n in (OUTER, LOWER)]
+    vectors.append((along, times(minus(points[END], points[TOP]), shorter)))
     (k, a), (m, b) = max(combinations(vectors, 2), key=lambda pair: _spread(pair[0][0], pair[1][0]))
     frame = turning(k, m, a, b)
     axis = known.knuckle[AXIS]
-    slide = dot(minus(points[4], points[7]), turned(frame, axis)) / dot(axis, axis)
+    slide = dot(minus(points[TOP], points[LOWER]), turned(frame, axis)) / dot(axis, axis)
     return [x for column in frame for x in column] + [slide]
 
 
@@ -135,25 +144,25 @@ def turning(k: Vector, m: Vector, a: Vector, b: Vector) -> Frame:
 
 def residual(unknown: Sequence[Scalar], known: Known) -> list[Scalar]:
     """C(y), 13 numbers: arm, turning, strut top, tie rod."""
-    p5, frame, shape = _vector(unknown, 0), _frame(unknown), known.knuckle
+    p5, frame, k = _vector(unknown, 0), _frame(unknown), known.knuckle
     rows: list[Scalar] = []
-    for n in (1, 2):
+    for n in (FRONT, REAR):
         arm = minus(p5, known.chassis[n])
-        rows.append(dot(arm, arm) - known.squared_length[5, n])
-    rows.append(dot(minus(p5, known.chassis[1]), known.up) - known.arm_height)
+        rows.append(dot(arm, arm) - known.squared_length[BALL, n])
+    rows.append(dot(minus(p5, known.chassis[FRONT]), known.up) - known.driven["arm_angle"])
     rows.extend(dot(frame[i], frame[j]) - int(i == j) for i, j in PAIRS)
-    along = plus(turned(frame, shape[7]), times(turned(frame, shape[AXIS]), unknown[SLIDE]))
-    rows.extend(minus(plus(p5, along), known.chassis[4]))
-    tie = minus(plus(p5, turned(frame, shape[6])), _rack_end(known))
-    rows.append(dot(tie, tie) - known.squared_length[9, 6])
+    along = plus(turned(frame, k[LOWER]), times(turned(frame, k[AXIS]), unknown[SLIDE]))
+    rows.extend(minus(plus(p5, along), known.chassis[TOP]))
+    tie = minus(plus(p5, turned(frame, k[OUTER])), _rack_end(known))
+    rows.append(dot(tie, tie) - known.squared_length[INNER, OUTER])
     return rows
 
 
 def jacobian(unknown: Sequence[Scalar], known: Known) -> list[tuple[int, int, Scalar]]:
     """dC/dy as (row, column, entry), zeros left out."""
-    p5, frame, shape, slide = _vector(unknown, 0), _frame(unknown), known.knuckle, unknown[SLIDE]
+    p5, frame, k, slide = _vector(unknown, 0), _frame(unknown), known.knuckle, unknown[SLIDE]
     entries: list[tuple[int, int, Scalar]] = []
-    for row, n in enumerate((1, 2)):
+    for row, n in enumerate((FRONT, REAR)):
         for axis, component in enumerate(minus(p5, known.chassis[n])):
             entries.append((row, axis, 2 * component))
     for axis in range(3):
@@ -165,15 +174,15 @@ def jacobian(unknown: Sequence[Scalar], known: Known) -> list[tuple[int, int, Sc
             else:
                 entries.append((row, _column(i, axis), frame[j][axis]))
                 entries.append((row, _column(j, axis), frame[i][axis]))
-    place, direction = plus(shape[7], times(shape[AXIS], slide)), turned(frame, shape[AXIS])
-    tie = minus(plus(p5, turned(frame, shape[6])), _rack_end(known))
+    place, direction = plus(k[LOWER], times(k[AXIS], slide)), turned(frame, k[AXIS])
+    tie = minus(plus(p5, turned(frame, k[OUTER])), _rack_end(known))
     for axis in range(3):
         entries.append((9 + axis, axis, 1))
         entries.append((9 + axis, SLIDE, direction[axis]))
         entries.append((12, axis, 2 * tie[axis]))
         for i in range(3):
             entries.append((9 + axis, _column(i, axis), place[i]))
-            entries.append((12, _column(i, axis), 2 * tie[axis] * shape[6][i]))
+            entries.append((12, _column(i, axis), 2 * tie[axis] * k[OUTER][i]))
     return entries
 
 
@@ -198,7 +207,7 @@ def _column(i: int, axis: int) -> int:
 
 def _rack_end(known: Known) -> Vector:
     """p9."""
-    return minus(known.chassis[3], times(known.right, known.rack))
+    return minus(known.chassis[RACK], times(known.right, known.driven["rack"]))
 
 
 def _parallel(a: Vector, b: Vector) -> bool:

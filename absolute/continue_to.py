@@ -4,15 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from absolute.assembly import Mechanism
 from absolute.continuation import BlockedError, Path, follow
 from absolute.errors import AbsoluteError, SingularError, UnreachableError
 from absolute.limits import limited_by, limiting_input, limits_at
+from absolute.mechanism import Mechanism
 from absolute.newton import SMALLEST_RCOND, Pose, inverse
 from absolute.solution import Array
 
 
-def travel(
+def continue_to(
     mechanism: Mechanism, pose: Pose, start: Sequence[float], goal: Sequence[float], instant: int
 ) -> tuple[Pose, int]:
     """From the pose at inputs `start` to that at `goal`: straight, else one input after the other."""

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
 from absolute.backend import pin
+from absolute.branch_signs import BranchSigns, sign_vectors
 from absolute.description import Model
 from absolute.drawing import Drawing
 from absolute.features import Features
 from absolute.laws import LAWS
 from absolute.rows import rows_of
-from absolute.sides import Sides, side_vectors
 from absolute.solution import Array
 from absolute.stack import RowStack
 
@@ -35,7 +35,7 @@ class Mechanism:
     The chassis is the universe: its motion is added to the solution afterwards.
 
     Attributes:
-        model, drawing, stack, sides: what was described, its lengths, its rows, its branch.
+        model, drawing, stack, branch_signs: what was described, its lengths, its rows, its branch.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
@@ -47,9 +47,9 @@ class Mechanism:
         self.drawing = drawing = Drawing(model)
         rows = rows_of(model, drawing)
         features = Features(len(drawing.bodies))
-        vectors = side_vectors(model, drawing, rows.senses, features)
+        vectors = sign_vectors(model, drawing, rows.senses, features)
         self.stack = RowStack(rows, features)
-        self.sides = Sides(model, vectors, features)
+        self.branch_signs = BranchSigns(model, vectors, features)
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         for body in model.moving:

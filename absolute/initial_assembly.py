@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from absolute.assembly import Mechanism
 from absolute.backend import eigenpy
 from absolute.continuation import BlockedError, follow
 from absolute.errors import AssemblyError, BranchError, SingularError
 from absolute.limits import limited_by, limits_at
+from absolute.mechanism import Mechanism
 from absolute.newton import SMALLEST_RCOND, Pose, inverse, pose_at, seek
 from absolute.solution import Array
 
@@ -24,17 +24,17 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     First the rows keep a shrinking share of the violation they have in the drawing: rows(q) =
     (1 - share) rows(drawn) + share * target. A drawing far from assembled may end on another
     branch, or lock; then Newton starts from the drawing with its bodies turned. Whatever the way,
-    the pose has the sides of the drawing. Without sides in the model only the first way is tried.
+    the pose has the branch signs of the drawing. Without any in the model only the first way is tried.
 
     Returns:
         The pose and the Newton corrections of the way that led to it.
     Raises:
         SingularError: the drawing itself is singular.
-        BranchError: a side of the drawing is zero, or only poses on other sides are found.
+        BranchError: a branch sign of the drawing is zero, or only poses with others are found.
         AssemblyError: no pose is found.
     """
     drawn = _drawn_pose(mechanism)
-    _check_sides(mechanism)
+    _check_branch_signs(mechanism)
     inputs = mechanism.drawn_inputs.tolist()
     zeros = [0.0] * len(inputs)
     target = mechanism.targets(inputs, zeros, zeros)[0]
@@ -50,15 +50,15 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     except BlockedError as block:
         blocked = block
     else:
-        if mechanism.sides.kept(pose.placed.world):
+        if mechanism.branch_signs.kept(pose.placed.world):
             return pose, spent
         wrong = pose
-    if mechanism.sides.told:
+    if mechanism.branch_signs.told:
         for start in _starts(mechanism, drawn):
             found = seek(mechanism, start, target)
             if found is None:
                 continue
-            if mechanism.sides.kept(found.placed.world):
+            if mechanism.branch_signs.kept(found.placed.world):
                 return found, 0
             wrong = wrong or found
     if wrong is not None:
@@ -84,9 +84,9 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
 
 def branch_error(mechanism: Mechanism, instant: int | None, inputs: list[float], world: Array) -> BranchError:
     """The refusal of a pose that is not on the branch of the drawing."""
-    sides = mechanism.sides
-    side = sides.lost(world)
-    drawn, found = float(sides.drawn[side]), float(sides.shares(world)[side])
+    signs = mechanism.branch_signs
+    place = signs.lost(world)
+    drawn, found = float(signs.drawn[place]), float(signs.shares(world)[place])
     if instant is None:
         where = "the drawing can be assembled, but not on its own branch"
         cure = "draw the points closer to an assembled pose"
@@ -94,15 +94,15 @@ def branch_error(mechanism: Mechanism, instant: int | None, inputs: list[float],
         where = f"instant {instant}: the pose found is not on the branch of the drawing"
         cure = "lead up to these inputs by closer instants, or stay away from the limit of the motion"
     return BranchError(
-        f"{where}: side {sides.names[side]!r} is {drawn:.3g} in the drawing and {found:.3g} there (its "
-        f"product divided by the lengths of its vectors, from -1 to 1); the sign must stay: "
-        f"{limited_by(sides.limits[side])}{cure}",
+        f"{where}: the branch sign {signs.names[place]!r} is {drawn:.3g} in the drawing and {found:.3g} "
+        f"there (its product divided by the lengths of its vectors, from -1 to 1); the sign must stay: "
+        f"{limited_by(signs.limits[place])}{cure}",
         instant,
         mechanism.named(inputs),
-        sides.names[side],
+        signs.names[place],
         drawn,
         found,
-        sides.limits[side],
+        signs.limits[place],
     )
 
 
@@ -129,15 +129,16 @@ def _drawn_pose(mechanism: Mechanism) -> Pose:
     return drawn
 
 
-def _check_sides(mechanism: Mechanism) -> None:
+def _check_branch_signs(mechanism: Mechanism) -> None:
     """Refuse a drawing that stands where its branches meet."""
-    sides = mechanism.sides
-    for name, wanted, drawn, limits in zip(sides.names, sides.wanted, sides.drawn, sides.limits, strict=True):
+    signs = mechanism.branch_signs
+    for name, wanted, drawn, limits in zip(signs.names, signs.wanted, signs.drawn, signs.limits, strict=True):
         if wanted == 0:
             raise BranchError(
-                f"the drawing has no branch: side {name!r} is {drawn:.3g} there, zero within rounding (its "
-                "product divided by the lengths of its vectors, from -1 to 1): two assemblies are equally "
-                f"near; {limited_by(limits)}move a point off that limit, to the side that is meant",
+                f"the drawing has no branch: the branch sign {name!r} is {drawn:.3g} there, zero within "
+                "rounding (its product divided by the lengths of its vectors, from -1 to 1): two assemblies "
+                f"are equally near; {limited_by(limits)}move a point off that limit, to the side "
+                "that is meant",
                 None,
                 mechanism.named(mechanism.drawn_inputs.tolist()),
                 name,

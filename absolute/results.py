@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.assembly import Mechanism
+from absolute.effects.effect import Effect
 from absolute.estimate import BodyMotion, Errors, estimate
-from absolute.finish import Finished
+from absolute.lines import SolvedLines
 from absolute.mapping import ReadOnly
+from absolute.mechanism import Mechanism
+from absolute.refine import Refined
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
@@ -22,11 +24,13 @@ class Asked(NamedTuple):
     Attributes:
         rates: velocities and accelerations. conditions: condition numbers.
         doubts: (N, 3, inputs) how far the inputs may be off, or None: no errors.
+        effects: those whose values are told.
     """
 
     rates: bool
     conditions: bool
     doubts: Array | None
+    effects: tuple[Effect, ...]
 
 
 class Record:
@@ -48,18 +52,18 @@ class Record:
         self._residual = np.zeros(count)
         self.written = 0
 
-    def store(self, finished: Finished, count: int) -> None:
-        """Keep the first `count` of some finished instants, after those kept before."""
+    def store(self, refined: Refined, count: int) -> None:
+        """Keep the first `count` of some refined instants, after those kept before."""
         part = slice(self.written, self.written + count)
-        self._rotation[part] = finished.rotation[:count]
-        self._origin[part] = finished.origin[:count]
+        self._rotation[part] = refined.rotation[:count]
+        self._origin[part] = refined.origin[:count]
         if self._rates:
-            self._velocity[part, 1:] = finished.velocity[:count].reshape(self._velocity[part, 1:].shape)
-            self._acceleration[part, 1:] = finished.acceleration[:count].reshape(
+            self._velocity[part, 1:] = refined.velocity[:count].reshape(self._velocity[part, 1:].shape)
+            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(
                 self._velocity[part, 1:].shape
             )
-        self._iterations[part] = finished.corrections[:count]
-        self._residual[part] = finished.residual[:count]
+        self._iterations[part] = refined.corrections[:count]
+        self._residual[part] = refined.residual[:count]
         self.written += count
 
     def solution(self) -> Solution:
@@ -98,6 +102,9 @@ class Record:
         iterations = self._iterations[:count].copy()
         iterations.setflags(write=False)
         errors = self._errors(count)
+        effects = self._asked.effects
+        told = effects if self._asked.doubts is not None else ()
+        lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors)
         in_order = {name: position[name] for name in model.points}
         return Solution(
             position=_fixed(in_order),
@@ -118,6 +125,8 @@ class Record:
             rotation_error=_fixed(errors.rotation),
             angular_velocity_error=_fixed(errors.angular_velocity),
             angular_acceleration_error=_fixed(errors.angular_acceleration),
+            effects=_fixed({effect.name: effect.value(lines) for effect in effects}),
+            effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
         )
 
     def _errors(self, count: int) -> Errors:
