@@ -113,7 +113,7 @@ def _driven(car: str, driven: str, law: tuple[float, float]) -> Mapping[str, Any
 def from_a_flat_wishbone(share: float, mirrored: bool) -> Mapping[str, Any]:
     """The upper ball joint drawn near the plane of its pivots and the lower one, from where the arm goes."""
     car = CARS["wishbone"].drawn_as(flat_upper_arm(-share if mirrored else share))
-    return scene_content(car, (Linkage.of(car).drawn_angle, 0.0, -0.1), 0.0, stop=1.0, samples=3)
+    return scene_content(car, (Linkage.of(car).drawn_angle, 0.0, -0.02), 0.0, stop=1.0, samples=3)
 
 
 def _case(
