@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from closed_form_wishbones import LOTUS, wishbone_cars
 from closed_forms import ClosedFormCar
 from hypothesis import strategies as st
 from off_axis_cars import BASE, OffAxisCar, closing, off_axis_cars
+from wishbone_cars import LOTUS, wishbone_cars
 
 RANDOM: dict[str, st.SearchStrategy[ClosedFormCar]] = {
     "strut as drawn": off_axis_cars(),

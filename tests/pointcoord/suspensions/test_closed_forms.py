@@ -15,7 +15,7 @@ import mpmath
 import numpy as np
 import off_axis_cars
 import pytest
-import wishbone_cars
+import wishbone_by_points
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
@@ -53,11 +53,11 @@ FORMS = [
     ),
     ClosedForm(
         "double_wishbone",
-        wishbone_cars.wishbone_cars(),
-        wishbone_cars.drawn_pose,
-        wishbone_cars.WishboneCar,
+        wishbone_by_points.wishbone_cars(),
+        wishbone_by_points.drawn_pose,
+        wishbone_by_points.WishboneCar,
         ("lower_ball_joint", "upper_ball_joint"),
-        wishbone_cars.KNUCKLE,
+        wishbone_by_points.KNUCKLE,
     ),
 ]
 # Numbers of few bits, so that the laws' values and rates at the instants are doubles.
@@ -206,13 +206,13 @@ def test_every_number_is_within_its_proven_bound_of_the_closed_form(
 
 def test_the_closed_form_of_the_wishbone_is_at_home_in_its_drawing() -> None:
     with mpmath.workdps(DIGITS):
-        points = {name: tuple(Fraction(c) for c in place) for name, place in wishbone_cars.BASE.items()}
-        car = wishbone_cars.WishboneCar(points, (0, 0, 1), (0, 1, 0))
-        found = list(wishbone_cars.poses(car, *car.drawn))
+        points = {name: tuple(Fraction(c) for c in place) for name, place in wishbone_by_points.BASE.items()}
+        car = wishbone_by_points.WishboneCar(points, (0, 0, 1), (0, 1, 0))
+        found = list(wishbone_by_points.poses(car, *car.drawn))
         assert len({pose.sides for pose in found}) == len(found) > 1
 
-        def moved(pose: wishbone_cars.WishbonePose) -> mpf:
+        def moved(pose: wishbone_by_points.WishbonePose) -> mpf:
             return max(abs(c) for n, p in pose.points.items() for c in minus(p, numbers(points[n])))
 
         assert [moved(pose) < mpf(10) ** -50 for pose in found].count(True) == 1
-        assert min(found, key=moved).sides == wishbone_cars.drawn_sides(car)
+        assert min(found, key=moved).sides == wishbone_by_points.drawn_sides(car)
