@@ -31,7 +31,7 @@ from validate.hard.cases.counting import (
     near_greatest_rack,
     near_lowest_arm,
 )
-from validate.hard.cases.oriented import followed, sides
+from validate.hard.cases.oriented import drawn_signs, followed, sides
 from validate.hard.trial import Tried, try_scene
 from validate.reference import InfeasibleError, count_assemblies, solve_reference
 
@@ -116,7 +116,7 @@ def mirror(scene: Scene, solution: Solution) -> Solution:
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
     outer = p["tie_rod_outer"]
     height = np.sum((outer - ball) * normal, axis=-1, keepdims=True)
-    return replace(solution, position={**p, "tie_rod_outer": outer - 2.0 * height * normal})
+    return solution.with_numbers({"position": {**p, "tie_rod_outer": outer - 2.0 * height * normal}})
 
 
 def test_a_jump_to_the_mirror_image_is_wrong_and_its_side_is_negative(
