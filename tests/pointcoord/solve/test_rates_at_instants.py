@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from rate_sensitivity import rate_sensitivities
 
 from pointcoord import Motion, Scene, UnknownName, simulate
 from pointcoord.linkage.constraints.on_line import OnLine
@@ -114,7 +115,7 @@ def test_printed_formulation_has_the_same_positions_and_velocities(make_scene: C
         # moves up to 30 times as fast as its carriers (its weights).
         speed = np.abs(newton.velocity[name]).max()
         rounding = 64 * EPS * (one.condition + other.condition) * speed
-        sensitive = one.velocity_sensitivity * one.bound + other.velocity_sensitivity * other.bound
+        sensitive = rate_sensitivities(newton)[0] * one.bound + rate_sensitivities(printed)[0] * other.bound
         assert (
             np.abs(newton.velocity[name] - printed.velocity[name]).max(axis=-1) <= 30 * (sensitive + rounding)
         ).all()
