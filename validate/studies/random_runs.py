@@ -250,14 +250,11 @@ def _summary(total: Counter[str]) -> str:
     """A row for each suspension and closure."""
     rows = []
     for variant in VARIANTS:
-        here = {key.split("/", 2)[2]: 0 for key in total if key.startswith(f"{variant.words}/")}
-        for key, count in total.items():
-            if key.startswith(f"{variant.words}/"):
-                here[key.split("/", 2)[2]] += count
-        faulty = sum(count for outcome, count in here.items() if any(word in outcome for word in FAULTY))
-        counts = [sum(count for outcome, count in here.items() if outcome.startswith(head)) for head in HEADS]
-        rows.append((variant.words, *map(str, (sum(here.values()), *counts, faulty))))
-    return table(("suspension", "scenes", *HEADS, "of all: wrong or unexplained"), rows)
+        here = {key: n for key, n in total.items() if key.startswith(f"{variant.words}/")}
+        begun = [sum(n for key, n in here.items() if key.split("/", 2)[2].startswith(h)) for h in HEADS]
+        faulty = sum(n for key, n in here.items() if any(word in key for word in FAULTY))
+        rows.append((variant.words, *map(str, (sum(here.values()), *begun, faulty))))
+    return table(("suspension", "scenes", *HEADS, "of these wrong"), rows)
 
 
 def _outcomes(total: Counter[str], suspension: str) -> str:

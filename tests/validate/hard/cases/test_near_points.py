@@ -98,8 +98,6 @@ def test_a_drawn_side_is_told_however_near_the_plane(lift: float) -> None:
     }
     scene = Scene.from_mapping(paper_car(points=points))
     assert drawn_signs(scene)["tie"] == (1 if Fraction(lift) > 0 else -1)
-    outer = reference_solution(scene, exact_sides=True).position["tie_rod_outer"][0]
-    assert outer[1] * lift > 0.0
     with pytest.raises(AmbiguousAssemblyError, match="tie choice"):
         reference_solution(scene)
     flat = Scene.from_mapping(paper_car(points={**points, "tie_rod_outer": (110.0, 0.0, 100.0)}))
