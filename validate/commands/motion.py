@@ -77,7 +77,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
                 console.note(f"{name}: {note}")
         if motion.closing.moves and not motion.closing.noticeable:
             console.note(f"{name}: {motion.closing.words}")
-        if any("wheel_axis" in EFFECTS[effect].axes for effect in scene.effects):
+        if any("wheel_axis" in EFFECTS[effect].lines for effect in scene.effects):
             for taken in scene.mechanism.defaults_taken:
                 console.note(f"{name}: {taken}")
         _write(target, motion, console)

@@ -71,13 +71,13 @@ class Angle:
 
 
 @dataclass(frozen=True)
-class WheelAngles(Effect):
+class Angles(Effect):
     """Angles of the wheel or of what it turns about."""
 
     angles: tuple[Angle, ...]
 
     @classmethod
-    def of(cls, name: str, gives: str, *angles: Angle) -> WheelAngles:
+    def of(cls, name: str, gives: str, *angles: Angle) -> Angles:
         """The effect that gives some angles."""
         sign = "; ".join(f"{angle.words}: positive {angle.sign}" for angle in angles)
         return cls(name, gives, sign, derivative=0, quantities=(WHEEL,), angles=angles)
@@ -88,7 +88,7 @@ class WheelAngles(Effect):
         return tuple(angle.name for angle in self.angles)
 
     @property
-    def axes(self) -> tuple[str, ...]:
+    def lines(self) -> tuple[str, ...]:
         """The axes whose angles they are."""
         return tuple(dict.fromkeys(angle.line for angle in self.angles))
 
