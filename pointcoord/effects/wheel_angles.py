@@ -6,7 +6,7 @@ mirror image.
 
 from __future__ import annotations
 
-from pointcoord.effects.angles import Angle, Angles
+from pointcoord.effects.angle import Angle, WheelAngles
 
 CAMBER = Angle(
     name="camber",
@@ -28,4 +28,4 @@ KINGPIN = Angle(
     steepest=45.0,
     steepest_by_default=45.0,
 )
-WHEEL_ANGLES = Angles.of("wheel_angles", "camber and kingpin angle, rad", CAMBER, KINGPIN)
+WHEEL_ANGLES = WheelAngles.of("wheel_angles", "camber and kingpin angle, rad", CAMBER, KINGPIN)

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.reported_bounds import ROUNDINGS
-from pointcoord.effects.angles import Angles
+from pointcoord.effects.angle import WheelAngles
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
@@ -259,7 +259,7 @@ def test_a_fault_in_an_effect_is_found(name: str, fault: str, monkeypatch: pytes
 ANGLES = {
     name: (effect, place)
     for effect in EFFECTS.values()
-    if isinstance(effect, Angles)
+    if isinstance(effect, WheelAngles)
     for place, name in enumerate(effect.names)
 }
 

@@ -71,13 +71,13 @@ class Angle:
 
 
 @dataclass(frozen=True)
-class Angles(Effect):
+class WheelAngles(Effect):
     """Angles of the wheel or of what it turns about."""
 
     angles: tuple[Angle, ...]
 
     @classmethod
-    def of(cls, name: str, gives: str, *angles: Angle) -> Angles:
+    def of(cls, name: str, gives: str, *angles: Angle) -> WheelAngles:
         """The effect that gives some angles."""
         sign = "; ".join(f"{angle.words}: positive {angle.sign}" for angle in angles)
         return cls(name, gives, sign, derivative=0, quantities=(WHEEL,), angles=angles)
