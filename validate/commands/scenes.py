@@ -6,21 +6,22 @@ import argparse
 
 import numpy as np
 
-from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
+from pointcoord import AssemblyError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import End, Standing
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.results.closing import ALLOWED
-from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
+from validate.closed_drawing import warnings_of
+from validate.commands.usage import add_scene, load_scene, name_of, told_as
 from validate.exit_status import ExitStatus
-from validate.output.closing import warnings_of
-from validate.output.console import Console, shown
+from validate.output.console import Console
+from validate.plain_text import shown
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add both commands."""
     plan = commands.add_parser("plan", help="say what a scene would compute, what not, and why")
-    plan.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
+    add_scene(plan)
     plan.set_defaults(run=run_plan)
     scenes = commands.add_parser("scenes", help="list the built-in scenes")
     scenes.set_defaults(run=run_scenes)
@@ -37,7 +38,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects)
     evaluated = plan.derivatives(scene.mechanism.topology).values()
-    name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
+    name = name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {scene.mechanism.type}, {scene.mechanism.side} side; inputs: {', '.join(scene.inputs)}",
@@ -58,9 +59,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
     """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
     try:
-        stands = standing(scene)
-    except SceneError as error:
-        raise SceneError(name, error.key, error.problem, error.allowed) from None
+        with told_as(name):
+            stands = standing(scene)
     except AssemblyError as error:
         console.complain(f"{name}: {error}")
         return ExitStatus.NO_VERDICT
@@ -81,7 +81,7 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
             f"allowed: {limit}; draw the points that miss where they belong"
         )
         return ExitStatus.WRONG_INPUT
-    for warning in (*warnings_of(stands.closing), *scene.mechanism.doubts, *_out_of_reach(scene, stands)):
+    for warning in (*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands)):
         console.warn(f"{name}: {warning}")
     return ExitStatus.AGREE
 

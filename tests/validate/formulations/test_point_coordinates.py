@@ -8,7 +8,8 @@ import pytest
 
 from pointcoord import Motion, Scene, SingularConfiguration
 from pointcoord.bounds.proof import Proof
-from validate.cars.input_limits import Car, Linkage
+from validate.cars.car import Car
+from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
