@@ -69,8 +69,8 @@ def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     """Largest error of each quantity that does not know where the origin is."""
     return {
         quantity: max(
-            float(np.abs(array - getattr(reference, quantity)[name]).max())
-            for name, array in getattr(solution, quantity).items()
+            float(np.abs(array - reference.numbers[quantity][name]).max())
+            for name, array in solution.numbers[quantity].items()
         )
         for quantity in RATES
     }
@@ -113,7 +113,9 @@ def _as_at_home(answer: Answer, tried: Tried, car: str) -> Answer:
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
     for away, position in ((farthest, places), (nearest, tried.reference.position)):
-        strict = replace(solution, position=position, accuracy=_held_to(home.accuracy, EPS * away))
+        strict = replace(
+            solution.with_numbers({"position": position}), accuracy=_held_to(home.accuracy, EPS * away)
+        )
         judged = judged_answer(tried.scene, strict, tried.reference)
         if judged.outcome != "right":
             return replace(
@@ -126,12 +128,12 @@ def _held_to(home: Accuracy, rounding: float) -> Accuracy:
     """What a car may be off by that is off by as much at home, with a rounding of its positions."""
 
     def widened(quantity: str, more: float) -> dict[str, Array]:
-        claims = getattr(home, quantity)
+        claims = home.claims[quantity]
         largest = max(float(np.max(claim)) for claim in claims.values())
         return {name: np.full_like(claim, PLACED * LUCKY * largest + more) for name, claim in claims.items()}
 
     rates = {quantity: widened(quantity, 0.0) for quantity in RATES}
-    return Accuracy(home.condition, widened("position", rounding), **rates, proven=home.proven)
+    return replace(home, claims={"position": widened("position", rounding), **rates})
 
 
 def scaled_car(scale: float, car: str = "paper") -> dict[str, Any]:
