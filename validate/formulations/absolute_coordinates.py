@@ -53,7 +53,7 @@ class AbsoluteCoordinates:
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(
+            model = absolute.suspension_of(part.type)(
                 near, up=part.up, right=part.right, side=part.side, closure=part.closure
             )
             _require_the_drawn_car(scene, model)
@@ -81,8 +81,8 @@ class AbsoluteCoordinates:
             position=position,
             velocity=solved.velocity if "velocity" in wanted else {},
             acceleration=solved.acceleration if "acceleration" in wanted else {},
-            angular_velocity=_knuckle(solved.angular_velocity, wanted),
-            angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
+            angular_velocity=_knuckle(model, solved.angular_velocity, wanted),
+            angular_acceleration=_knuckle(model, solved.angular_acceleration, wanted),
             wheel=solved.effects if "wheel_angles" in wanted else {},
             accuracy=accuracy,
         )
@@ -162,8 +162,11 @@ def _moved(position: Mapping[str, Array], origin: Array) -> dict[str, Array]:
     return {name: place + origin for name, place in position.items()}
 
 
-def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> dict[str, Array]:
-    return {"knuckle": rates_of_bodies["knuckle"]} if "knuckle_rates" in wanted else {}
+def _knuckle(
+    model: absolute.Model, rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]
+) -> dict[str, Array]:
+    knuckle = model.require_corner().knuckle
+    return {"knuckle": rates_of_bodies[knuckle]} if "knuckle_rates" in wanted else {}
 
 
 def extent(part: MechanismPart) -> float:

@@ -96,13 +96,13 @@ def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
 
 
 def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
-    build = absolute.macpherson
+    build = absolute.suspension_of("macpherson")
 
     def plant(patch: pytest.MonkeyPatch) -> None:
         def wrong(points: dict, **options: object) -> absolute.Model:
             return build(change(dict(points)), **(options | axes))
 
-        patch.setattr(absolute, "macpherson", wrong)
+        patch.setattr(absolute, "suspension_of", lambda _: wrong)
 
     return plant
 
