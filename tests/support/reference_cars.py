@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from hypothesis import strategies as st
+from lotus_front import POINTS as LOTUS
 from off_axis_cars import BASE, closing
 
 from validate.reference import Instant, closed_drawing, count_assemblies, sensitivities, solve_reference
@@ -82,8 +83,8 @@ class ReferenceCar:
     def count(self, inputs: Inputs, **settings: Any) -> Any:
         return count_assemblies(self.points, inputs, **self.kind, **settings)
 
-    def close(self) -> Any:
-        return closed_drawing(self.points, **self.kind)
+    def close(self, **settings: Any) -> Any:
+        return closed_drawing(self.points, **self.kind, **settings)
 
     def sensitivities(self) -> Any:
         return sensitivities(self.points, self.inputs, **self.kind)
@@ -111,6 +112,18 @@ CARS = {
             "heave": (Fraction(3), Fraction(100), Fraction(10)),
         },
         Fraction(200),
+    ),
+    "double wishbone": ReferenceCar(
+        "double_wishbone",
+        "drawn",
+        LOTUS,
+        {
+            "arm_angle": (Fraction(3, 2), Fraction(1, 2), Fraction(-1, 4)),
+            "rack": (Fraction(10), Fraction(-150), Fraction(50)),
+            "heave": (Fraction(-4), Fraction(80), Fraction(20)),
+        },
+        Fraction(300),
+        "right",
     ),
 }
 

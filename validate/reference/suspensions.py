@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from validate.reference.double_wishbone import CLOSURES as DOUBLE_WISHBONE
 from validate.reference.errors import BadInputError
 from validate.reference.linkage import Linkage
 from validate.reference.macpherson import CLOSURES as MACPHERSON
 
 SUSPENSIONS: dict[str, Mapping[str, Linkage]] = {
     "macpherson": MACPHERSON,
+    "double_wishbone": DOUBLE_WISHBONE,
 }
 SUSPENSION = "macpherson"
 CLOSURE = "drawn"

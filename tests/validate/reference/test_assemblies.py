@@ -154,7 +154,8 @@ def test_a_table_at_a_dead_point_needs_a_guess(car: ReferenceCar) -> None:
 
 
 def test_a_guess_far_from_everything_is_called_ambiguous_and_not_singular(car: ReferenceCar) -> None:
-    far = {name: (x, y - 50000, z) for name, (x, y, z) in car.points.items()}
+    outboard = 50000 if car.side == "right" else -50000  # where the arm points in assemblies that exist
+    far = {name: (x, y + outboard, z) for name, (x, y, z) in car.points.items()}
     for turn in (-0.2, 0, 0.2):
         theta = float(car.inputs["arm_angle"][0]) + turn
         with pytest.raises(AmbiguousAssemblyError):
