@@ -23,8 +23,8 @@ except ModuleNotFoundError as error:
 
 Array = NDArray[np.float64]
 
-# What the scene's effect `wheel_angles` stands for.
-WHEEL_ANGLES = ("camber", "kingpin")
+# Effects of a scene that stand for several of the model's.
+STANDS_FOR = {"wheel_angles": ("camber", "kingpin")}
 
 SLOW = 2.0**-200  # rad/s and mm/s
 LONGEST = 500  # s, as a power of two whose square is still a number
@@ -50,6 +50,8 @@ class AbsoluteCoordinates:
         unit = slow_unit(inputs, chassis)
         inputs = {name: _per(unit, law) for name, law in inputs.items()}
         needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
+        named = (name for effect in wanted for name in STANDS_FOR.get(effect, (effect,)))
+        effects = tuple(name for name in named if name in absolute.EFFECTS)
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
@@ -64,7 +66,7 @@ class AbsoluteCoordinates:
                 rates=needs_rates,
                 conditions=True,
                 errors=True,
-                effects=WHEEL_ANGLES,
+                effects=effects,
             )
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
@@ -83,7 +85,7 @@ class AbsoluteCoordinates:
             acceleration=solved.acceleration if "acceleration" in wanted else {},
             angular_velocity=_knuckle(model, solved.angular_velocity, wanted),
             angular_acceleration=_knuckle(model, solved.angular_acceleration, wanted),
-            wheel=solved.effects if "wheel_angles" in wanted else {},
+            wheel=solved.effects,
             accuracy=accuracy,
         )
 
