@@ -37,7 +37,10 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects)
-    evaluated = plan.derivatives(scene.mechanism.topology).values()
+    evaluated = plan.derivatives(scene.mechanism.topology)
+    least = min(evaluated.values())
+    others = [point for point, highest in evaluated.items() if highest > least]
+    more = f", for {', '.join(others)}: {plan.derivative}" if others else ""
     name = name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
@@ -49,8 +52,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
             for effect in plan.left_out
         ),
-        f"derivatives solved for: {plan.derivative}; evaluated for every point: {min(evaluated)}, "
-        f"for some: {max(evaluated)}",
+        f"derivatives solved for: {plan.derivative}; evaluated for every point: {least}{more}",
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
