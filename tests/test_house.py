@@ -33,6 +33,8 @@ ROOMS = {
         "extras",
         "exit_status",
         "running",
+        "plain_text",
+        "closed_drawing",
         "reference",
         "formulations",
         "comparison",

@@ -10,7 +10,8 @@ from pointcoord import Scene
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate.cars.paper_car import PAPER, Points
+from validate.cars.car import Points
+from validate.cars.paper_car import PAPER
 
 EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
 

@@ -43,7 +43,7 @@ def test_the_drawn_inputs_and_angles_are_those_of_the_motion_there() -> None:
     content = scene.model_dump(exclude_none=True)
     content["inputs"] = {name: {"constant": value} for name, value in found.inputs.items()}
     motion = simulate(Scene.from_mapping(content))
-    assert motion.wheel["camber"][0] == pytest.approx(found.camber, abs=1e-13)
-    assert motion.wheel["kingpin"][0] == pytest.approx(found.kingpin, abs=1e-13)
-    assert found.camber == pytest.approx(-np.arctan(1.0 / 120.0), abs=1e-13)
+    assert motion.wheel["camber"][0] == pytest.approx(found.angles["camber"], abs=1e-13)
+    assert motion.wheel["kingpin"][0] == pytest.approx(found.angles["kingpin"], abs=1e-13)
+    assert found.angles["camber"] == pytest.approx(-np.arctan(1.0 / 120.0), abs=1e-13)
     assert found.closing == motion.closing

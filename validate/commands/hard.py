@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from validate.commands.usage import UsageError, require_target
+from validate.commands.usage import UsageError, add_quiet, require_target
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -20,7 +20,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
     )
-    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    add_quiet(parser)
     parser.set_defaults(run=run)
 
 

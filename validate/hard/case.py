@@ -92,6 +92,11 @@ class Case:
     unit: str = "mm"
 
 
+def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
+    """One value per decade, going in: from 10^high down to 10^low."""
+    return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
+
+
 def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:
     """The answers of a trial that the case does not allow."""
     return tuple(a for a in trial.answers if not case.expected[a.formulation].met(trial.value, a.outcome))

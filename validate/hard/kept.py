@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
 from pointcoord.suspensions.macpherson import DRAWN
-from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.formulations.input_rates import rates
 from validate.reference import NoReferenceError
 
@@ -55,7 +55,7 @@ def fault_of_kept(reason: Exception, scene: Scene, end: float, driven: str) -> s
     bounds = _bounds(partial, scene)
     for index, time in enumerate(before.tolist()):
         try:
-            reference = true_instant(scene, inputs_at(scene, time))
+            reference = reference_instant(scene, inputs_at(scene, time))
         except NoReferenceError as error:
             return f"the kept instant {index} has no reference: {error}"
         for name, place in position.items():

@@ -13,10 +13,10 @@ from functools import cache
 
 import numpy as np
 
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.paper_car import mirrored
-from validate.cars.random_struts import as_tuple
-from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, RIGHT, UP, WIDE_CAR, any_rotation, turned
+from validate.cars.car import RIGHT, UP, Car, any_rotation, as_tuple, mirrored, turned
+from validate.cars.input_limits import Linkage
+from validate.cars.macpherson import BESIDE
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR, WIDE_CAR
 from validate.reference import InfeasibleError, SingularPoseError, solve_reference
 
 DIGITS = 15  # of the reference: only whether there is a pose counts, which is proven anyhow

@@ -8,19 +8,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from pointcoord import Scene, SceneError
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution, what_both_give
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
-from validate.hard.content import decades as decades
-from validate.hard.content import paper_car as paper_car
 from validate.hard.judged import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
@@ -60,7 +58,7 @@ def scene_case(
     """A case whose trial is one scene.
 
     Args:
-        scene: the content of the scene at a value of the parameter; see `content.paper_car`.
+        scene: the content of the scene at a value of the parameter; see `scene_content`.
         expected: by name of a formulation; these are tried.
         measure: what else is measured on the solutions.
     """
@@ -76,7 +74,8 @@ def try_scene(
 ) -> Trial:
     """Solve a scene by each formulation and hold the answers to the reference.
 
-    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right.
+    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. The
+    drawings of hard cases are exact, so that the reference takes an unclear side from exact products.
     """
     try:
         scene = Scene.from_mapping(content)
@@ -96,9 +95,8 @@ def try_scene(
             answers.append(Answer(name, "unjudged", _told(reference)))
         else:
             answers.append(_judged(scene, one, reference))
-    facts: dict[str, float | str] = {
-        "reference": _told(reference) if isinstance(reference, Exception) else "answers"
-    }
+    said = _told(reference) if isinstance(reference, Exception) else "answers"
+    facts: dict[str, float | str] = {"reference": said}
     if measure is not None:
         known = None if isinstance(reference, Exception) else reference
         facts |= measure(Tried(value, scene, solutions, known))
@@ -131,7 +129,7 @@ def solved(name: str, scene: Scene) -> Solution | Answer:
 def _reference(scene: Scene) -> Solution | Exception:
     """The reference, or why there is none."""
     try:
-        return true_solution(scene)
+        return reference_solution(scene, exact_sides=True)
     except NoReferenceError as error:
         return error
     except (ValueError, ArithmeticError) as error:
@@ -140,17 +138,10 @@ def _reference(scene: Scene) -> Solution | Exception:
 
 
 def _judged(scene: Scene, answer: Solution, reference: Solution) -> Answer:
-    angles = reference.wheel
-    if len(angles) < len(answer.wheel):
-        # An angle that the reference leaves out is 0/0 there, or half a turn, where its sign has no meaning.
-        answer = replace(answer, wheel={name: answer.wheel[name] for name in angles})
-        if not angles:
-            scene = scene.model_copy(
-                update={"effects": tuple(e for e in scene.effects if e != "wheel_angles")}
-            )
+    asked, shared = what_both_give(scene, answer, reference)
     try:
         with np.errstate(all="ignore"):
-            return judged_answer(scene, answer, reference)
+            return judged_answer(asked, shared, reference)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
         return Answer(answer.formulation, "unjudged", f"cannot be compared: {_told(error)}")
 

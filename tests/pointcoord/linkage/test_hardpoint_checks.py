@@ -14,8 +14,10 @@ from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.method import NEWTON, SERIES, Method
 from pointcoord.numerics.linear import null_directions
 from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.paper.printed import PRINTED
 
 Points = dict[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
@@ -181,9 +183,9 @@ def test_car_a_thousand_kilometres_away_moves_as_at_home(
 
 
 @pytest.mark.parametrize("power", [-300, -40, -1, 1, 10, 300])
-@pytest.mark.parametrize("method", ["series", "newton", "printed"])
+@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=str)
 def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
-    table: Points, make_scene: Callable[..., Scene], power: int, method: str
+    table: Points, make_scene: Callable[..., Scene], power: int, method: Method
 ) -> None:
     rack = np.array([10.0, 30.0, 5.0])
     plain = simulate(make_scene(rack=rack, samples=5), method)

@@ -14,15 +14,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
-from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.cars.car import Car, any_rotation, as_tuple, mirrored, turned
 from validate.cars.closed_form import ClosedForm
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.paper_car import mirrored
-from validate.cars.random_struts import as_tuple
+from validate.cars.input_limits import Linkage
 from validate.cars.strategies import cars, make_scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR, any_rotation, turned
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR
 from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
@@ -74,7 +73,7 @@ def gain(name: str, scene: Scene) -> float:
 
 def true_places(scene: Scene) -> Places:
     try:
-        instant = true_instant(scene, inputs_at(scene, 0.0))
+        instant = reference_instant(scene, inputs_at(scene, 0.0))
     except NoReferenceError:
         assume(False)
         raise

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
-from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
+from validate.hard.cars import paper_car
+from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial, decades
 from validate.hard.judged import judged_answer
 from validate.hard.report import case_text, results_data, summary_text
 from validate.hard.run import as_expected, examine
-from validate.hard.trial import decades, paper_car, scene_case, try_scene
+from validate.hard.trial import scene_case, try_scene
 from validate.output.document import json_text
 
 OURS = ("pointcoord", "absolute")
@@ -32,7 +33,7 @@ def scene() -> Scene:
 
 @pytest.fixture(scope="module")
 def reference(scene: Scene) -> Solution:
-    return true_solution(scene)
+    return reference_solution(scene)
 
 
 @pytest.fixture(scope="module")
@@ -127,10 +128,10 @@ def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
 def test_the_reference_s_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
     """A chassis that heaves evenly: no point accelerates, and the reference says so up to its 60 digits."""
     even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
-    instants = [true_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
+    instants = [reference_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
     largest = max(abs(float(x)) for i in instants for a in i.acceleration.values() for x in a)
     assert 0.0 < largest < 1e-100
-    still = true_solution(even)
+    still = reference_solution(even)
     assert all((array == 0.0).all() for array in still.acceleration.values())
     assert (still.velocity["strut_top"] == [0.0, 0.0, 100.0]).all()
 

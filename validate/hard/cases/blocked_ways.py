@@ -14,8 +14,8 @@ from fractions import Fraction
 from pointcoord import Scene
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import RIGHT, Answer, Case, Trial
-from validate.hard.content import paper_car
 from validate.hard.last_values import home, last_value, reachable
 
 SHARE = 1e-9  # of the way: how exactly its end must be found

@@ -15,10 +15,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from pointcoord.suspensions.macpherson import KNUCKLE
-from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
-from validate.hard.case import FAILS, RIGHT, Case
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.trial import Facts, Tried, decades, scene_case
+from validate.cars.scene_content import SQUARE, scene_content
+from validate.hard.cars import OTHER_CAR, PAPER_CAR, paper_car
+from validate.hard.case import FAILS, RIGHT, Case, decades
+from validate.hard.trial import Facts, Tried, scene_case
 from validate.reference import solve_reference
 
 GROUP = "4. Body rates"
@@ -82,7 +82,7 @@ def _in_the_plane(value: float) -> dict[str, Any]:
 
 
 def _resting(value: float) -> dict[str, Any]:
-    return car_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
+    return scene_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
 
 
 def _one_rate(name: str) -> Any:

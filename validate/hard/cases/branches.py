@@ -18,15 +18,14 @@ import numpy as np
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.cars import car_content
-from validate.hard.case import REFUSED, RIGHT, Case, Expected
+from validate.cars.scene_content import SQUARE, Law, scene_content
+from validate.hard.cars import paper_car
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, decades
 from validate.hard.cases.counting import counting_cases, meeting
 from validate.hard.cases.near_points import assembled, drawn_angle
 from validate.hard.cases.oriented import followed
-from validate.hard.content import SQUARE, Law, decades, paper_car
 from validate.hard.last_values import car_called, last_value
-from validate.hard.sides import try_on_side
-from validate.hard.trial import Facts, Tried
+from validate.hard.trial import Facts, Tried, try_scene
 
 GROUP = "8. Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -45,7 +44,7 @@ def through_the_meeting(share: float, side: float, car: str = "paper") -> Mappin
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
     angle, rack = meeting(car)
     law = (angle + WIDE[car], -2.0 * WIDE[car])
-    return car_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
+    return scene_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
 
 
 def near_meeting(tried: Tried, car: str = "paper") -> Facts:
@@ -126,7 +125,7 @@ def _case(
         values=values,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour=behaviour,
-        examine=lambda value: try_on_side(value, scene(value), SOLVERS, measure),
+        examine=lambda value: try_scene(value, scene(value), SOLVERS, measure),
     )
 
 

@@ -15,11 +15,12 @@ from scipy.optimize import brentq, minimize_scalar
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.case import RIGHT, Case, Expected, Trial
+from validate.cars.scene_content import SQUARE
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, Case, Expected, Trial, decades
 from validate.hard.cases.oriented import followed
-from validate.hard.content import SQUARE, decades, paper_car
 from validate.hard.last_values import car_called, home, last_value
-from validate.hard.sides import try_on_side
+from validate.hard.trial import try_scene
 from validate.reference import Choices, count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -73,7 +74,7 @@ def beside_drawing(share: float) -> tuple[float, float]:
 def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial:
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share)
-    trial = try_on_side(share, paper_car(angle, rack), SOLVERS, followed)
+    trial = try_scene(share, paper_car(angle, rack), SOLVERS, followed)
     listed = count_assemblies(
         PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, closure="collinear", starts=STARTS
     )

@@ -19,12 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution
+from validate.cars.scene_content import SQUARE
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
+from validate.hard.cars import paper_car
 from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
 from validate.hard.cases.links import GROUP
-from validate.hard.content import SQUARE, paper_car
 from validate.hard.judged import judged_answer
 from validate.hard.trial import solved, try_scene
 
@@ -75,7 +76,7 @@ def displaced(trial: Trial, heave: dict[str, Any]) -> Trial:
         return trial
     scene, plain = Scene.from_mapping(content(heave)), Scene.from_mapping(content(None))
     law = rates(scene.inputs["heave"], scene.instants)
-    reference = added(true_solution(plain), law, scene.mechanism.up)
+    reference = added(reference_solution(plain), law, scene.mechanism.up)
     answers = []
     for answer in trial.answers:
         one = solved(answer.formulation, scene) if answer.outcome == "unjudged" else answer

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from validate.cars.scene_content import SQUARE
 from validate.formulations.input_rates import rates
-from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.trial import Facts, Measure, Tried, decades, scene_case
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
+from validate.hard.trial import Facts, Measure, Tried, scene_case
 
 GROUP = "7. Laws of the inputs"
 OURS: Mapping[str, Expected] = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}

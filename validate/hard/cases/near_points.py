@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.cars import PAPER_CAR
-from validate.hard.case import Case, Expected
-from validate.hard.content import decades, paper_car
-from validate.hard.sides import try_on_side
+from validate.hard.cars import PAPER_CAR, paper_car
+from validate.hard.case import Case, Expected, decades
+from validate.hard.trial import try_scene
 from validate.reference import solve_reference
 
 Array = NDArray[np.float64]
@@ -99,7 +98,7 @@ def _case(
         values=values,
         expected=dict.fromkeys(SOLVERS, SOLVED),
         behaviour=f"right within the bound, or refused with a reason; right from {RIGHT_FROM:g} up",
-        examine=lambda value: try_on_side(value, scene(value), SOLVERS),
+        examine=lambda value: try_scene(value, scene(value), SOLVERS),
     )
 
 

@@ -8,9 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cars.input_limits import STRUT, Linkage
+from validate.cars.input_limits import Linkage
+from validate.cars.macpherson import BESIDE, STRUT
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE, BESIDE_CAR, WIDE_CAR
+from validate.hard.cars import BESIDE_CAR, WIDE_CAR
 from validate.hard.case import Case
 from validate.hard.cases import beside
 from validate.hard.catalogue import CASES, FEW_VALUES

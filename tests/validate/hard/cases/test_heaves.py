@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.hard.case import Answer, Trial, unexpected
 from validate.hard.cases import heaves
@@ -34,7 +34,7 @@ def test_every_number_of_every_law_is_tried() -> None:
 def test_the_displaced_reference_is_the_reference_where_that_can_be_proven() -> None:
     law = heaves.law("polynomial", 0, 1e6)
     scene, plain = (Scene.from_mapping(heaves.content(heave)) for heave in (law, None))
-    reference, home = true_solution(scene), true_solution(plain)
+    reference, home = reference_solution(scene), reference_solution(plain)
     found = heaves.added(home, rates(scene.inputs["heave"], scene.instants), scene.mechanism.up)
     for quantity in ("position", "velocity", "acceleration"):
         for name, array in getattr(reference, quantity).items():

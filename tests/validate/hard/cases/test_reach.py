@@ -15,10 +15,10 @@ import pytest
 from pointcoord import AssemblyError, Scene, simulate
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import unexpected, wrong_without_warning
 from validate.hard.cases import blocked_ways
 from validate.hard.cases.reach import CASES, Drive, _refusal
-from validate.hard.content import paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import car_called, home, last_value, reachable
 

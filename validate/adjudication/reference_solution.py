@@ -1,15 +1,25 @@
-"""Proven instants as a solution in doubles, which is off by its rounding and claims no less."""
+"""The reference as a solution: at a scene's instants, in doubles, which are off by their rounding.
+
+A drawing need not be assembled, so `solve_reference` calls a side unclear that is less than 1e-9 of the
+lengths that it is made of. Cars may be drawn so near to where two assemblies meet on purpose, and then their
+coordinates are exact: the sign of an exact product of them is the side that was drawn, however small the
+product is. Whoever knows that asks for `exact_sides`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import Scene
+from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Solution
-from validate.reference.instant import Instant
+from validate.reference import Instant, solve_reference
+from validate.reference.candidates import CLEAR_SIGN
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
@@ -18,6 +28,48 @@ UNIT_ROUNDOFF = float(np.finfo(float).eps) / 2
 # The reference is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest"
 # means.
 DUST = 1e-50
+DIGITS = 60
+Inputs = Mapping[str, Sequence[float]]
+
+
+def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
+    """Every input's value, rate and acceleration at an instant."""
+    return {name: tuple(rates(part, np.array([time]))[0].tolist()) for name, part in scene.inputs.items()}
+
+
+def reference_instant(
+    scene: Scene, inputs: Inputs, exact_sides: bool = False, digits: int = DIGITS
+) -> Instant:
+    """The reference for a scene's car at given inputs.
+
+    Args:
+        inputs: value, rate and acceleration of each.
+        exact_sides: whether every side that is drawn is meant, however small the product that tells it.
+    Raises:
+        NoReferenceError: there is no pose, or none can be proven.
+    """
+    part = scene.mechanism
+    return solve_reference(
+        dict(part.points),
+        inputs,
+        up=part.up,
+        right=part.right,
+        side=part.side,
+        digits=digits,
+        closure=part.closure,
+        suspension=part.type,
+        clearness=0.0 if exact_sides else CLEAR_SIGN,
+    )
+
+
+def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
+    """The reference at a scene's instants, rounded, in the form that `compare_solutions` takes.
+
+    Raises:
+        NoReferenceError: an instant has no pose, or none can be proven.
+    """
+    instants = [reference_instant(scene, inputs_at(scene, t), exact_sides) for t in scene.instants.tolist()]
+    return as_solution(scene.instants, instants)
 
 
 def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
@@ -71,3 +123,14 @@ def _largest(vectors: Arrays) -> float:
 
 def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
     return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
+
+
+def what_both_give(scene: Scene, answer: Solution, reference: Solution) -> tuple[Scene, Solution]:
+    """The scene and the answer without the angles that the reference leaves out.
+
+    Such an angle is 0/0 there, or half a turn, where its sign has no meaning.
+    """
+    if not reference.wheel:
+        effects = tuple(effect for effect in scene.effects if effect != "wheel_angles")
+        scene = scene.model_copy(update={"effects": effects})
+    return scene, replace(answer, wheel={n: a for n, a in answer.wheel.items() if n in reference.wheel})

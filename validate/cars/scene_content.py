@@ -1,66 +1,64 @@
-"""Scenes of hard cases as plain data, written briefly: the paper's car unless said otherwise."""
+"""Scenes of cars as plain data, written briefly: every scene that is made here is made by this function."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from validate.cars.closed_form import Closure
-from validate.cars.paper_car import EFFECTS, PAPER
+from pointcoord import Scene
+from validate.cars.car import Car
+from validate.cars.paper_car import EFFECTS
 
-Triple = tuple[float, float, float]
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
 Law = float | Sequence[float] | Mapping[str, Any]
 
 SQUARE = 1.5707963267948966  # rad: the arm angle at which rise and angle are most nearly proportional
 
 
-def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
-    """One value per decade, going in: from 10^high down to 10^low."""
-    return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
-
-
-def paper_car(
+def scene_content(
+    car: Car,
     arm_angle: Law = SQUARE,
     rack: Law = 0.0,
     heave: Law | None = None,
     *,
-    points: Mapping[str, Sequence[float]] = PAPER,
-    closure: Closure = "collinear",
-    side: str = "left",
-    up: Sequence[float] = (0.0, 0.0, 1.0),
-    right: Sequence[float] = (0.0, 1.0, 0.0),
     start: float = 0.0,
     stop: float | None = None,
     samples: int | None = None,
     tolerance: float = 1e-9,
     effects: Sequence[str] = EFFECTS,
+    title: str = "",
 ) -> dict[str, Any]:
     """The content of a scene.
 
     Args:
         arm_angle, rack, heave: laws of the inputs, rad and mm over s.
-        points: hardpoints, mm; the paper's if not given.
-        closure: what the strut is; the paper's is collinear.
-        stop: s; the start if not given, which is a single instant.
+        start, stop: s; without a stop there is a single instant.
         samples: instants; three of a motion if not given.
+        tolerance: mm.
     """
     laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
     stop = start if stop is None else stop
     return {
+        **({"title": title} if title else {}),
         "effects": list(effects),
         "tolerance": tolerance,
         "mechanism": {
-            "type": "macpherson",
-            "closure": closure,
-            "side": side,
-            "up": [float(x) for x in up],
-            "right": [float(x) for x in right],
-            "points": {name: [float(x) for x in place] for name, place in points.items()},
+            "type": car.suspension,
+            "closure": car.closure,
+            "side": car.side,
+            "up": [float(x) for x in car.up],
+            "right": [float(x) for x in car.right],
+            "points": {name: [float(x) for x in place] for name, place in car.points.items()},
         },
         "inputs": {name: _input(law) for name, law in laws.items()},
         "time": {"start": start, "stop": stop, "samples": samples or (1 if stop == start else 3)},
     }
+
+
+def car_of(scene: Scene) -> Car:
+    """The car of a scene."""
+    part = scene.mechanism
+    return Car(part.points, part.side, part.up, part.right, part.closure, part.type)
 
 
 def _input(law: Law) -> dict[str, Any]:

@@ -1,0 +1,218 @@
+"""Every number of a motion lies within its proven bound of the suspension's closed form, rates too.
+
+The closed forms are written apart from the package and evaluated in 60 digits; their rates are differences of
+them over 1e-15 s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import off_axis_cars
+import pytest
+import wishbone_by_points
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from mpmath import mpf
+from numpy.typing import NDArray
+from off_axis_cars import cross, dot, minus, number, numbers
+
+from pointcoord import AssemblyError, Scene, simulate
+
+Array = NDArray[np.float64]
+Points = dict[str, Any]
+Law = tuple[float, float, float]
+DIGITS, STEP = 60, mpf(10) ** -15
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """A suspension: random cars of it, and where a car's points are by its closed form."""
+
+    type: str
+    cars: st.SearchStrategy[Any]
+    pose: Callable[..., Any]
+    make: Callable[..., Any]
+    steering_axis: tuple[str, str]
+    knuckle: tuple[str, str, str]
+
+
+FORMS = [
+    ClosedForm(
+        "macpherson",
+        off_axis_cars.off_axis_cars(),
+        off_axis_cars.drawn_pose,
+        off_axis_cars.OffAxisCar,
+        ("lower_ball_joint", "strut_top"),
+        ("lower_ball_joint", "tie_rod_outer", "strut_lower"),
+    ),
+    ClosedForm(
+        "double_wishbone",
+        wishbone_by_points.wishbone_cars(),
+        wishbone_by_points.drawn_pose,
+        wishbone_by_points.WishboneCar,
+        ("lower_ball_joint", "upper_ball_joint"),
+        wishbone_by_points.KNUCKLE,
+    ),
+]
+# Numbers of few bits, so that the laws' values and rates at the instants are doubles.
+coefficients = st.integers(-32, 32).map(lambda n: n / 64)
+laws = st.tuples(coefficients, coefficients)
+
+
+def rounded(car: Any, form: ClosedForm) -> Any:
+    """The car as a scene gives it: every coordinate a double."""
+
+    def double(vector: Any) -> tuple[Fraction, ...]:
+        return tuple(Fraction(float(c)) for c in vector)
+
+    points = {name: double(place) for name, place in car.points.items()}
+    return form.make(points, double(car.up), double(car.right))
+
+
+def scene_of(form: ClosedForm, car: Any, inputs: dict[str, Law], samples: int) -> Scene:
+    def doubles(vector: Any) -> tuple[float, ...]:
+        return tuple(float(c) for c in vector)
+
+    p = {name: np.array(doubles(place)) for name, place in car.points.items()}
+    right = np.array(doubles(car.right))
+    outboard = (p["wheel_centre"] - p["lower_arm_front"]) @ right
+    return Scene.from_mapping(
+        {
+            "effects": ("velocity", "acceleration", "knuckle_rates", "wheel_angles"),
+            "mechanism": {
+                "type": form.type,
+                "side": "right" if outboard > 0.0 else "left",
+                "points": {name: doubles(place) for name, place in car.points.items()},
+                "up": doubles(car.up),
+                "right": doubles(car.right),
+            },
+            "inputs": {name: {"polynomial": law} for name, law in inputs.items()},
+            "time": {"start": 0.0, "stop": 0.5 if samples > 1 else 0.0, "samples": samples},
+        }
+    )
+
+
+def exact(form: ClosedForm, car: Any, inputs: dict[str, Law], instant: float) -> dict[str, dict[str, Any]]:
+    """Every quantity by name, each a list of numbers of many digits."""
+
+    def at(t: mpf) -> Points:
+        theta, travel, heave = (
+            sum((mpf(c) * t**k for k, c in enumerate(inputs[name])), mpf(0))
+            for name in ("arm_angle", "rack", "heave")
+        )
+        pose = form.pose(car, theta, travel, heave)
+        assert pose is not None
+        return dict(pose.points)
+
+    before, here, after = (at(mpf(instant) + k * STEP) for k in (-1, 0, 1))
+    speed = {n: [(b - a) / (2 * STEP) for a, b in zip(before[n], after[n], strict=True)] for n in here}
+    change = {
+        n: [(a - 2 * p + b) / STEP**2 for a, p, b in zip(before[n], here[n], after[n], strict=True)]
+        for n in here
+    }
+    spin, turn = body_rates(form, here, speed, change)
+    up = numbers(car.up)
+    side = 1 if dot(minus(here["wheel_centre"], here["lower_arm_front"]), numbers(car.right)) > 0 else -1
+    outboard = tuple(side * c for c in numbers(car.right))
+    spindle = minus(here["wheel_centre"], here["wheel_axis_inner"])
+    lower, upper = (here[name] for name in form.steering_axis)
+    axis = minus(upper, lower)
+    return {
+        "position": {n: list(p) for n, p in here.items()},
+        "velocity": speed,
+        "acceleration": change,
+        "angular_velocity": {"knuckle": spin},
+        "angular_acceleration": {"knuckle": turn},
+        "wheel": {
+            "camber": [mpmath.atan2(-dot(spindle, up), dot(spindle, outboard))],
+            "kingpin": [mpmath.atan2(-dot(axis, outboard), dot(axis, up))],
+        },
+    }
+
+
+def body_rates(form: ClosedForm, place: Points, speed: Points, change: Points) -> tuple[Any, Any]:
+    """omega and alpha from the rates of two edges and of their normal: E' = omega x E, and once more."""
+
+    def edges(states: Points) -> tuple[Any, Any]:
+        base, first, second = (tuple(states[name]) for name in form.knuckle)
+        return minus(first, base), minus(second, base)
+
+    def turning(e: tuple[Any, Any], rate: tuple[Any, Any]) -> Any:
+        """w with w x e_i = rate_i: its components along e1 x e2, e1 and e2, as in a dual frame."""
+        normal = cross(*e)
+        # (w x e1) . e2 = w . (e1 x e2), (w x e1) . n and (w x e2) . n give w . e2 and w . e1.
+        square = dot(normal, normal)
+        parts = (
+            dot(rate[0], e[1]) / square,
+            -dot(rate[0], normal) / square,
+            dot(rate[1], normal) / square,
+        )
+        return tuple(
+            parts[0] * n + parts[1] * second + parts[2] * first
+            for n, first, second in zip(normal, e[0], e[1], strict=True)
+        )
+
+    e, rate, second = edges(place), edges(speed), edges(change)
+    omega = turning(e, rate)
+    pull = tuple(minus(a, cross(omega, cross(omega, edge))) for a, edge in zip(second, e, strict=True))
+    return omega, turning(e, pull)
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
+@settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8))
+@given(data=st.data(), arm=laws, rack=laws, heave=laws, away=coefficients)
+def test_every_number_is_within_its_proven_bound_of_the_closed_form(
+    form: ClosedForm,
+    method: Any,
+    data: st.DataObject,
+    arm: tuple[float, float],
+    rack: tuple[float, float],
+    heave: tuple[float, float],
+    away: float,
+) -> None:
+    with mpmath.workdps(DIGITS):
+        car = rounded(data.draw(form.cars), form)
+        theta, travel = car.drawn
+        first = round(float(theta) * 64) / 64 + 0.5 * away
+        inputs = {
+            "arm_angle": (first, *(0.5 * c for c in arm)),
+            "rack": (round(float(travel)) + 20.0 * away, *(64.0 * c for c in rack)),
+            "heave": (0.0, *(64.0 * c for c in heave)),
+        }
+        try:
+            motion = simulate(scene_of(form, car, inputs, 3), method)
+        except AssemblyError:
+            assume(False)
+        proven = motion.proof(rates=True).proven
+        for place, instant in enumerate(motion.times.tolist()):
+            for quantity, parts in exact(form, car, inputs, instant).items():
+                channel = getattr(motion, quantity)
+                assert set(channel) == set(parts)
+                for name, values in parts.items():
+                    reported = np.atleast_1d(channel[name][place])
+                    bounds = np.atleast_1d(getattr(proven, quantity)[name][place])
+                    for value, found, bound in zip(values, reported, bounds, strict=True):
+                        # The bound takes each law's value rounded once; these laws round nothing. What the
+                        # differences leave out is STEP^2 of a rate's own size, far below a double's digits.
+                        assert abs(value - number(float(found))) <= mpf(float(bound)) + 1e-25
+
+
+def test_the_closed_form_of_the_wishbone_is_at_home_in_its_drawing() -> None:
+    with mpmath.workdps(DIGITS):
+        points = {name: tuple(Fraction(c) for c in place) for name, place in wishbone_by_points.BASE.items()}
+        car = wishbone_by_points.WishboneCar(points, (0, 0, 1), (0, 1, 0))
+        found = list(wishbone_by_points.poses(car, *car.drawn))
+        assert len({pose.sides for pose in found}) == len(found) > 1
+
+        def moved(pose: wishbone_by_points.WishbonePose) -> mpf:
+            return max(abs(c) for n, p in pose.points.items() for c in minus(p, numbers(points[n])))
+
+        assert [moved(pose) < mpf(10) ** -50 for pose in found].count(True) == 1
+        assert min(found, key=moved).sides == wishbone_by_points.drawn_sides(car)
