@@ -69,23 +69,23 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
     instants = [reference_instant(scene, inputs_at(scene, t), exact_sides) for t in scene.instants.tolist()]
-    return as_solution(scene.instants, instants)
+    return as_solution(scene, instants)
 
 
-def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
-    """The reference at instants, rounded to doubles.
+def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
+    """The reference at the instants of a scene, rounded to doubles.
 
     Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
-    first = instants[0]
-    angles = [n for n in ("camber", "kingpin") if all(n in i.effects for i in instants)]
+    times, bodies, first = scene.instants, scene.mechanism.topology.bodies, instants[0]
+    angles = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
-        "angular_velocity": _rounded([i.angular_velocity for i in instants], ("knuckle",)),
-        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], ("knuckle",)),
+        "angular_velocity": _rounded([i.angular_velocity for i in instants], bodies),
+        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], bodies),
         "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}

@@ -69,7 +69,7 @@ def held_scene(car: RandomScene, name: str) -> list[Held]:
         instants = [reference_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
     except (FormulationError, SceneError, NoReferenceError):
         return []
-    reference = as_solution(scene.instants, instants)
+    reference = as_solution(scene, instants)
     return [_held(car, quantity, solution, reference, instants) for quantity in asked_numbers(scene)]
 
 
