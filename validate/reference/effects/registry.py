@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from validate.reference.effects.camber import CAMBER
-from validate.reference.effects.caster import CASTER
 from validate.reference.effects.effect import Effect
 from validate.reference.effects.kingpin import KINGPIN
 from validate.reference.effects.toe import TOE
@@ -14,6 +13,5 @@ EFFECTS: dict[str, Effect] = {
         CAMBER,
         KINGPIN,
         TOE,
-        CASTER,
     )
 }
