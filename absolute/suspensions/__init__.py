@@ -16,7 +16,7 @@ SUSPENSIONS: Mapping[str, Suspension] = ReadOnly(
 )
 
 
-def suspension(name: str) -> Suspension:
+def suspension_of(name: str) -> Suspension:
     """The type of a name.
 
     Raises:

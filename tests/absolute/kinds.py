@@ -29,6 +29,7 @@ class Kind:
     Attributes:
         build: its model from points and directions.
         car: a car of whole numbers, far from its limits. angle: its arm angle at time 0, rad.
+        span: arm angles, degrees, and racks, mm, that this car reaches in any combination.
         random_car: a left car of a seed, and whether its drawing closes; its rack_centre is drawn.
         exact: its closed form for value, rate and acceleration of arm angle and rack; None beyond a limit.
         links: of each margin of the closed form, what a refusal calls it.
@@ -40,6 +41,7 @@ class Kind:
     build: Callable[..., absolute.Model]
     car: Car
     angle: float
+    span: tuple[tuple[float, float], tuple[float, float]]
     random_car: Callable[[int, bool], Car]
     exact: Callable[[Car, Sequence[float], Sequence[float]], Moving | None]
     links: tuple[tuple[str, ...], ...]
@@ -75,6 +77,7 @@ def _strut(closure: str, random_car: Callable[[int, bool], Car], upper: str) -> 
         partial(absolute.SUSPENSIONS["macpherson"], closure=closure),
         {name: np.array(point) for name, point in struts.TABLE.items()},
         0.8,
+        ((45.0, 145.0), (-60.0, 90.0)),
         lambda seed, closing: with_rack(random_car(seed, closing)),
         lambda points, angle, rack: strut_motion(points, angle, rack, closure),
         (LOWER_ARM, ("strut axis",), TIE_ROD),
@@ -91,6 +94,7 @@ KINDS = {
         absolute.SUSPENSIONS["double_wishbone"],
         {name: np.array(point) for name, point in wishbones.LOTUS.items()},
         0.9,
+        ((52.0, 112.0), (-40.0, 40.0)),
         wishbones.random_wishbone,
         wishbone_motion,
         (LOWER_ARM, UPPER_ARM, TIE_ROD),

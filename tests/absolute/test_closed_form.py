@@ -118,5 +118,5 @@ def test_a_rack_line_that_is_not_drawn_passes_through_the_drawn_end(kind: Kind) 
 
 def test_an_unknown_suspension_is_refused_with_those_there_are() -> None:
     with pytest.raises(absolute.DescriptionError, match=r"'multi_link'.*'macpherson', 'double_wishbone'"):
-        absolute.suspension("multi_link")
-    assert absolute.suspension("macpherson") is absolute.macpherson
+        absolute.suspension_of("multi_link")
+    assert absolute.suspension_of("macpherson") is absolute.macpherson

@@ -22,22 +22,12 @@ LOTUS = {
 }
 
 TYRE_RADIUS = 270.0
-# Bump (mm, the travel of the contact point), camber and kingpin (degrees) of the same report.
-LOTUS_BUMP = np.array(
-    [
-        (-37.5, 1.4532, 5.566),
-        (-30.0, 1.1943, 5.8165),
-        (-22.5, 0.9196, 6.0847),
-        (-15.0, 0.6291, 6.3706),
-        (-7.5, 0.3226, 6.6745),
-        (0.0, 0.0, 6.9968),
-        (7.5, -0.3389, 7.3376),
-        (15.0, -0.6942, 7.6975),
-        (22.5, -1.0663, 8.0767),
-        (30.0, -1.4554, 8.4758),
-        (37.5, -1.8618, 8.8952),
-    ]
-)
+# Travel of the contact point, mm, and angles there, degrees, of the same report.
+LOTUS_BUMP = (-37.5, -30.0, -22.5, -15.0, -7.5, 0.0, 7.5, 15.0, 22.5, 30.0, 37.5)
+LOTUS_ANGLES = {
+    "camber": (1.4532, 1.1943, 0.9196, 0.6291, 0.3226, 0.0, -0.3389, -0.6942, -1.0663, -1.4554, -1.8618),
+    "kingpin": (5.566, 5.8165, 6.0847, 6.3706, 6.6745, 6.9968, 7.3376, 7.6975, 8.0767, 8.4758, 8.8952),
+}
 
 
 def random_wishbone(seed: int, closing: bool = True) -> dict[str, Array]:

@@ -51,7 +51,7 @@ class AbsoluteCoordinates:
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = _suspension(part)(
+            model = absolute.suspension_of(part.type)(
                 near, up=part.up, right=part.right, side=part.side, closure=part.closure
             )
             _require_the_drawn_car(scene, model)
@@ -82,20 +82,6 @@ class AbsoluteCoordinates:
             return Solution(self.name, scene.instants, numbers, Accuracy(condition, accuracy))
         except AccuracyError as error:
             raise FormulationError(self.name, error) from error
-
-
-def _suspension(part: MechanismPart) -> absolute.Suspension:
-    """The model's own type of suspension.
-
-    Raises:
-        DescriptionError: the model does not know it.
-    """
-    if part.type not in absolute.SUSPENSIONS:
-        known = ", ".join(absolute.SUSPENSIONS)
-        raise absolute.DescriptionError(
-            f"there is no suspension {part.type!r}; there are: {known}", "type", part.type
-        )
-    return absolute.SUSPENSIONS[part.type]
 
 
 def _chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:

@@ -105,11 +105,14 @@ def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
 
 
 def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
-    def wrong(build: absolute.Suspension) -> Callable[..., absolute.Model]:
+    suspension_of = absolute.suspension_of
+
+    def wrong(kind: str) -> Callable[..., absolute.Model]:
+        build = suspension_of(kind)
         return lambda points, **options: build(change(dict(points)), **(options | axes))
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(absolute, "SUSPENSIONS", {n: wrong(s) for n, s in absolute.SUSPENSIONS.items()})
+        patch.setattr(absolute, "suspension_of", wrong)
 
     return plant
 
