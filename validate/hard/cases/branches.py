@@ -151,7 +151,7 @@ def _range_cases(suffix: str, car: str) -> tuple[Case, ...]:
                 "distance of the first instant from the end, in parts of half the range",
                 partial(far_start, driven=driven, ahead=ahead, car=car),
                 CLEAR,
-                FEW,
+                FEW[::3] if suffix else FEW,
             )
             for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
         ),
@@ -162,7 +162,7 @@ def _range_cases(suffix: str, car: str) -> tuple[Case, ...]:
                 "distance of both instants from their ends, in parts of half the range",
                 partial(whole_range, driven=driven, car=car),
                 CLEAR,
-                FEW[1:],
+                FEW[2:] if suffix else FEW[1:],
             )
             for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
         ),
