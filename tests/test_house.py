@@ -24,6 +24,7 @@ ROOMS = {
         "solve",
         "effects",
         "method",
+        "method",
         "results",
         "scene",
         "simulation",
