@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.car import Points
 from validate.cars.paper_car import PAPER
 
-EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
+EVERYTHING = tuple(EFFECTS)
 
 
 @pytest.fixture(scope="session")
