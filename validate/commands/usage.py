@@ -85,7 +85,7 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
 
 
 def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()) -> None:
-    """Find a target that is no name, or that is one of the scenes, or where the text goes already.
+    """Refuse a target that is no name, that is one of the scenes, or that is standard output by another name.
 
     Raises:
         UsageError: it is.

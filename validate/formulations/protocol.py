@@ -38,9 +38,9 @@ class AccuracyError(ValueError):
 class Accuracy:
     """What a formulation says of its own accuracy: how far each of its numbers may be off, at most.
 
-    A comparison holds two formulations to the sum of what they claim (see `tolerance`), so a claim must hold
-    for whatever the formulation rounds and leaves out, and a formulation that claims too much is found out
-    by the other: what its method should reach counts, not how far off its numbers happen to be.
+    A comparison holds the difference of two formulations to the sum of what they claim (see `tolerance`). So
+    a claim must cover all that the formulation rounds and leaves out. It must also be no wider than what the
+    method should reach: a claim that followed the number's own error would let any fault pass.
 
     Attributes:
         condition: condition number of the matrix that gives the rates, shape (N,).
