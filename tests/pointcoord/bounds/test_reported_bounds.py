@@ -13,7 +13,7 @@ from pointcoord.results.motion import Channel, Motion
 
 Array = NDArray[np.float64]
 QUANTITIES = tuple(field.name for field in fields(Bounds))
-SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut")
+SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut", "double-wishbone")
 
 
 def short(name: str, **changes: object) -> Scene:

@@ -6,16 +6,14 @@ them over 1e-15 s.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 import numpy as np
-import off_axis_cars
 import pytest
 import wishbone_cars
+from closed_forms import FORMS, ClosedForm, rounded
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
@@ -30,49 +28,9 @@ Law = tuple[float, float, float]
 DIGITS, STEP = 60, mpf(10) ** -15
 
 
-@dataclass(frozen=True)
-class ClosedForm:
-    """A suspension: random cars of it, and where a car's points are by its closed form."""
-
-    type: str
-    cars: st.SearchStrategy[Any]
-    pose: Callable[..., Any]
-    make: Callable[..., Any]
-    steering_axis: tuple[str, str]
-    knuckle: tuple[str, str, str]
-
-
-FORMS = [
-    ClosedForm(
-        "macpherson",
-        off_axis_cars.off_axis_cars(),
-        off_axis_cars.drawn_pose,
-        off_axis_cars.OffAxisCar,
-        ("lower_ball_joint", "strut_top"),
-        ("lower_ball_joint", "tie_rod_outer", "strut_lower"),
-    ),
-    ClosedForm(
-        "double_wishbone",
-        wishbone_cars.wishbone_cars(),
-        wishbone_cars.drawn_pose,
-        wishbone_cars.WishboneCar,
-        ("lower_ball_joint", "upper_ball_joint"),
-        wishbone_cars.KNUCKLE,
-    ),
-]
 # Numbers of few bits, so that the laws' values and rates at the instants are doubles.
 coefficients = st.integers(-32, 32).map(lambda n: n / 64)
 laws = st.tuples(coefficients, coefficients)
-
-
-def rounded(car: Any, form: ClosedForm) -> Any:
-    """The car as a scene gives it: every coordinate a double."""
-
-    def double(vector: Any) -> tuple[Fraction, ...]:
-        return tuple(Fraction(float(c)) for c in vector)
-
-    points = {name: double(place) for name, place in car.points.items()}
-    return form.make(points, double(car.up), double(car.right))
 
 
 def scene_of(form: ClosedForm, car: Any, inputs: dict[str, Law], samples: int) -> Scene:
