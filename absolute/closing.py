@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from absolute.assembly import Mechanism
 from absolute.description import Model
 from absolute.mapping import ReadOnly
+from absolute.mechanism import Mechanism
 from absolute.solution import Array
 from absolute.solve import solve
 

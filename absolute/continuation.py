@@ -3,8 +3,9 @@
 import math
 from collections.abc import Callable
 
-from absolute.assembly import Mechanism
-from absolute.newton import EPS, Pose, accelerations, correct
+from absolute.mechanism import Mechanism
+from absolute.newton import Pose, accelerations, correct
+from absolute.precision import EPS
 from absolute.solution import Array
 from absolute.vectors import cross
 

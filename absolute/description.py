@@ -8,6 +8,7 @@ import numpy as np
 from absolute.errors import DescriptionError
 from absolute.laws import LAWS
 from absolute.mapping import ReadOnly
+from absolute.solution import Array
 
 Vector = tuple[float, float, float]
 
@@ -75,7 +76,7 @@ class Carried:
 
 
 @dataclass(frozen=True)
-class Side:
+class BranchSign:
     """A product of vectors whose sign tells the assemblies of a linkage apart.
 
     Two vectors give a . b, three give (a x b) . c. Choose it so that it is zero where two assemblies
@@ -92,6 +93,53 @@ class Side:
 
 
 @dataclass(frozen=True)
+class Corner:
+    """What of a linkage is the wheel, the knuckle and the steering axis, and which way the car points.
+
+    Attributes:
+        knuckle: the body that carries the wheel.
+        wheel_axis: the wheel's spin axis, from its inner point to the wheel centre.
+        steering_axis: the axis about which the wheel is steered, from its lower to its upper point.
+        up, right, outboard: directions of the car in the frame of the points, given at any length and kept
+            as unit vectors; outboard leads from the car's middle to the wheel: right or minus right.
+    Raises:
+        DescriptionError: a direction is no three finite numbers, or zero.
+    """
+
+    knuckle: str
+    wheel_axis: tuple[str, str]
+    steering_axis: tuple[str, str]
+    up: Vector
+    right: Vector
+    outboard: Vector
+
+    def __post_init__(self) -> None:
+        for name in ("up", "right", "outboard"):
+            direction = unit_of(name, vector_of(name, name, getattr(self, name)))
+            object.__setattr__(self, name, plain(direction))
+
+    @property
+    def down(self) -> Vector:
+        """Minus up."""
+        return plain(-np.array(self.up))
+
+    @property
+    def inboard(self) -> Vector:
+        """Minus outboard."""
+        return plain(-np.array(self.outboard))
+
+    @property
+    def forward(self) -> Vector:
+        """up x right: -x where x is rearward, y right and z up."""
+        return plain(np.cross(self.up, self.right))
+
+    @property
+    def rearward(self) -> Vector:
+        """Minus forward."""
+        return plain(np.cross(self.right, self.up))
+
+
+@dataclass(frozen=True)
 class Model:
     """A linkage, checked on construction.
 
@@ -101,7 +149,8 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        sides: name -> Side, whose signs in the drawing every pose must keep; none by default.
+        branch_signs: name -> BranchSign, whose sign in the drawing every pose must keep; none by default.
+        corner: what of it is the wheel, where effects are asked for; none by default.
     Raises:
         DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
             LARGEST_COORDINATE, an axis has no length, or joints and inputs do not give six rows per
@@ -113,7 +162,8 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    sides: Mapping[str, Side] = field(default_factory=dict)
+    branch_signs: Mapping[str, BranchSign] = field(default_factory=dict)
+    corner: Corner | None = None
 
     def __post_init__(self) -> None:
         points = {name: point_of(name, value) for name, value in self.points.items()}
@@ -121,7 +171,7 @@ class Model:
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
         object.__setattr__(self, "inputs", ReadOnly(self.inputs))
-        object.__setattr__(self, "sides", ReadOnly(self.sides))
+        object.__setattr__(self, "branch_signs", ReadOnly(self.branch_signs))
         _check_bodies(self)
         for name, joint in self.joints.items():
             _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
@@ -139,14 +189,30 @@ class Model:
                     name,
                     drive.factor,
                 )
-        for name, side in self.sides.items():
-            _check_side(self, name, side)
+        for name, sign in self.branch_signs.items():
+            _check_branch_sign(self, name, sign)
+        if self.corner is not None:
+            _check_corner(self, self.corner)
         self._check_count()
 
     @property
     def moving(self) -> tuple[str, ...]:
         """Names of the bodies that move, in the order given."""
         return tuple(name for name in self.bodies if name != self.chassis)
+
+    def require_corner(self) -> Corner:
+        """The corner, for those who need one.
+
+        Raises:
+            DescriptionError: the model has none.
+        """
+        if self.corner is None:
+            raise DescriptionError(
+                "the linkage does not say which of its parts is the wheel, so it has no effects: give a "
+                "`corner`, or ask for no effects",
+                "corner",
+            )
+        return self.corner
 
     def _check_count(self) -> None:
         rows = sum(JOINT_ROWS[joint.kind] for joint in self.joints.values()) + len(self.inputs)
@@ -170,6 +236,22 @@ def vector_of(what: str, name: str, value: object) -> Vector:
     if array.shape != (3,) or not np.isfinite(array).all():
         raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
     return (float(array[0]), float(array[1]), float(array[2]))
+
+
+def unit_of(name: str, vector: Vector) -> Array:
+    """The direction of a vector, or a DescriptionError where it is zero."""
+    array = np.array(vector)
+    largest = float(np.abs(array).max())
+    if largest == 0:
+        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
+    # Scaled before the norm: squares of the smallest and largest numbers are lost.
+    array = array / largest
+    return np.asarray(array / np.linalg.norm(array))
+
+
+def plain(vector: Array) -> Vector:
+    """Three numbers."""
+    return (float(vector[0]), float(vector[1]), float(vector[2]))
 
 
 def point_of(name: str, value: object) -> Vector:
@@ -230,22 +312,31 @@ def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs
         _check_direction(what, name, axis.toward)
 
 
-def _check_side(model: Model, name: str, side: Side) -> None:
-    if len(side.vectors) not in (2, 3):
+def _check_branch_sign(model: Model, name: str, sign: BranchSign) -> None:
+    if len(sign.vectors) not in (2, 3):
         raise DescriptionError(
-            f"side {name!r} has {len(side.vectors)} vectors; a product of two or three is needed", name, side
+            f"branch sign {name!r} has {len(sign.vectors)} vectors; a product of two or three is needed",
+            name,
+            sign,
         )
-    for vector in side.vectors:
+    for vector in sign.vectors:
         if isinstance(vector, Carried):
-            _check_choice(f"a body of side {name!r}", name, vector.body, model.bodies)
+            _check_choice(f"a body of branch sign {name!r}", name, vector.body, model.bodies)
             ends: tuple[object, ...] = (vector.start, vector.end)
         elif len(vector) == 2 and all(isinstance(end, str) for end in vector):
             ends = vector
         else:
-            _check_direction(f"side {name!r}", name, vector)
+            _check_direction(f"branch sign {name!r}", name, vector)
             continue
         for end in ends:
-            _check_choice(f"a point of side {name!r}", name, str(end), model.points)
+            _check_choice(f"a point of branch sign {name!r}", name, str(end), model.points)
+
+
+def _check_corner(model: Model, corner: Corner) -> None:
+    _check_choice("the knuckle", "knuckle", corner.knuckle, model.bodies)
+    for what, ends in (("wheel_axis", corner.wheel_axis), ("steering_axis", corner.steering_axis)):
+        for end in ends:
+            _check_choice(f"an end of the {what}", what, end, model.points)
 
 
 def _check_direction(what: str, name: str, value: object) -> None:

@@ -7,11 +7,12 @@ import numpy as np
 
 from absolute.description import Axis, Model
 from absolute.errors import DescriptionError
+from absolute.precision import EPS
 from absolute.solution import Array
 
 # Two points nearer than this to each other share half of their digits: rounding of the coordinates
 # given turns the line between them by as much as half of its digits.
-SHORTEST_AXIS = float(np.sqrt(np.finfo(float).eps))
+SHORTEST_AXIS = math.sqrt(EPS)
 
 # Products of three lengths and of their squares stay normal numbers from here to LARGEST_COORDINATE.
 SMALLEST_SIZE = 1e-100

@@ -92,7 +92,7 @@ class BranchError(PoseError):
     """The branch of the drawing is not found, or the drawing has none.
 
     Attributes:
-        side: the product whose sign is not that of the drawing; `limits` are its links.
+        branch_sign: name of the product whose sign is not that of the drawing; `limits` are its links.
         drawn, found: its value in the drawing and where it was found otherwise, divided by the
             lengths of its factors: between -1 and 1.
     """
@@ -102,13 +102,13 @@ class BranchError(PoseError):
         message: str,
         instant: int | None = None,
         inputs: Mapping[str, float] | None = None,
-        side: str = "",
+        branch_sign: str = "",
         drawn: float = float("nan"),
         found: float = float("nan"),
         limits: tuple[str, ...] = (),
     ) -> None:
         super().__init__(message, instant, inputs, limits=limits)
-        self.side = side
+        self.branch_sign = branch_sign
         self.drawn = drawn
         self.found = found
 

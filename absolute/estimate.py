@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.assembly import Mechanism
-from absolute.newton import EPS
+from absolute.mechanism import Mechanism
+from absolute.precision import EPS
 from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.solution import Array

@@ -12,13 +12,11 @@ class Law(NamedTuple):
         expand: value -> (f, df/dvalue, d2f/dvalue2).
         third: value -> d3f/dvalue3.
         invert: coordinate / factor -> value, for the drawing's own input.
-        factor_is_length: whether the factor of an input with this law is in mm.
     """
 
     expand: Callable[[float], tuple[float, float, float]]
     third: Callable[[float], float]
     invert: Callable[[float], float]
-    factor_is_length: bool
 
 
 def _cosine(angle: float) -> tuple[float, float, float]:
@@ -28,7 +26,7 @@ def _cosine(angle: float) -> tuple[float, float, float]:
 
 LAWS = {
     # coordinate = factor * value, value in mm
-    "linear": Law(lambda value: (value, 1.0, 0.0), lambda value: 0.0, lambda ratio: ratio, False),
+    "linear": Law(lambda value: (value, 1.0, 0.0), lambda value: 0.0, lambda ratio: ratio),
     # coordinate = factor * cos(value), value in rad, factor in mm
-    "cosine": Law(_cosine, math.sin, lambda ratio: math.acos(max(-1.0, min(1.0, ratio))), True),
+    "cosine": Law(_cosine, math.sin, lambda ratio: math.acos(max(-1.0, min(1.0, ratio)))),
 }

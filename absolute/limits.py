@@ -2,25 +2,25 @@
 
 import numpy as np
 
-from absolute.assembly import Mechanism
+from absolute.mechanism import Mechanism
 from absolute.solution import Array
 
 # A motion is followed until a fold is about sqrt(eps) away, and a share there is of that order, times
 # ratios of lengths: this is ten thousand times as much.
 LARGEST_SHARE = 1e-4
-# Two sides whose shares differ by less than this factor have come to their ends together.
+# Two branch signs whose shares differ by less than this factor have come to their ends together.
 TOGETHER = 10.0
 
 
 def limits_at(mechanism: Mechanism, world: Array) -> tuple[str, ...]:
-    """Links at their dead point, from placed features; empty where no side is near zero or none is told."""
-    sides = mechanism.sides
-    shares = np.abs(sides.shares(world))
+    """Links at their dead point, from placed features; empty where no branch sign is near zero."""
+    signs = mechanism.branch_signs
+    shares = np.abs(signs.shares(world))
     smallest = float(shares.min(initial=1.0))
     if not smallest <= LARGEST_SHARE:
         return ()
     near = np.flatnonzero(shares <= TOGETHER * smallest).tolist()
-    return tuple(dict.fromkeys(link for side in near for link in sides.limits[side]))
+    return tuple(dict.fromkeys(link for place in near for link in signs.limits[place]))
 
 
 def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:

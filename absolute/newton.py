@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.assembly import Mechanism, Poses
 from absolute.backend import eigenpy
+from absolute.mechanism import Mechanism, Poses
+from absolute.precision import EPS
 from absolute.solution import Array
 from absolute.stack import Placed
-
-EPS = float(np.finfo(float).eps)
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
 # branches that meet there can no longer be told apart, nor half of the digits trusted.
@@ -132,7 +131,7 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
 def seek(mechanism: Mechanism, q: Array, target: Array) -> Pose | None:
     """Any pose with  rows(q) = target,  by Newton's method with short steps from far away.
 
-    Nothing holds it to a branch: only the sides of the pose found tell which one it is.
+    Nothing holds it to a branch: only the branch signs of the pose found tell which one it is.
     """
     for _ in range(MOST_SHORT_STEPS):
         poses = mechanism.poses(q)

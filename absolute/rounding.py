@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from absolute.assembly import Mechanism
-from absolute.newton import EPS
+from absolute.mechanism import Mechanism
+from absolute.precision import EPS
 from absolute.sensitivity import RowMotion
 from absolute.solution import Array
 from absolute.stack import Placed

@@ -30,6 +30,8 @@ class Solution:
             empty without rates.
         angular_velocity_error, angular_acceleration_error: moving body name -> (N, 3), likewise.
         rotation_error: moving body name -> (N, 3), rad: how far each body may be turned about each axis.
+        effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
+        effect_errors: name -> (N,) how far each may be off, likewise; empty if errors were not asked for.
     """
 
     position: Mapping[str, Array]
@@ -46,3 +48,5 @@ class Solution:
     rotation_error: Mapping[str, Array]
     angular_velocity_error: Mapping[str, Array]
     angular_acceleration_error: Mapping[str, Array]
+    effects: Mapping[str, Array]
+    effect_errors: Mapping[str, Array]

@@ -1,19 +1,20 @@
-"""Solve a motion: assemble the drawing, march through the instants, finish them to rounding."""
+"""Solve a motion: assemble the drawing, track it through the instants, refine these to rounding."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from absolute.assemble import branch_error
-from absolute.assembly import Mechanism
 from absolute.description import Model
+from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.finish import BATCH, Finished, finish
+from absolute.initial_assembly import branch_error
+from absolute.input_arrays import chassis_series, doubt_series, input_series
 from absolute.limits import limited_by, limiting_input, limits_at
-from absolute.march import March
-from absolute.motion import Asked, Record
-from absolute.series import chassis_series, doubt_series, input_series
+from absolute.mechanism import Mechanism
+from absolute.refine import BATCH, Refined, refine
+from absolute.results import Asked, Record
 from absolute.solution import Array, Solution
+from absolute.tracking import Tracking
 
 
 def solve(
@@ -24,6 +25,7 @@ def solve(
     conditions: bool = False,
     errors: bool = False,
     input_errors: Mapping[str, Array] | None = None,
+    effects: Sequence[str] = (),
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
 
@@ -38,85 +40,92 @@ def solve(
             costs about twice as much as the solution itself, of which nothing changes.
         input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
             where it is not given. What the chassis motion is off comes on top of every point alike.
+        effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives
+            over time brings the rates with it.
     Returns:
         Solution with one row per instant.
     Raises:
-        DescriptionError: an axis of the model has no length or its lines point apart.
-        InputError: names, shapes or values of inputs or chassis.
+        DescriptionError: an axis of the model has no length or its lines point apart; effects of a
+            linkage without a wheel.
+        InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
         BranchError: the drawing stands where its branches meet, or a pose is on another branch.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
     """
+    asked = effects_of(effects)
+    if asked:
+        model.require_corner()
+    rates = rates or any(effect.derivative > 0 for effect in asked)
     series = input_series(tuple(model.inputs), inputs)
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
     doubts = doubt_series(tuple(model.inputs), input_errors or {}, count) if errors else None
-    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts))
+    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked))
     try:
         # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         with np.errstate(over="ignore", invalid="ignore"):
-            journey = March(mechanism)
+            tracking = Tracking(mechanism)
             for start in range(0, count, BATCH):
-                _solve_batch(journey, series[start : start + BATCH], rates, record)
+                _solve_batch(tracking, series[start : start + BATCH], rates, record)
     except AbsoluteError as error:
         error.partial = record.solution() if record.written else None
         raise
     return record.solution()
 
 
-def _solve_batch(journey: March, series: Array, rates: bool, record: Record) -> None:
-    """March through some instants, then finish all that were reached, even if one was not.
+def _solve_batch(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
+    """Track the pose through some instants, then refine all that were reached, even if one was not.
 
     An instant that ends on another branch is tried once more, from the assembled drawing.
     """
     begin, again = record.written, -1
-    values, targets = series[:, 0].tolist(), journey.mechanism.target_series(series)
+    values, targets = series[:, 0].tolist(), tracking.mechanism.target_series(series)
     while record.written < begin + len(series):
         failure: AbsoluteError | None = None
         done = record.written - begin
         try:
-            found = journey.advance(values[done:], targets[0, done:])
+            found = tracking.advance(values[done:], targets[0, done:])
         except AbsoluteError as error:
-            failure, found = error, journey.found
+            failure, found = error, tracking.found
         if found:
-            finished = finish(journey.mechanism, found, targets[:, done : done + len(found)], rates)
+            refined = refine(tracking.mechanism, found, targets[:, done : done + len(found)], rates)
             good = (
-                finished.closed
-                & finished.kept
-                & (np.isfinite(finished.acceleration).all(axis=1) if rates else True)
+                refined.closed
+                & refined.kept
+                & (np.isfinite(refined.acceleration).all(axis=1) if rates else True)
             )
             count = len(found) if good.all() else int(np.argmin(good))
-            record.store(finished, count)
+            record.store(refined, count)
             if count < len(found):
                 bad = record.written
-                if not finished.closed[count]:
-                    raise _stalled(journey.mechanism, bad, values[bad - begin], finished, count)
-                if finished.kept[count]:
-                    raise _overflow(journey.mechanism, bad, series[bad - begin, 1:].tolist())
+                if not refined.closed[count]:
+                    raise _stalled(tracking.mechanism, bad, values[bad - begin], refined, count)
+                if refined.kept[count]:
+                    raise _overflow(tracking.mechanism, bad, series[bad - begin, 1:].tolist())
                 if again == bad:
-                    raise branch_error(journey.mechanism, bad, values[bad - begin], finished.world[count])
+                    raise branch_error(tracking.mechanism, bad, values[bad - begin], refined.world[count])
                 again = bad
-                journey.back_to(bad)
+                tracking.back_to(bad)
                 continue
         if failure is not None:
             raise failure
 
 
 def _stalled(
-    mechanism: Mechanism, instant: int, values: list[float], finished: Finished, place: int
+    mechanism: Mechanism, instant: int, values: list[float], refined: Refined, place: int
 ) -> SingularError:
     stack, size = mechanism.stack, mechanism.drawing.size
-    residual, step = float(finished.residual[place]), float(finished.step[place])
-    limits = limits_at(mechanism, finished.world[place])
+    residual, step = float(refined.residual[place]), float(refined.step[place])
+    limits = limits_at(mechanism, refined.world[place])
     zeros = [0.0] * len(values)
     goal, drawn = (
         mechanism.targets(each, zeros, zeros)[0, mechanism.joint_rows :]
         for each in (values, mechanism.drawn_inputs.tolist())
     )
-    jacobian = stack.jacobian(stack.place(finished.rotation[place], finished.origin[place]))
+    jacobian = stack.jacobian(stack.place(refined.rotation[place], refined.origin[place]))
     return SingularError(
         f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
         f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.features import Features
+from absolute.precision import EPS
 from absolute.rows import Angle, Offset, Rows
 from absolute.solution import Array
 from absolute.vectors import LAST, NEXT
@@ -27,7 +28,7 @@ _WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the
 # origin, eleven from the direction, three from the last product. Independent ones add up to
 # sqrt(27 / 3) of eps / 2, or 1.5 eps; more than 4 eps is not rounding alone.
-ROUNDINGS = 4 * float(np.finfo(float).eps)
+ROUNDINGS = 4 * EPS
 
 
 class Placed(NamedTuple):

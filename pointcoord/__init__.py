@@ -27,7 +27,8 @@ if TYPE_CHECKING:
         SingularConfiguration,
         UnknownName,
     )
-    from pointcoord.results.motion import Motion, Samples
+    from pointcoord.results.motion import Motion
+    from pointcoord.results.samples import Samples
     from pointcoord.scene.scene_file import Scene, built_in_scenes
     from pointcoord.simulation import simulate
 
@@ -56,7 +57,7 @@ __all__ = [
 # Where names are that are no errors.
 _MODULES = {
     "Motion": "results.motion",
-    "Samples": "results.motion",
+    "Samples": "results.samples",
     "Scene": "scene.scene_file",
     "Standing": "drawing_stands",
     "built_in_scenes": "scene.scene_file",

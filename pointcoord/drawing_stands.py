@@ -12,10 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.effect import Poses
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import weakest_balance
 from pointcoord.results.closing import Closing, closing
-from pointcoord.results.readout import wheel_angles
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
 from pointcoord.solve.assembly import Path, close_drawing, follow
@@ -43,14 +45,13 @@ class Standing:
     Attributes:
         inputs: drawn value of each input, rad or mm.
         reach: the lower and the upper end of each input, the others as drawn.
-        camber, kingpin: of the closed drawing, rad.
+        angles: of the closed drawing, by name, rad.
         closing: how far its points moved to close.
     """
 
     inputs: Mapping[str, float]
     reach: Mapping[str, tuple[End, End]]
-    camber: float
-    kingpin: float
+    angles: Mapping[str, float]
     closing: Closing
 
 
@@ -66,14 +67,24 @@ def standing(scene: Scene) -> Standing:
     closed = close_drawing(mechanism)
     first = mechanism.map.unknowns
     drawn = {name: float(value) + 0.0 for name, value in mechanism.input_values(closed.y[first:]).items()}
-    angles = wheel_angles(mechanism, mechanism.places(closed.y), scene.mechanism.outboard)
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
-        camber=float(angles["camber"]),
-        kingpin=float(angles["kingpin"]),
+        angles=_angles(mechanism, closed.y, CarAxes.of(mechanism.drawing, scene.mechanism.outboard)),
         closing=closing(mechanism, closed.y),
     )
+
+
+def _angles(mechanism: Mechanism, y: Array, axes: CarAxes) -> dict[str, float]:
+    """Every number of the whole car that a pose has by itself."""
+    places = {name: place * mechanism.unit for name, place in mechanism.places(y).items()}
+    poses = Poses(mechanism, axes, states=(places,), added=(None,))
+    found: dict[str, float] = {}
+    for effect in EFFECTS.values():
+        if effect.derivative == 0:
+            for numbers in effect.evaluate(poses).values():
+                found |= {name: float(number) for name, number in numbers.items()}
+    return found
 
 
 def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:

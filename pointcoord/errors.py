@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
+from typing import Any
 
 
 def visible(text: str) -> str:
@@ -23,7 +24,12 @@ class PointcoordError(Exception):
 
     Its message is one line of characters that print, whatever a scene or a file is called. It can be
     pickled, with its data, so that it comes back from another process.
+
+    Attributes:
+        partial: the `Motion` up to where it stopped, with at least one instant; None if nothing was solved.
     """
+
+    partial: Any = None
 
     def __init__(self, message: str) -> None:
         super().__init__(visible(message))
@@ -160,7 +166,7 @@ class AssemblyError(PointcoordError):
         reduce: str,
         limits: tuple[str, ...] = (),
         instant: float | None = None,
-        partial: object = None,
+        partial: Any = None,
     ) -> None:
         self.problem = problem
         self.reached = reached
@@ -191,7 +197,7 @@ class MotionTooLong(PointcoordError):
         partial: the motion up to the instant.
     """
 
-    def __init__(self, limit: int, instant: float, start: float, stop: float, partial: object) -> None:
+    def __init__(self, limit: int, instant: float, start: float, stop: float, partial: Any) -> None:
         self.limit = limit
         self.instant = instant
         self.start = start
@@ -214,7 +220,7 @@ class MotionTooRough(PointcoordError):
         coarsest: whether no larger tolerance is left to try.
     """
 
-    def __init__(self, name: str, instant: float, partial: object, *, coarsest: bool = False) -> None:
+    def __init__(self, name: str, instant: float, partial: Any, *, coarsest: bool = False) -> None:
         self.name = name
         self.instant = instant
         self.partial = partial

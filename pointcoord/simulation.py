@@ -2,91 +2,150 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Literal
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import Summed
-from pointcoord.bounds.proof import Proof, prove
-from pointcoord.bounds.reported_bounds import Bounds, Reported, loss_of_least_squares
-from pointcoord.effects.effect import plan_effects
+from pointcoord.effects.plan import plan_effects
 from pointcoord.errors import (
-    AssemblyError,
     InputNotKnown,
     InputOutOfRange,
     MechanismError,
-    MotionTooLong,
-    MotionTooRough,
     SceneError,
-    UnknownName,
 )
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.counters import Work
-from pointcoord.printed import printed_body_loss, printed_body_rates, printed_square_velocity_term
+from pointcoord.method import SERIES, Method, method_of
 from pointcoord.results.closing import ALLOWED, Closing, closing
-from pointcoord.results.motion import Motion, Prover, Samples
-from pointcoord.results.readout import Readout, least_squares_rates
-from pointcoord.results.states import Sampler, solved_states
+from pointcoord.results.motion import Motion
+from pointcoord.results.readout import Readout
+from pointcoord.results.samples import Samples
+from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.pointwise import Solved, solve_instants, square_velocity_term
-from pointcoord.solve.taylor import COARSEST, FINEST, Chain, Settings, build_chain
-from pointcoord.suspensions import PRINTED_TOPOLOGIES, SUSPENSIONS
+from pointcoord.solve.pointwise import solve_instants
+from pointcoord.solve.taylor import COARSEST, FINEST, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
-Method = Literal["series", "newton", "printed"]
 
 # Share of a scene's tolerance that one segment may use: carried points lie up to a few lengths of
 # their carriers away and multiply the carriers' truncation.
 TRUNCATION_SHARE = 0.1
 
 
-def simulate(scene: Scene, method: Method = "series") -> Motion:
+def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     """Solve a scene by point coordinates.
 
     Args:
         method: `series` (a chain of power series, dense in time), `newton` (the paper's algorithm, at the
-            scene's instants only) or `printed` (the same with the paper's printed formulas).
+            scene's instants only), or a method of your own.
     Raises:
+        UnknownName: there is no such method.
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
         InputOutOfRange: an input leaves the values for which it has a meaning.
         InputNotKnown: the terms of an input's law cancel so far that no pose can be proven with it.
-        AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there.
+        AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there, None if
+            there is none.
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
     """
     require_scene(scene)
-    if method not in ("series", "newton", "printed"):
-        raise UnknownName("method", method, ("series", "newton", "printed"))
     # Its dictionaries can be written after it was read.
-    scene = Scene.checked(scene, scene.title or "scene")
-    mechanism = scene_mechanism(scene, printed=method == "printed")
+    task = _prepared(Scene.checked(scene, scene.title or "scene"), method_of(method))
+    solved = _by_series(task) if task.method.by_series else _at_instants(task)
+    motion = _motion(task, solved)
+    error = solved.states.status.error(motion)
+    if error is not None:
+        raise error
+    assert motion is not None  # what is complete has its first instant at least
+    return motion
+
+
+@dataclass(frozen=True)
+class Task:
+    """A scene ready to be solved: checked, its drawing closed and its first pose assembled.
+
+    Attributes:
+        functions: the laws of the inputs that drive the linkage.
+        start: the pose at the first instant.
+        closing: how far closing the drawing moved its points.
+    """
+
+    scene: Scene
+    method: Method
+    readout: Readout
+    functions: Mapping[str, TimeFunction]
+    start: Pose
+    closing: Closing
+
+
+def _prepared(scene: Scene, method: Method) -> Task:
+    """Check everything that can be checked before the motion, and assemble its start."""
+    mechanism = scene_mechanism(scene, method)
     readout = Readout(
         mechanism=mechanism,
-        plan=plan_effects(scene.effects),
+        plan=plan_effects(scene.effects, method.effects),
         chassis=ChassisMotion.of(mechanism, scene.functions),
-        outboard=scene.mechanism.outboard,
-        body_rates=printed_body_rates if method == "printed" else least_squares_rates,
-        body_loss=printed_body_loss if method == "printed" else loss_of_least_squares,
+        axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.plan.derivative_of_points)
+    readout.chassis.states(scene.instants, readout.derivative_of_every_point)
     first = scene.time.start
-    path = close_drawing(mechanism, first)
-    moved = closing(mechanism, path.y)
+    closed = close_drawing(mechanism, first)
+    moved = closing(mechanism, closed.y)
     _require_the_drawn_car(scene, moved)
-    start = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    pose = assemble(mechanism, start, first, path)
-    solve = _by_series if method == "series" else _by_newton
-    return solve(scene, method, readout, functions, pose, moved)
+    inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
+    start = assemble(mechanism, inputs, first, closed)
+    return Task(scene, method, readout, functions, start, moved)
+
+
+def _by_series(task: Task) -> SolvedScene:
+    """Solve a motion as a chain of power series."""
+    mechanism, time = task.readout.mechanism, task.scene.time
+    tolerance = TRUNCATION_SHARE * task.scene.tolerance / float(mechanism.unit)
+    settings = Settings(tolerance=tolerance, derivative=task.readout.plan.derivative)
+    chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
+    notes = _tolerance_notes(task.scene, settings, mechanism)
+    states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
+    return SolvedScene(task.readout, task.functions, states)
+
+
+def _at_instants(task: Task) -> SolvedScene:
+    """Solve a motion at each of the scene's instants by itself."""
+    mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
+    term = task.method.square_velocity_term
+    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term)
+    return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
+
+
+def _motion(task: Task, solved: SolvedScene) -> Motion | None:
+    """The motion, whole or up to where it was solved; None if it is nowhere."""
+    times = solved.states.covered(task.scene.instants)
+    if not len(times):
+        return None
+    samples = solved.samples(times)
+    _require_known(solved, samples, task.scene.tolerance)
+    moved = (task.closing.words,) if task.closing.noticeable else ()
+    doubts, numbers = task.scene.mechanism.doubts, _missing_numbers(solved, samples)
+    return Motion(
+        times=samples.times,
+        numbers=samples.numbers,
+        method=task.method.name,
+        status=solved.states.status,
+        start=task.start,
+        closing=task.closing,
+        work=task.start.work + solved.states.work,
+        notes=(*moved, *doubts, *solved.states.notes, *numbers),
+        solved=solved,
+    )
 
 
 def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
@@ -112,24 +171,22 @@ def require_scene(scene: object) -> None:
         raise SceneError(shown(scene), "", f"is a {type(scene).__name__}, and no scene", allowed)
 
 
-def scene_mechanism(scene: Scene, printed: bool = False) -> Mechanism:
-    """The mechanism of a scene.
+def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
+    """The mechanism of a scene, as a method solves it.
 
     Raises:
-        SceneError: its hardpoints do not make one.
+        SceneError: its hardpoints do not make one, or the method does not solve such a suspension.
     """
     part = scene.mechanism
-    closures = PRINTED_TOPOLOGIES.get(part.type, {}) if printed else SUSPENSIONS[part.type].closures
     source = scene.title or "scene"
+    closures = method.suspensions[part.type].closures if part.type in method.suspensions else {}
     if part.closure not in closures:
+        why = f": {method.only}" if method.only else ""
         raise SceneError(
             source,
             "mechanism.closure",
-            f"the method 'printed' cannot solve a {part.type} with closure = {part.closure!r}: it has the "
-            "constraints as a paper prints them",
-            ", ".join(
-                f"{name} of a {type}" for type, closures in PRINTED_TOPOLOGIES.items() for name in closures
-            ),
+            f"the method {method.name!r} cannot solve a {part.type} with closure = {part.closure!r}{why}",
+            ", ".join(f"{name} of a {s.type}" for s in method.suspensions.values() for name in s.closures),
         )
     topology = closures[part.closure]
     try:
@@ -148,42 +205,6 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
-def _by_series(
-    scene: Scene,
-    method: Method,
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    pose: Pose,
-    moved: Closing,
-) -> Motion:
-    mechanism, plan, time = readout.mechanism, readout.plan, scene.time
-    tolerance = TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit)
-    settings = Settings(tolerance=tolerance, derivative=plan.derivative)
-
-    def motion(chain: Chain, instants: Array) -> Motion:
-        sampler = Sampler(readout, functions, chain, time.start)
-        work = pose.work + chain.work + sampler.work
-        prover = SceneProver(readout, functions, sampler.coordinates, sampler.summed)
-        samples = sampler(instants)
-        _require_known(prover, samples, scene.tolerance)
-        solved = _motion(samples, method, pose, moved, work, sampler, prover, mechanism)
-        said = (*_drawing_notes(scene, moved), *_tolerance_notes(scene, settings, mechanism))
-        return replace(solved, notes=(*said, *solved.notes))
-
-    try:
-        chain = build_chain(mechanism, functions, pose, time.start, time.stop, settings)
-    except (AssemblyError, MotionTooLong, MotionTooRough) as error:
-        if isinstance(error.partial, Chain):
-            error.partial = motion(error.partial, scene.instants[scene.instants <= error.partial.stop])
-        raise
-    return motion(chain, scene.instants)
-
-
-def _drawing_notes(scene: Scene, moved: Closing) -> tuple[str, ...]:
-    """How the solved car differs from the drawn one, and what looks wrong with the drawing."""
-    return (*((moved.words,) if moved.noticeable else ()), *scene.mechanism.doubts)
-
-
 def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
     used = min(max(settings.tolerance, FINEST), COARSEST)
@@ -196,138 +217,37 @@ def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> 
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 
-def _by_newton(
-    scene: Scene,
-    method: Method,
-    readout: Readout,
-    functions: Mapping[str, TimeFunction],
-    pose: Pose,
-    moved: Closing,
-) -> Motion:
-    term = printed_square_velocity_term if method == "printed" else square_velocity_term
-
-    def motion(solved: Solved) -> Motion:
-        states = solved_states(readout, solved)
-        plan = readout.plan
-        width = sum(3 * len(state) for state in states)
-        work = Work(derivatives_evaluated=plan.derivative + 1, coordinates_evaluated=width)
-        samples = readout.samples(solved.times, states)
-        prover = SceneProver(readout, functions, solved.coordinates, _not_summed)
-        _require_known(prover, samples, scene.tolerance)
-        cost = pose.work + solved.work + work
-        found = _motion(samples, method, pose, moved, cost, None, prover, readout.mechanism)
-        return replace(found, notes=(*_drawing_notes(scene, moved), *found.notes))
-
-    try:
-        solved = solve_instants(
-            readout.mechanism, functions, pose, scene.instants, readout.plan.derivative, term
-        )
-    except AssemblyError as error:
-        if isinstance(error.partial, Solved):
-            error.partial = motion(error.partial)
-        raise
-    return motion(solved)
-
-
-@dataclass(frozen=True)
-class SceneProver:
-    """Proves samples of a scene's motion.
-
-    Attributes:
-        functions: the laws of the inputs that drive the mechanism.
-        coordinates: gives y and the derivatives that were solved for at some of the instants.
-        summed: how these were summed; nothing if they were solved for.
-    """
-
-    readout: Readout
-    functions: Mapping[str, TimeFunction]
-    coordinates: Callable[[Array], list[Array]]
-    summed: Callable[[Array], Sequence[Summed]]
-
-    def __call__(self, samples: Samples, rates: bool = False) -> Proof:
-        """What is proven at each of the samples' times, of every number by itself if `rates`."""
-        return self.with_doubts(samples, self.doubts(samples.times), rates)
-
-    def doubts(self, times: Array) -> dict[str, Array]:
-        """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
-        return {name: function.rounding(times) for name, function in self.functions.items()}
-
-    def with_doubts(self, samples: Samples, laws: Mapping[str, Array], rates: bool = False) -> Proof:
-        """What would be proven if the laws' values were off by so much."""
-        mechanism, times = self.readout.mechanism, samples.times
-        added = self.readout.offset(times)
-        offset = np.broadcast_to(0.0 if added is None else added, (len(times), 3))
-        rounding = self.readout.chassis.rounding(times, mechanism.origin)
-        reported = self._reported(samples) if rates else None
-        position = samples.position
-        return prove(mechanism, times, self.coordinates, position, offset, rounding, laws, reported)
-
-    def _reported(self, samples: Samples) -> Reported:
-        """All numbers of samples, and what went into them beside the coordinates."""
-        readout = self.readout
-        return Reported(
-            numbers=Bounds(**{f.name: dict(getattr(samples, f.name)) for f in fields(Bounds)}),
-            chassis=readout.chassis,
-            laws=self.functions,
-            lines=readout.angle_lines,
-            axes=readout.angle_axes,
-            summed=self.summed,
-            body_loss=readout.body_loss,
-        )
-
-
-def _not_summed(instants: Array) -> tuple[Summed, ...]:
-    return ()
-
-
-def _require_known(prover: SceneProver, samples: Samples, tolerance: float) -> None:
+def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
     """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
 
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = prover.doubts(samples.times)
+    doubts = solved.doubts(samples.times)
     if all((doubt <= tolerance).all() for doubt in doubts.values()):
         return
     certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
-    unproven = ~np.isfinite(prover(samples).bound)
-    unproven &= np.isfinite(prover.with_doubts(samples, certain).bound)
+    unproven = ~np.isfinite(solved.proof(samples).bound)
+    unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))
-        function, instant = prover.functions[name], float(samples.times[place])
+        function, instant = solved.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
         raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
 
 
-def _motion(
-    samples: Samples,
-    method: Method,
-    pose: Pose,
-    moved: Closing,
-    work: Work,
-    resample: Callable[[Array], Samples] | None,
-    prover: Prover,
-    mechanism: Mechanism,
-) -> Motion:
+def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
+    """Which numbers are none, and why."""
     notes = []
-    for channel in (samples.angular_velocity, samples.angular_acceleration):
-        for body in channel:
-            bad = int(np.count_nonzero(~np.isfinite(channel[body]).all(axis=-1)))
-            if bad:
-                notes.append(
-                    f"{channel.quantity} of {body} is not a number at {bad} of {len(samples.times)} "
-                    "instants: the printed quotient divides by zero there"
-                )
-    fields = {name: getattr(samples, name) for name in samples.__dataclass_fields__}
-    return Motion(
-        **fields,
-        method=method,
-        start=pose,
-        closing=moved,
-        work=work,
-        notes=tuple(notes),
-        unit=float(mechanism.unit),
-        resample=resample,
-        prover=prover,
-    )
+    for effect in solved.readout.plan.computed:
+        why = f": {effect.no_number}" if effect.no_number else ""
+        for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
+            for name in effect.names or channel:
+                is_number = np.isfinite(channel[name]).reshape(len(samples.times), -1).all(axis=-1)
+                if bad := int(np.count_nonzero(~is_number)):
+                    notes.append(
+                        f"{channel.quantity.words} of {name} is not a number at {bad} of "
+                        f"{len(samples.times)} instants{why}"
+                    )
+    return tuple(notes)

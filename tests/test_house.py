@@ -3,39 +3,58 @@
 import ast
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from layers import PACKAGES, ROOT, arrows, floors, modules, report, room_of
 
-ROOT = Path(__file__).parent.parent
-PACKAGES = ("pointcoord", "absolute", "validate")
 FORBIDDEN = {
     "pointcoord": {"absolute", "validate", "pinocchio", "pin"},
     "absolute": {"pointcoord", "validate"},
     "validate": set(),
 }
-
-
-def modules(package: str) -> dict[str, set[str]]:
-    """Every module of a package with the modules that it imports, at any depth of its code."""
-    found = {}
-    for path in (ROOT / package).rglob("*.py"):
-        parts = path.relative_to(ROOT).with_suffix("").parts
-        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-        imported = set()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                imported |= {alias.name for alias in node.names}
-            elif isinstance(node, ast.ImportFrom) and node.module:
-                assert node.level == 0, f"{name}: relative imports hide who is imported"
-                imported |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-        found[name] = imported
-    return found
+# The rooms of a package, the lowest first: a room imports only from those before it.
+ROOMS = {
+    "pointcoord": (
+        "errors",
+        "numerics",
+        "time_functions",
+        "linkage",
+        "suspensions",
+        "bounds",
+        "solve",
+        "effects",
+        "results",
+        "scene",
+        "simulation",
+        "drawing_stands",
+        "__main__",
+    ),
+    "validate": (
+        "extras",
+        "exit_status",
+        "running",
+        "plain_text",
+        "closed_drawing",
+        "reference",
+        "formulations",
+        "comparison",
+        "paper",
+        "cars",
+        "adjudication",
+        "output",
+        "hard",
+        "commands",
+        "door",
+        "studies",
+        "cli",
+        "__main__",
+    ),
+}
 
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_package_imports_only_what_the_house_allows(package: str) -> None:
-    found = modules(package)
+    found = modules(ROOT, package)
     assert found
     for name, imported in found.items():
         roots = {module.split(".")[0] for module in imported}
@@ -44,17 +63,30 @@ def test_a_package_imports_only_what_the_house_allows(package: str) -> None:
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_modules_of_a_package_form_layers(package: str) -> None:
-    found = modules(package)
-    # `from package import module` names the package too, which is no module of its own layer.
-    inner = found.keys() - {package}
-    below = {name: (found[name] & inner) - {name} for name in inner}
-    placed: set[str] = set()
-    while below:
-        ready = {name for name, needs in below.items() if needs <= placed}
-        assert ready, f"these modules of {package} import each other in a circle: {below}"
-        placed |= ready
-        for name in ready:
-            del below[name]
+    assert floors(modules(ROOT, package))
+
+
+@pytest.mark.parametrize("package", ROOMS)
+def test_a_room_imports_only_from_the_rooms_below_it(package: str) -> None:
+    found, order = modules(ROOT, package), ROOMS[package]
+    assert {room_of(name) for name in found if "." in name} == set(order)
+    upward = {
+        f"{upper} -> {lower}": count
+        for (upper, lower), count in arrows(found).items()
+        if order.index(lower) > order.index(upper)
+    }
+    assert not upward, f"{report(ROOT)}\nthese arrows lead up: {upward}"
+
+
+def test_an_arrow_that_leads_up_is_seen() -> None:
+    planted = {
+        "house.low.a": {"house.high", "house.high.b"},
+        "house.high": set(),
+        "house.high.b": {"house.low.a.name"},
+    }
+    assert arrows(planted) == {("low", "high"): 1}
+    with pytest.raises(ValueError, match="in a circle"):
+        floors({"house.a": {"house.b"}, "house.b": {"house.a"}})
 
 
 def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:

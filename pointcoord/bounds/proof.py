@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.body_fixed import apart, carried_errors
-from pointcoord.bounds.reported_bounds import Bounds, Proven, Reported, joined, reported_bounds
+from pointcoord.bounds.reported_bounds import Numbers, Proven, Reported, joined, reported_bounds
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, exact_sum
 from pointcoord.numerics.enclosure import Enclosed
@@ -41,8 +42,9 @@ class Proof:
             zero where no velocity was solved for.
         acceleration_sensitivity: the same of an acceleration, at given velocities, (N,), 1/s^2.
         residual: largest row of C(y), (N,), in the mechanism's units.
-        proven: the error of every reported number, rates and angles too, at most; only if asked for.
-        expected: the error that the method makes of each at most where nothing is wrong; only if asked for.
+        proven: by quantity and name, the error of every reported number, rates and angles too, at most; empty
+            unless asked for.
+        expected: the error that the method makes of each at most where nothing is wrong; likewise.
     """
 
     times: Array
@@ -54,14 +56,14 @@ class Proof:
     velocity_sensitivity: Array
     acceleration_sensitivity: Array
     residual: Array
-    proven: Bounds = field(default_factory=Bounds)
-    expected: Bounds = field(default_factory=Bounds)
+    proven: Numbers = field(default_factory=dict)
+    expected: Numbers = field(default_factory=dict)
 
 
 def prove(
     mechanism: Mechanism,
     times: Array,
-    states: Callable[[Array], Sequence[Array]],
+    solved: SolvedCoordinates,
     reported: Mapping[str, Array],
     offset: Array,
     rounding: Array,
@@ -76,8 +78,7 @@ def prove(
 
     Args:
         times: instants, shape (N,), s.
-        states: gives the coordinates y, shape (n, size), at some of the instants, and as many of their
-            time derivatives as were solved for.
+        solved: the coordinates y and as many of their time derivatives as were solved for.
         reported: position of every point at the times, (N, 3), mm.
         offset: what was added to every point to report it, (N, 3), mm.
         rounding: of the offset itself, at most, (N, 3), mm.
@@ -87,7 +88,7 @@ def prove(
     parts, bounds = [], []
     for low in range(0, len(times), BLOCK):
         here = times[low : low + BLOCK]
-        y, *rates = states(here)
+        y, *rates = solved.coordinates(here)
         factors = factorise(mechanism.map.jacobian(y))
         residual = np.abs(mechanism.map.residual(y)).max(axis=-1)
         first, second = (

@@ -1,73 +1,126 @@
-"""What a scene may ask for beside positions, and what each effect needs to be computed."""
+"""What an effect is: something that a scene may ask for, which knows everything about itself."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Container, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from pointcoord.errors import UnknownName
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.enclosed_points import EnclosedPoses
+from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+
+Array = NDArray[np.float64]
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Effect:
-    """An effect, in words and in what it needs.
+class Quantity:
+    """A kind of numbers that a motion can report.
 
     Attributes:
-        gives: what a user gets.
-        derivative: highest time derivative of positions that it needs.
-        every_point: whether it needs that derivative of every point, or of the knuckle's only.
+        name: in results and files, such as angular_velocity.
+        words: for people, such as angular velocity.
+        unit: of what is computed.
+        of: what each number belongs to; points and bodies have vectors (N, 3), a car has scalars (N,).
+    """
+
+    name: str
+    words: str
+    unit: str
+    of: Literal["point", "body", "car"]
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Solved poses, from which effects are evaluated.
+
+    Attributes:
+        axes: the car's directions.
+        states: by time derivative, the states of the points that were asked for, (..., N, 3), mm per s^d, in
+            the chassis' frame and from the mechanism's origin.
+        added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
+            does, (..., N, 3), mm per s^d; None where that is zero.
+    """
+
+    mechanism: Mechanism
+    axes: CarAxes
+    states: Sequence[Mapping[str, Array]]
+    added: Sequence[Array | None]
+
+
+@dataclass(frozen=True)
+class Effect(ABC):
+    """Something that a scene may ask for.
+
+    Attributes:
+        name: that a scene lists.
+        gives: what a user gets, in words, with its unit.
+        sign: which way its numbers count.
+        derivative: highest time derivative of positions that it is made of.
+        quantities: what its numbers are called in results.
     """
 
     name: str
     gives: str
+    sign: str
     derivative: int
-    every_point: bool
-
-
-EFFECTS = {
-    effect.name: effect
-    for effect in (
-        Effect("velocity", "velocity of every point, mm/s", 1, True),
-        Effect("acceleration", "acceleration of every point, mm/s^2", 2, True),
-        Effect("knuckle_rates", "angular velocity and acceleration of the knuckle, rad/s, rad/s^2", 2, False),
-        Effect("wheel_angles", "camber and kingpin angle, rad", 0, False),
-    )
-}
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What the effects of a scene make the solver do, and what they leave out.
-
-    Attributes:
-        effects: as asked for.
-        derivative: highest derivative that is solved for, of any point.
-        derivative_of_points: highest derivative that is evaluated for every point.
-        derivative_of_knuckle: highest derivative that is evaluated for the knuckle's points.
-    """
-
-    effects: tuple[str, ...]
-    derivative: int
-    derivative_of_points: int
-    derivative_of_knuckle: int
+    quantities: tuple[Quantity, ...]
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """Effects that are not computed."""
-        return tuple(name for name in EFFECTS if name not in self.effects)
+    def names(self) -> tuple[str, ...] | None:
+        """What it gives of each quantity, by name; None for every point or every body."""
+        return None
 
+    @property
+    def gives_numbers(self) -> Mapping[str, tuple[str, ...] | None]:
+        """By quantity, the names that it gives; None for every point or every body."""
+        return {quantity.name: self.names for quantity in self.quantities}
 
-def plan_effects(effects: Iterable[str]) -> Plan:
-    """The plan for a list of effects.
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The axes of the topology that it looks at: wheel_axis, steering_axis."""
+        return ()
 
-    Raises:
-        UnknownName: an effect that does not exist.
-    """
-    asked = tuple(effects)
-    for name in asked:
-        if name not in EFFECTS:
-            raise UnknownName("effect", name, EFFECTS)
-    needs = [EFFECTS[name] for name in EFFECTS if name in asked]
-    everything = max((e.derivative for e in needs if e.every_point), default=0)
-    knuckle = max((e.derivative for e in needs), default=0)
-    return Plan(tuple(e.name for e in needs), max(everything, knuckle), everything, max(everything, knuckle))
+    @property
+    def no_number(self) -> str:
+        """Why a number that it gives may be none, in words; empty if each always is one."""
+        return ""
+
+    @abstractmethod
+    def needs(self, topology: Topology) -> Collection[str]:
+        """The points whose derivatives it is made of."""
+
+    @abstractmethod
+    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
+        """Its numbers by quantity and name."""
+
+    @abstractmethod
+    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
+        """How far its numbers may be off, proven and expected, each with a leading dimension of 2.
+
+        Args:
+            poses: where the points exactly are.
+            numbers: everything that was reported, its own among it.
+        """
+
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+        """Why a drawing does not have it and what to do, in words; empty if it does."""
+        return ""
+
+    def doubts(
+        self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
+    ) -> tuple[str, ...]:
+        """What it shows that looks wrong in a drawing, in words.
+
+        Args:
+            drawn: the points, each (3,), mm.
+            told: axes of the topology that were already found to be misdrawn.
+        """
+        return ()

@@ -8,63 +8,145 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_rates import Summed
-from pointcoord.effects.effect import Plan
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
-from pointcoord.results.motion import Samples
 from pointcoord.results.readout import Readout
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.pointwise import Solved
+from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
 
-def solved_states(readout: Readout, solved: Solved) -> list[dict[str, Array]]:
-    """States of the points that the plan asks for, from states of all coordinates."""
-    mechanism, plan = readout.mechanism, readout.plan
-    layout, topology = mechanism.layout, mechanism.topology
-    taylor = np.stack([state / max(order, 1) for order, state in enumerate(solved.states)], axis=-2)
-    series = {name: taylor[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
-    for name, carriers in topology.carried.items():
-        series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
-    names = [set(topology.points)] + [_points_at(mechanism, plan, d) for d in range(1, plan.derivative + 1)]
-    return [
-        {
-            name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
-            for name in topology.points
-            if name in wanted
-        }
-        for order, wanted in enumerate(names)
-    ]
+class SolvedStates(SolvedCoordinates, Protocol):
+    """The states of a linkage's points, as they were solved for."""
 
+    @property
+    def dense(self) -> bool:
+        """Whether they are known between the scene's instants too."""
+        ...
 
-def _points_at(mechanism: Mechanism, plan: Plan, derivative: int) -> set[str]:
-    """Points whose derivative the plan asks for."""
-    if derivative <= plan.derivative_of_points:
-        return set(mechanism.topology.points)
-    return {point for body in mechanism.topology.bodies.values() for point in body}
+    @property
+    def status(self) -> Status:
+        """Whether they cover all that was asked for, and if not, what stopped the solver."""
+        ...
+
+    @property
+    def work(self) -> Work:
+        """What solving took, and what reading them takes of each instant."""
+        ...
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where they were not solved for as the scene asks."""
+        ...
+
+    def covered(self, instants: Array) -> Array:
+        """Those of a scene's instants at which they are known."""
+        ...
+
+    def states(self, instants: Array) -> list[dict[str, Array]]:
+        """By time derivative, the states of the points that the plan asks for (see `readout.States`).
+
+        Raises:
+            OutsideMotion: an instant that is not covered, or not a number.
+        """
+        ...
 
 
 @dataclass(frozen=True)
-class Sampler:
-    """Evaluates a chain at any instants inside it."""
+class StatesAtInstants:
+    """States that were solved for at each instant by itself."""
+
+    readout: Readout
+    solved: Solved
+    notes: tuple[str, ...] = ()
+    dense: bool = False
+
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.solved.status
+
+    def covered(self, instants: Array) -> Array:
+        """Up to the last one that was reached."""
+        return instants[: len(self.solved.times)]
+
+    def states(self, instants: Array) -> list[dict[str, Array]]:
+        """States at some of the instants."""
+        mechanism, derivatives = self.readout.mechanism, self.readout.derivatives
+        layout, topology = mechanism.layout, mechanism.topology
+        coordinates = self.coordinates(instants)
+        taylor = np.stack([state / max(order, 1) for order, state in enumerate(coordinates)], axis=-2)
+        places = {name: list(layout.vector(name)) for name in (*topology.chassis, *topology.moving)}
+        series = {name: taylor[..., place] for name, place in places.items()}
+        for name, carriers in topology.carried.items():
+            series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
+        return [
+            {
+                name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
+                for name in topology.points
+                if derivatives[name] >= order
+            }
+            for order in range(len(coordinates))
+        ]
+
+    def coordinates(self, instants: Array) -> list[Array]:
+        """y and the derivatives that were solved for, at some of the instants, each (N, size)."""
+        return self.solved.coordinates(instants)
+
+    def summed(self, instants: Array) -> tuple[Summed, ...]:
+        """Nothing: they were solved for."""
+        return ()
+
+    @property
+    def work(self) -> Work:
+        """What solving took, and the states of each instant."""
+        return self.solved.work + Work(
+            derivatives_evaluated=self.readout.plan.derivative + 1,
+            coordinates_evaluated=sum(3 * (highest + 1) for highest in self.readout.derivatives.values()),
+        )
+
+
+@dataclass(frozen=True)
+class StatesOfChain:
+    """States summed from a chain of series, at any instants inside it.
+
+    Attributes:
+        functions: the laws of the inputs that drive the linkage.
+        start: of the chain, s.
+        notes: where the chain was not cut as the scene asks.
+    """
 
     readout: Readout
     functions: Mapping[str, TimeFunction]
     chain: Chain
     start: float
+    notes: tuple[str, ...] = ()
+    dense: bool = True
 
-    def __call__(self, instants: Array) -> Samples:
-        """The plan's results at instants of shape (N,).
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.chain.status
+
+    def covered(self, instants: Array) -> Array:
+        """Those up to the end of the chain."""
+        segments = self.chain.segments
+        return instants[instants <= self.chain.stop] if segments else instants[:0]
+
+    def states(self, instants: Array) -> list[dict[str, Array]]:
+        """States at instants of shape (N,).
 
         Raises:
             OutsideMotion: an instant outside the chain, or not a number.
@@ -72,19 +154,17 @@ class Sampler:
         outside = ~((instants >= self.start) & (instants <= self.chain.stop))
         if outside.any():
             raise OutsideMotion(float(instants[outside][0]), self.start, self.chain.stop)
-        plan, topology = self.readout.plan, self.readout.mechanism.topology
-        moving = [*topology.moving, *topology.carried]
-        states: list[dict[str, Array]] = [{} for _ in range(plan.derivative + 1)]
-        for order in range(plan.derivative_of_points + 1):
+        points = self.readout.mechanism.topology.points
+        states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
+        for order in range(self.readout.derivative_of_every_point + 1):
             states[order] |= self._chassis(len(instants), order)
-        for names, derivatives in self._requests(moving):
+        for names, derivatives in self._requests:
             columns = [np.concatenate([series[n] for n in names], axis=-1) for series in self._point_series]
             values = evaluate(self.chain, columns, instants, derivatives)
             for order in range(derivatives + 1):
                 for i, name in enumerate(names):
                     states[order][name] = values[order, ..., 3 * i : 3 * i + 3]
-        ordered = [{name: state[name] for name in topology.points if name in state} for state in states]
-        return self.readout.samples(instants, ordered)
+        return [{name: state[name] for name in points if name in state} for state in states]
 
     def coordinates(self, instants: Array) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
@@ -112,21 +192,23 @@ class Sampler:
 
     @property
     def work(self) -> Work:
-        """What evaluating costs per instant."""
-        topology = self.readout.mechanism.topology
-        requests = self._requests([*topology.moving, *topology.carried])
-        return Work(
+        """What solving took, and the sums of each instant."""
+        return self.chain.work + Work(
             derivatives_evaluated=self.readout.plan.derivative + 1,
-            coordinates_evaluated=sum(3 * len(names) * (derivatives + 1) for names, derivatives in requests),
+            coordinates_evaluated=sum(
+                3 * len(names) * (derivatives + 1) for names, derivatives in self._requests
+            ),
         )
 
-    def _requests(self, moving: list[str]) -> list[tuple[list[str], int]]:
-        """Which points to evaluate to which derivative."""
-        plan, topology = self.readout.plan, self.readout.mechanism.topology
-        requests = [(moving, plan.derivative_of_points)]
-        if plan.derivative > plan.derivative_of_points:
-            body_points = {point for body in topology.bodies.values() for point in body}
-            requests.append(([name for name in moving if name in body_points], plan.derivative))
+    @property
+    def _requests(self) -> list[tuple[list[str], int]]:
+        """Which points to sum to which derivative: all, and then those that need more."""
+        topology, highest = self.readout.mechanism.topology, self.readout.derivatives
+        moving, every = [*topology.moving, *topology.carried], self.readout.derivative_of_every_point
+        requests = [(moving, every)]
+        for derivative in range(every + 1, self.readout.plan.derivative + 1):
+            if names := [name for name in moving if highest[name] == derivative]:
+                requests.append((names, derivative))
         return requests
 
     @cached_property

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
-from pointcoord.effects.effect import EFFECTS
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.even_instants import even_instants
@@ -153,15 +154,9 @@ class MechanismPart(Part):
     @property
     def doubts(self) -> tuple[str, ...]:
         """What looks wrong with the drawing although it can be solved, in words."""
-        topology = self.topology
-        return drawing_doubts(
-            {name: np.array(place) for name, place in self.points.items()},
-            np.array(self.up),
-            self.outboard,
-            topology.wheel_axis,
-            topology.steering_axis,
-            topology.wheel_axis[0] == self.axis_point,
-        )
+        points = {name: np.array(place) for name, place in self.points.items()}
+        axes = CarAxes(np.array(self.up), np.array(self.right), self.outboard)
+        return drawing_doubts(self.topology, points, axes)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -270,14 +265,12 @@ class Scene(Part):
         return effects
 
     @model_validator(mode="after")
-    def _spin_axis_known(self) -> Self:
-        part = self.mechanism
-        inner, outer = part.topology.wheel_axis
-        if "wheel_angles" in self.effects and part.points[inner] == part.points[outer]:
-            raise ValueError(
-                f"{inner} and {outer} are at the same place, so that the wheel's spin axis has no direction; "
-                f"give the axis a point of its own, {part.axis_point}, or leave 'wheel_angles' out"
-            )
+    def _effects_have_a_meaning(self) -> Self:
+        topology, points = self.mechanism.topology, self.mechanism.points
+        for name in self.effects:
+            problem = EFFECTS[name].refusal(topology, points)
+            if problem:
+                raise ValueError(problem)
         return self
 
     @model_validator(mode="after")

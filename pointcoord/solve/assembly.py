@@ -23,13 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.proof import pose_bound
-from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, weakest_balance
 from pointcoord.numerics.newton import polish
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.status import Blocked
 
 Array = NDArray[np.float64]
 
@@ -214,7 +214,7 @@ def assemble(
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
     unfinished = path.done < 1.0
     if unfinished.any():
-        raise stopped(mechanism, problem, path.y, target, path.factors, unfinished, instant)
+        raise blocked(mechanism, problem, path.y, target, path.factors, unfinished, instant).error()
 
 
 def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -> None:
@@ -224,10 +224,10 @@ def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -
     one, other = (" - ".join(piece) for piece in pair)
     problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"
     known = mechanism.drawn[..., mechanism.map.unknowns :]
-    raise stopped(mechanism, problem, drawing.y, known, drawing.factors, bad, instant)
+    raise blocked(mechanism, problem, drawing.y, known, drawing.factors, bad, instant).error()
 
 
-def stopped(
+def blocked(
     mechanism: Mechanism,
     problem: str,
     y: Array,
@@ -236,8 +236,8 @@ def stopped(
     unfinished: NDArray[np.bool_],
     instant: float | None,
     change: Array | None = None,
-) -> AssemblyError:
-    """The error for paths that end at y on their way to `goal`, told for the first unfinished one.
+) -> Blocked:
+    """What stops paths that end at y on their way to `goal`, told for the first unfinished one.
 
     Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
     each other in balance: the rows that take part are what limits the motion.
@@ -258,7 +258,7 @@ def stopped(
     balance = weakest_balance(factors.matrix[member])
     left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
     pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
-    return AssemblyError(
+    return Blocked(
         problem,
         reached=told(known),
         wanted=told(goal),

@@ -9,17 +9,17 @@ at once. This is what the series are measured against.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.assembly import Pose, follow, stopped
+from pointcoord.solve.assembly import Pose, blocked, follow
+from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -28,11 +28,19 @@ SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 
 @dataclass(frozen=True)
 class Solved:
-    """States at instants: y and its time derivatives, each of shape (N, size); what it cost."""
+    """States at instants, as many of those that were asked for as could be reached.
+
+    Attributes:
+        times: (N,), s.
+        states: y and its time derivatives, each (N, size).
+        work: what it cost.
+        status: how it ended.
+    """
 
     times: Array
     states: tuple[Array, ...]
     work: Work
+    status: Status = COMPLETE
 
     def coordinates(self, instants: Array) -> list[Array]:
         """The states at some of the times, each of shape (..., size)."""
@@ -59,24 +67,27 @@ def solve_instants(
         pose: assembled at the first instant.
         times: increasing instants, shape (N,), s.
         derivative: highest time derivative to solve for, 0 to 2.
-    Raises:
-        AssemblyError: an instant cannot be reached; `partial` is what was solved before it.
+    Returns:
+        The states, up to the first instant that cannot be reached.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     y = np.empty((len(times), system.size))
     here, factors, work = pose.y, pose.factors, Work()
+    status: Status = COMPLETE
     for i in range(len(times)):
         if i > 0:
             path = follow(system, here, known[i, 0], factors)
             work += path.work
             if path.done < 1.0:
-                partial = _with_rates(system, y[:i], known[:i], times[:i], derivative, square_term, work)
-                raise _unreached(mechanism, path.y, known[i, 0], path.factors, times[i], partial)
+                status = _unreached(mechanism, path.y, known[i, 0], path.factors, times[i])
+                y, known, times = y[:i], known[:i], times[:i]
+                break
             here, factors = path.y, path.factors
         y[i] = here
     y[:, n:] = known[:, 0]
-    return _with_rates(system, y, known, times, derivative, square_term, work)
+    solved = _with_rates(system, y, known, times, derivative, square_term, work)
+    return replace(solved, status=status)
 
 
 def _with_rates(
@@ -107,10 +118,6 @@ def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadr
     return rate
 
 
-def _unreached(
-    mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float, partial: Solved
-) -> AssemblyError:
+def _unreached(mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float) -> Status:
     problem, unfinished = "the mechanism cannot be assembled", np.array(True)
-    error = stopped(mechanism, problem, y, goal, factors, unfinished, float(instant))
-    error.partial = partial
-    return error
+    return blocked(mechanism, problem, y, goal, factors, unfinished, float(instant))

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import AssemblyError, MotionTooLong, MotionTooRough
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
@@ -23,7 +22,8 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, polish
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.rounding import EPS
-from pointcoord.solve.assembly import Pose, stopped
+from pointcoord.solve.assembly import Pose, blocked
+from pointcoord.solve.status import COMPLETE, Status, TooLong, TooRough
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -63,10 +63,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class Chain:
-    """Segments in order of time, and what they cost."""
+    """Segments in order of time, what they cost, and how the last one ended.
+
+    There is none where the motion cannot leave its start.
+    """
 
     segments: tuple[Segment, ...]
     work: Work
+    status: Status = COMPLETE
 
     @property
     def stop(self) -> float:
@@ -103,10 +107,9 @@ def build_chain(
     Args:
         functions: the inputs as functions of time.
         pose: assembled at `start`, any leading batch dimensions.
-    Raises:
-        AssemblyError: the motion meets a pose that it cannot pass; `partial` is the chain up to there.
-        MotionTooLong: it takes more than MOST_SEGMENTS segments; likewise.
-        MotionTooRough: no step follows an input where the mechanism could; likewise.
+    Returns:
+        The chain up to `stop`, or up to a pose that the motion cannot pass, to the most segments, or to where
+        no step follows an input though the mechanism could; its status says which.
     """
     settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
     breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
@@ -120,7 +123,7 @@ def build_chain(
     shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
     while instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
-            raise MotionTooLong(MOST_SEGMENTS, instant, start, stop, Chain(tuple(segments), work))
+            return Chain(tuple(segments), work, TooLong(MOST_SEGMENTS, instant, start, stop))
         limit = next((b for b in breaks if b > instant), stop)
         series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
         work += Work(
@@ -130,8 +133,8 @@ def build_chain(
         )
         finite = np.asarray(np.isfinite(series).all(axis=(-2, -1)))
         if not finite.all():
-            partial = Chain(tuple(segments), work) if segments else None
-            raise _cannot_pass(mechanism, functions, y, factors, ~finite, instant, stop, partial, False)
+            status = _cannot_pass(mechanism, functions, y, factors, ~finite, instant, stop, False)
+            return Chain(tuple(segments), work, status)
         if limit == instant:
             segments.append(Segment(instant, stop, scale, series))
             break
@@ -153,9 +156,9 @@ def build_chain(
                 break
             length = 0.5 * (end - instant)
         else:
-            partial = Chain(tuple(segments), work) if segments else None
             coarsest = settings.tolerance >= COARSEST
-            raise _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, partial, coarsest)
+            status = _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, coarsest)
+            return Chain(tuple(segments), work, status)
         segments.append(Segment(instant, end, scale, series))
         instant, y, factors = end, reached.y, ahead
         scale = _power_of_two(length)
@@ -256,9 +259,8 @@ def _cannot_pass(
     unfinished: NDArray[np.bool_],
     instant: float,
     stop: float,
-    partial: Chain | None,
     coarsest: bool,
-) -> AssemblyError | MotionTooRough:
+) -> Status:
     ahead = min(stop, instant + 1e-6 * (stop - instant))
     goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
     # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not: the first of
@@ -267,9 +269,8 @@ def _cannot_pass(
     moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
     change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
     problem = "the motion cannot pass a singular pose"
-    error = stopped(mechanism, problem, y, goal, factors, unfinished, instant, change)
-    error.partial = partial
+    status = blocked(mechanism, problem, y, goal, factors, unfinished, instant, change)
     # Near a lock the condition number has grown as the inverse root of the shortest step.
-    if error.condition > REGULAR:
-        return error
-    return MotionTooRough(error.reduce, instant, partial, coarsest=coarsest)
+    if status.condition > REGULAR:
+        return status
+    return TooRough(status.reduce, instant, coarsest)

@@ -2,15 +2,11 @@
 
 from collections.abc import Mapping
 
-from pointcoord.linkage.topology import Topology
 from pointcoord.suspensions.double_wishbone import DOUBLE_WISHBONE
-from pointcoord.suspensions.macpherson import MACPHERSON, PRINTED
+from pointcoord.suspensions.macpherson import MACPHERSON
 from pointcoord.suspensions.suspension import Suspension
 
 SUSPENSIONS: Mapping[str, Suspension] = {
     suspension.type: suspension for suspension in (MACPHERSON, DOUBLE_WISHBONE)
 }
 """Everything that is said about types, closures, points and inputs is read off these."""
-
-PRINTED_TOPOLOGIES: dict[str, dict[str, Topology]] = {"macpherson": {"collinear": PRINTED}}
-"""Each linkage with its constraints as a paper prints them."""

@@ -18,7 +18,6 @@ from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.constraints.on_axis import OnAxis
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
 from pointcoord.linkage.constraints.rack import Rack
 from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.drives import ArmAngle, Travel
@@ -39,10 +38,6 @@ _TIE_ROD = Link("tie_rod_inner", "tie_rod_outer")  # (7)
 _COLLINEAR = (
     OnLine("lower_ball_joint", "strut_top", "strut_rod_end", "place of lower_ball_joint on the strut"),
     OnLine("strut_lower", "strut_top", "strut_rod_end", "place of strut_lower on the strut"),
-)
-_PRINTED = (
-    PrintedParallel("lower_ball_joint", "strut_lower", "strut_top", "strut_rod_end"),  # (8), (9)
-    PrintedParallel("strut_top", "strut_lower", "strut_top", "strut_rod_end"),  # (10), (11)
 )
 _NORMAL = Normal("normal of the knuckle", *KNUCKLE)
 _AXIS = AxisInBody("strut axis", "strut_lower", "strut_top", _NORMAL)
@@ -91,8 +86,5 @@ DRAWN = _macpherson("macpherson", (*_LINKS, _TIE_ROD, *_GENERAL), ("lower_ball_j
 
 COLLINEAR = _macpherson("macpherson, collinear", (*_LINKS, _ROD_END, _TIE_ROD, *_COLLINEAR), _EQ_16)
 """The paper's strut, with a coordinate of its own for each of its two sliding points."""
-
-PRINTED = _macpherson("macpherson, as printed", (*_LINKS, _ROD_END, _TIE_ROD, *_PRINTED), _EQ_16)
-"""The paper's strut with its cross-product rows (8)-(11)."""
 
 MACPHERSON = Suspension("macpherson", {"drawn": DRAWN, "collinear": COLLINEAR})

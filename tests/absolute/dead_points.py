@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-import moving_form as form
 import numpy as np
+import strut_motion as form
 import struts
 from numpy.typing import NDArray
 
@@ -33,13 +33,13 @@ def end_of(car: dict[str, Array], limit: str, out: float) -> End:
         return (angle + out * change, rack) if limit == "arm_angle" else (angle, rack + out * change)
 
     low, high = 0.0, 0.0
-    while form.moving_form(car, *((x, 0, 0) for x in at(high)), "drawn") is not None:
+    while form.strut_motion(car, *((x, 0, 0) for x in at(high)), "drawn") is not None:
         low, high = high, high + (0.02 if limit == "arm_angle" else 5.0)
     while at(0.5 * (low + high)) not in (at(low), at(high)):
         middle = 0.5 * (low + high)
-        inside = form.moving_form(car, *((x, 0, 0) for x in at(middle)), "drawn")
+        inside = form.strut_motion(car, *((x, 0, 0) for x in at(middle)), "drawn")
         low, high = (low, middle) if inside is None else (middle, high)
-    exact = form.moving_form(car, *((x, 0, 0) for x in at(low)), "drawn")
+    exact = form.strut_motion(car, *((x, 0, 0) for x in at(low)), "drawn")
     assert exact is not None
     links = LINKS[int(np.argmin([float(margin) for margin in exact.margins]))]
     return End(car, links, limit, at(low), (out, 0.0) if limit == "arm_angle" else (0.0, out * 219.0))

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import absolute
-import absolute.march
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
-from absolute.march import Rough, rough_of
+import absolute.tracking
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.newton import seek
+from absolute.tracking import Rough, rough_of
 
 Array = NDArray[np.float64]
 Table = dict[str, tuple[float, float, float]]
@@ -115,7 +115,7 @@ def other_branch(strut: absolute.Model, angle: float) -> Rough:
     while True:
         step = random.normal(size=mechanism.stack.count)
         found = seek(mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), target)
-        if found is not None and not mechanism.sides.kept(found.placed.world):
+        if found is not None and not mechanism.branch_signs.kept(found.placed.world):
             return rough_of(found)
 
 
@@ -127,7 +127,7 @@ def test_a_jump_to_another_branch_on_the_way_is_undone_or_refused(
     inputs = {"arm_angle": np.stack([angles, 0 * angles, 0 * angles], -1), "rack": np.zeros((11, 3))}
     expected = absolute.solve(strut, inputs)
     wrong = other_branch(strut, float(angles[5]))
-    glide, march_travel = absolute.march.glide, absolute.march.travel
+    glide, continue_to = absolute.tracking.glide, absolute.tracking.continue_to
     calls = {"glide": 0, "jumps": 0}
 
     def jumping(*arguments: Any) -> Rough | None:
@@ -138,14 +138,14 @@ def test_a_jump_to_another_branch_on_the_way_is_undone_or_refused(
             return wrong
         return glide(*arguments)
 
-    def jumping_travel(mechanism: Mechanism, *arguments: Any) -> Any:
-        pose, spent = march_travel(mechanism, *arguments)
+    def jumping_continue_to(mechanism: Mechanism, *arguments: Any) -> Any:
+        pose, spent = continue_to(mechanism, *arguments)
         if 0 < calls["jumps"] < times:
             return pose._replace(q=wrong.q), spent
         return pose, spent
 
-    monkeypatch.setattr(absolute.march, "glide", jumping)
-    monkeypatch.setattr(absolute.march, "travel", jumping_travel)
+    monkeypatch.setattr(absolute.tracking, "glide", jumping)
+    monkeypatch.setattr(absolute.tracking, "continue_to", jumping_continue_to)
     if times == 1:
         motion = absolute.solve(strut, inputs)
         for name in strut.points:
@@ -171,30 +171,30 @@ def test_a_jump_to_another_branch_on_the_way_is_undone_or_refused(
         (((0.0, np.nan, 0.0), (0.0, 0.0, 1.0)), "finite"),
     ],
 )
-def test_sides_are_checked(strut: absolute.Model, vectors: Any, say: str) -> None:
+def test_branch_signs_are_checked(strut: absolute.Model, vectors: Any, say: str) -> None:
     with pytest.raises(absolute.DescriptionError, match=say):
-        dataclasses.replace(strut, sides={"lean": absolute.Side(vectors)})
+        dataclasses.replace(strut, branch_signs={"lean": absolute.BranchSign(vectors)})
 
 
-def test_sides_do_not_depend_on_units_of_their_directions(table: Table) -> None:
+def test_branch_signs_do_not_depend_on_units_of_their_directions(table: Table) -> None:
     for scale in (1e-200, 1.0, 1e200):
         model = absolute.macpherson(table, up=(0.0, 0.0, scale), closure="collinear")
         mechanism = Mechanism(model)
-        assert (np.abs(mechanism.sides.drawn) <= 1.0).all()
+        assert (np.abs(mechanism.branch_signs.drawn) <= 1.0).all()
         assert (
-            mechanism.sides.wanted
-            == np.sign(Mechanism(absolute.macpherson(table, closure="collinear")).sides.drawn)
+            mechanism.branch_signs.wanted
+            == np.sign(Mechanism(absolute.macpherson(table, closure="collinear")).branch_signs.drawn)
         ).all()
 
 
-@pytest.mark.parametrize("sides", [True, False])
+@pytest.mark.parametrize("told", [True, False])
 def test_a_long_way_close_by_a_fold_does_not_cross_it(
-    table: Table, strut: absolute.Model, held: Held, sides: bool
+    table: Table, strut: absolute.Model, held: Held, told: bool
 ) -> None:
     # Straight to this goal the motion passes a fold so close that Newton converges beyond it: only
-    # the sign of the determinant tells, where a model has no sides.
+    # the sign of the determinant tells, where a model has no branch signs.
     goal = 0.5714841988334616, -27.604730159848856
-    model = strut if sides else dataclasses.replace(strut, sides={})
+    model = strut if told else dataclasses.replace(strut, branch_signs={})
     expected = closed.closed_form({name: np.array(point) for name, point in table.items()}, *goal)
     assert expected is not None
     try:

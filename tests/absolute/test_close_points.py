@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import absolute
 from absolute import Axis
-from absolute.assembly import Mechanism
 from absolute.drawing import Drawing
+from absolute.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 Table = dict[str, tuple[float, float, float]]
@@ -88,10 +88,10 @@ def test_points_near_each_other_keep_their_vector_in_the_body_that_holds_them(
                 assert error_of(vector / length, exact_unit(car[fixed], car[moved])) <= 4 * EPS
 
 
-def exact_product(car: dict[str, Array], side: absolute.Side) -> tuple[Fraction, float]:
-    """The product of a side's vectors from the coordinates given, and the product of their lengths."""
+def exact_product(car: dict[str, Array], sign: absolute.BranchSign) -> tuple[Fraction, float]:
+    """The product of a branch sign's vectors from the coordinates given, and the product of their lengths."""
     vectors = []
-    for vector in side.vectors:
+    for vector in sign.vectors:
         start, end = (np.zeros(3), np.array(vector)) if len(vector) == 3 else (car[name] for name in vector)
         vectors.append([b - a for a, b in zip(fractions(start), fractions(end), strict=True)])
     lengths = float(np.prod([np.linalg.norm([float(x) for x in vector]) for vector in vectors]))
@@ -102,23 +102,23 @@ def exact_product(car: dict[str, Array], side: absolute.Side) -> tuple[Fraction,
 
 
 @pytest.mark.parametrize(("fixed", "moved"), PAIRS[:7])
-def test_sides_of_short_lines_are_those_of_the_coordinates_given(
+def test_branch_signs_of_short_lines_are_those_of_the_coordinates_given(
     table: Table, fixed: str, moved: str
 ) -> None:
     for share in SHARES:
         car = drawn_close(table, fixed, moved, share, 1)
         model = absolute.macpherson(car, closure="collinear")
         mechanism = Mechanism(model)
-        sides = mechanism.sides
+        signs = mechanism.branch_signs
         placed = mechanism.stack.place(*mechanism.poses(mechanism.drawn)).world
-        for name, side in model.sides.items():
-            product, lengths = exact_product(car, side)
-            number = sides.names.index(name)
+        for name, sign in model.branch_signs.items():
+            product, lengths = exact_product(car, sign)
+            number = signs.names.index(name)
             # Nine roundings at most in the drawing; placed, points of two bodies far apart are
             # rounded as the size, a few hundred mm.
-            assert abs(sides.drawn[number] - float(product) / lengths) <= 9 * EPS
-            assert sides.wanted[number] == np.sign(float(product))
-            assert abs(sides.shares(placed)[number] - float(product) / lengths) <= 32 * EPS
+            assert abs(signs.drawn[number] - float(product) / lengths) <= 9 * EPS
+            assert signs.wanted[number] == np.sign(float(product))
+            assert abs(signs.shares(placed)[number] - float(product) / lengths) <= 32 * EPS
 
 
 @pytest.mark.parametrize("share", SHARES)

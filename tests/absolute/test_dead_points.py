@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 
-import moving_form as form
+import jets
 import numpy as np
 import pytest
+import strut_motion as form
 from dead_points import ENDS, LINKS, End, low_mount
 from numpy.typing import NDArray
 
@@ -42,13 +43,13 @@ def test_beyond_an_end_the_refusal_names_links_input_and_limit(end: End, held: H
 @pytest.mark.parametrize("before", [1e-12, 1e-10, 1e-8, 1e-5, 1e-2])
 def test_just_before_an_end_the_pose_is_the_exact_one(end: End, held: Held, before: float) -> None:
     goal = end.inside[0] - before * end.out[0], end.inside[1] - before * end.out[1]
-    exact = form.moving_form(end.car, *((x, 0, 0) for x in goal), "drawn")
+    exact = form.strut_motion(end.car, *((x, 0, 0) for x in goal), "drawn")
     assert exact is not None
     motion = absolute.solve(absolute.macpherson(end.car), held(*goal), rates=False, conditions=True)
     assert motion.condition is not None
     tolerance = 8 * EPS * 400 * motion.condition[0]
     for name, place in exact.points.items():
-        assert form.errors_of([x.x for x in place], motion.position[name][0]).max() <= tolerance, name
+        assert jets.errors_of([x.x for x in place], motion.position[name][0]).max() <= tolerance, name
 
 
 @pytest.mark.parametrize("lift", [0.0, 1e-13])

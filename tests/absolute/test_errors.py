@@ -3,16 +3,18 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import moving_form as form
+import jets
 import numpy as np
 import pytest
+import strut_motion as form
 import struts
 from dead_points import ENDS
+from mpmath import mp, mpf
 from numpy.typing import NDArray
 
 import absolute
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.rounding import pose_doubt
 
 Array = NDArray[np.float64]
@@ -27,11 +29,11 @@ def shares(exact: Any, motion: absolute.Solution) -> Iterator[tuple[str, str, Ar
     """(quantity, name, error, estimate) of everything that a closed form knows, at the only instant."""
     for quantity, part in PARTS.items():
         for name, place in exact.points.items():
-            error = form.errors_of([getattr(x, part) for x in place], getattr(motion, quantity)[name][0])
+            error = jets.errors_of([getattr(x, part) for x in place], getattr(motion, quantity)[name][0])
             yield quantity, name, error, getattr(motion, f"{quantity}_error")[name][0]
     for quantity, order in SPINS.items():
         for name, spin in exact.spins.items():
-            error = form.errors_of(spin[order], getattr(motion, quantity)[name][0])
+            error = jets.errors_of(spin[order], getattr(motion, quantity)[name][0])
             yield quantity, name, error, getattr(motion, f"{quantity}_error")[name][0]
 
 
@@ -58,7 +60,7 @@ def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -
         angle, rack = form.drawn_inputs(car)
         goal = angle + random.uniform(-0.4, 0.4), rack + random.uniform(-50.0, 50.0)
         inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
-        exact = form.moving_form(car, *(series[0] for series in inputs.values()), closure)
+        exact = form.strut_motion(car, *(series[0] for series in inputs.values()), closure)
         try:
             motion = absolute.solve(absolute.macpherson(car, closure=closure), inputs, errors=True)
         except absolute.PoseError:
@@ -87,7 +89,7 @@ def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: flo
     for share in random.uniform(1.0, 10.0, 4):
         goal = [inside - share * before * out for inside, out in zip(end.inside, end.out, strict=True)]
         inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
-        exact = form.moving_form(end.car, *(series[0] for series in inputs.values()), "drawn")
+        exact = form.strut_motion(end.car, *(series[0] for series in inputs.values()), "drawn")
         assert exact is not None
         motion = absolute.solve(strut, inputs, errors=True)
         for quantity, name, error, estimate in shares(exact, motion):
@@ -118,15 +120,15 @@ def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> No
     series = np.stack([angles, np.full(60, turns), np.zeros(60)], -1)
     motion = absolute.solve(model, {"angle": series}, errors=True)
     share = dict.fromkeys(PARTS, 0.0)
-    with form.mp.workdps(form.DIGITS):
-        crank, rod = (form.fixed(line) for line in (pin, np.subtract(piston, pin)))
+    with mp.workdps(jets.DIGITS):
+        crank, rod = (jets.fixed(line) for line in (pin, np.subtract(piston, pin)))
         for k, row in enumerate(series):
-            along = form.number(50.0) * form.Jet(*map(form.mpf, row)).cosine()
-            height = form.dot(crank, crank) - along * along
-            place = along + (form.dot(rod, rod) - height).root()
+            along = jets.number(50.0) * jets.Jet(*map(mpf, row)).cosine()
+            height = jets.dot(crank, crank) - along * along
+            place = along + (jets.dot(rod, rod) - height).root()
             for quantity, part in PARTS.items():
                 found, told = (getattr(motion, quantity + e)["piston"][k] for e in ("", "_error"))
-                error = form.errors_of([getattr(place, part)], found[:1])[0]
+                error = jets.errors_of([getattr(place, part)], found[:1])[0]
                 assert error <= told[0], (quantity, k)
                 share[quantity] = max(share[quantity], error / told[0])
     assert min(share.values()) > 0.02, share

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import absolute
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
-from absolute.finish import finish
-from absolute.march import Found
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.newton import correct
+from absolute.refine import refine
+from absolute.tracking import Found
 
 EPS = float(np.finfo(float).eps)
 
@@ -20,11 +20,11 @@ def test_the_residual_reported_is_how_far_a_row_is_off_its_target_on_either_side
     mechanism = Mechanism(strut)
     pose, _ = assemble(mechanism)
     # No correction at all: the pose of the drawing stays, and the rack's row misses by `off` mm.
-    monkeypatch.setattr(absolute.finish, "MOST_CORRECTIONS", 0)
+    monkeypatch.setattr(absolute.refine, "MOST_CORRECTIONS", 0)
     angle, rack = mechanism.drawn_inputs.tolist()
     series = np.array([[[angle, rack], [0, 0], [0, 0]], [[angle, rack + off], [0, 0], [0, 0]]])
-    finished = finish(mechanism, [Found(pose.q, 0)] * 2, mechanism.target_series(series), False)
-    residual = finished.residual * mechanism.drawing.size
+    refined = refine(mechanism, [Found(pose.q, 0)] * 2, mechanism.target_series(series), False)
+    residual = refined.residual * mechanism.drawing.size
     # The rows themselves are closed to a few roundings of the size.
     assert 0 <= residual[0] <= 16 * EPS * mechanism.drawing.size
     assert abs(residual[1] - abs(off)) <= 16 * EPS * mechanism.drawing.size

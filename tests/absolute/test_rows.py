@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 from mpmath import matrix, mp, mpf
 
 import absolute
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
+from absolute.continue_to import continue_to
 from absolute.drawing import Drawing
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from absolute.newton import accelerations
 from absolute.rounding import second_doubt
 from absolute.rows import joint_frames
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
-from absolute.travel import travel
 
 EPS = np.finfo(float).eps
 
@@ -93,7 +93,7 @@ def test_joint_rows_are_those_of_pinocchio_frame_anchors(
 ) -> None:
     mechanism = Mechanism(strut)
     pose, _ = assemble(mechanism)
-    pose, _ = travel(mechanism, pose, mechanism.drawn_inputs.tolist(), list(goal), 0)
+    pose, _ = continue_to(mechanism, pose, mechanism.drawn_inputs.tolist(), list(goal), 0)
     model, drawing = mechanism.pin_model, Drawing(strut)
     rate = np.zeros(mechanism.stack.count)
     rate[mechanism.joint_rows :] = 0.3, -0.2
@@ -149,7 +149,7 @@ def test_point_rates_are_those_of_pinocchio(strut: absolute.Model) -> None:
     mechanism = Mechanism(strut)
     drawing = mechanism.drawing
     pose, _ = assemble(mechanism)
-    pose, _ = travel(mechanism, pose, mechanism.drawn_inputs.tolist(), [angle[0], rack[0]], 0)
+    pose, _ = continue_to(mechanism, pose, mechanism.drawn_inputs.tolist(), [angle[0], rack[0]], 0)
     _, rate, second = mechanism.targets([angle[0], rack[0]], [angle[1], rack[1]], [angle[2], rack[2]])
     velocity, acceleration = accelerations(mechanism, pose, rate, second)
     local, local_acceleration = body_rates(velocity, acceleration, pose.poses.rotation[1:])

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 
-import moving_form as form
+import jets
 import numpy as np
 import pytest
+import strut_motion as form
 import struts
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -29,7 +30,9 @@ def with_rack(car: dict[str, Array]) -> dict[str, Array]:
 def test_a_closing_drawing_of_any_ball_joint_comes_back_to_rounding(seed: int) -> None:
     car = struts.off_axis_strut(seed)
     # A drawing at its own dead point, or within rounding of it, is refused.
-    exact = form.moving_form(with_rack(car), *((x, 0, 0) for x in form.drawn_inputs(with_rack(car))), "drawn")
+    exact = form.strut_motion(
+        with_rack(car), *((x, 0, 0) for x in form.drawn_inputs(with_rack(car))), "drawn"
+    )
     if exact is None or min(exact.margins) < 1e-4:
         return
     closed = absolute.close_drawing(absolute.macpherson(car))
@@ -52,13 +55,13 @@ def test_motion_of_random_struts_is_that_of_circle_quadratic_and_angle(seed: int
         "arm_angle": [angle + random.uniform(-0.3, 0.3), *random.uniform(-1, 1, 2)],
         "rack": [rack + random.uniform(-40, 40), *random.uniform(-200, 200, 2)],
     }
-    exact = form.moving_form(with_rack(car), goal["arm_angle"], goal["rack"], "drawn")
+    exact = form.strut_motion(with_rack(car), goal["arm_angle"], goal["rack"], "drawn")
     inputs = {name: np.array([series]) for name, series in goal.items()}
     try:
         motion = absolute.solve(absolute.macpherson(car), inputs, conditions=True)
     except absolute.PoseError:
         # Beyond a limit, behind one on the way there, or the drawing itself is (not closing) beyond it.
-        drawn = form.moving_form(with_rack(car), (angle, 0, 0), (rack, 0, 0), "drawn")
+        drawn = form.strut_motion(with_rack(car), (angle, 0, 0), (rack, 0, 0), "drawn")
         assert exact is None or drawn is None or min(*exact.margins, *drawn.margins) < 0.05
         return
     assert exact is not None
@@ -76,10 +79,10 @@ def test_motion_of_random_struts_is_that_of_circle_quadratic_and_angle(seed: int
         # The rates pass through the inverse once more than the pose they stand on.
         tolerance = 4 * EPS * condition**power * (SIZE if power == 1 else max(speed, speed**2 / SIZE, 200.0))
         for name, place in exact.points.items():
-            error = form.errors_of([getattr(x, part) for x in place], found[name][0])
+            error = jets.errors_of([getattr(x, part) for x in place], found[name][0])
             assert error.max() <= tolerance, (name, part)
         for body, series in spins.items():
-            assert form.errors_of(exact.spins[body][power - 2], series[0]).max() <= tolerance / SIZE, body
+            assert jets.errors_of(exact.spins[body][power - 2], series[0]).max() <= tolerance / SIZE, body
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -9,7 +9,8 @@ from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
-from validate.cars.paper_car import PAPER, Points
+from validate.cars.car import Points
+from validate.cars.paper_car import PAPER
 
 EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from closed_forms import FORMS, ClosedForm
 from sample_cars import SampleCar, by_drawn_car
+from suspensions_in_closed_form import FORMS, ClosedForm
 
 from pointcoord import Scene, simulate, standing
 
@@ -31,8 +31,8 @@ def test_an_input_reaches_as_far_as_the_closed_form_has_an_assembly(
         # Both are right to 1e-12 of the way; doubles round the drawn inputs and the car's numbers.
         near = 1e-9 * (high.value - low.value)
         inside, outside = (inputs | {name: end.value + side * outwards * near} for side in (-1.0, 1.0))
-        assert form.pose(car, inside["arm_angle"], inside["rack"]) is not None
-        assert form.pose(car, outside["arm_angle"], outside["rack"]) is None
+        assert car.drawn_pose(inside["arm_angle"], inside["rack"]) is not None
+        assert car.drawn_pose(outside["arm_angle"], outside["rack"]) is None
         assert end.limits
 
 
@@ -45,10 +45,11 @@ def test_the_drawn_inputs_and_angles_are_those_of_the_motion_there(
     assert found.inputs == pytest.approx(car.drawn_inputs, abs=1e-15)
     inputs = {name: [value] for name, value in found.inputs.items()}
     motion = simulate(make_scene(**inputs, car=car, stop=0.0, samples=1))
-    for name in ("camber", "kingpin"):
-        assert motion.wheel[name][0] == pytest.approx(getattr(found, name), abs=1e-13)
+    assert found.angles.keys() == motion.wheel.keys()
+    for name, angle in found.angles.items():
+        assert motion.wheel[name][0] == pytest.approx(angle, abs=1e-13)
     assert found.closing == motion.closing
     p = {name: np.array(place) for name, place in car.points.items()}
     outboard = np.array([0.0, -1.0 if car.side == "left" else 1.0, 0.0])
     spindle = p["wheel_centre"] - p["wheel_axis_inner"]
-    assert found.camber == pytest.approx(-np.arctan(spindle[2] / (spindle @ outboard)), abs=1e-13)
+    assert found.angles["camber"] == pytest.approx(-np.arctan(spindle[2] / (spindle @ outboard)), abs=1e-13)

@@ -15,9 +15,9 @@ from flint import arb, ctx
 import absolute
 import absolute.backend
 import pointcoord
-from absolute.assemble import assemble
-from absolute.assembly import Mechanism
 from absolute.continuation import follow
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
@@ -26,11 +26,10 @@ from validate.formulations.protocol import Accuracy
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.output.motion_tables import write_motion
-from validate.reference import solve_truth
-from validate.reference.branches import candidate, choices_of_table
+from validate.reference import solve_reference
+from validate.reference.candidates import choices_of_table
 from validate.reference.certificate import certify, refine
-from validate.reference.design import Design, Driven, values_only
-from validate.reference.equations import unknown_of
+from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
 from validate.studies.chunk_store import Store
 
@@ -99,9 +98,9 @@ def uncertified() -> object:
     """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
     with ctx.workprec(bits(60)):
         design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
-        known = values_only(design.known(Driven.from_mapping({"arm_angle": (1.5, 0, 0)})))
-        drawn = candidate(known, choices_of_table(design.table, design.up, "collinear"))
-        assembled = refine(unknown_of(drawn.points, known), known)
+        known = values_only(design.known(design.driven({"arm_angle": (1.5, 0, 0)})))
+        drawn = design.linkage.candidate(known, choices_of_table(design.table, design.up, design.linkage))
+        assembled = refine(design.linkage.unknown_of(drawn.points, known), known)
         assembled[0] = (assembled[0] + arb("1e-59")).mid()
         return certify(assembled, known, Fraction(1, 10**60))
 
@@ -210,7 +209,7 @@ RECIPES: dict[str, Recipe] = {
     "absolute.errors.BranchError": Recipe(
         lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
         ("no branch", "tie rod beside the kingpin"),
-        {"side": bool, "drawn": np.isfinite},
+        {"branch_sign": bool, "drawn": np.isfinite},
     ),
     "absolute.errors.UnreachableError": Recipe(
         lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),
@@ -270,24 +269,24 @@ RECIPES: dict[str, Recipe] = {
         ("no hard case is called 'arm-higest'", "near names: ", "--list"),
         {"name": "arm-higest"},
     ),
-    "validate.reference.errors.TruthError": Recipe(
-        lambda *_: (
-            solve_truth({**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}).camber
-        ),
+    "validate.reference.errors.NoReferenceError": Recipe(
+        lambda *_: solve_reference(
+            {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
+        ).effect("camber"),
         ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
     ),
     "validate.reference.errors.BadInputError": Recipe(
-        lambda *_: solve_truth(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),
+        lambda *_: solve_reference(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),
         ("side is 'middle'", "allowed is 'left' or 'right'"),
         {"what": "side", "value": "middle", "allowed": bool},
     ),
     "validate.reference.errors.InfeasibleError": Recipe(
-        lambda *_: solve_truth(TABLE, {"arm_angle": (1.5, 0, 0), "rack": (500, 0, 0)}),
+        lambda *_: solve_reference(TABLE, {"arm_angle": (1.5, 0, 0), "rack": (500, 0, 0)}),
         ("tie_rod closure misses by", "mm", "limit 0", "try less rack travel"),
         {"closure": "tie_rod", "gap": lambda gap: gap > 0.0},
     ),
     "validate.reference.errors.AmbiguousAssemblyError": Recipe(
-        lambda *_: solve_truth(
+        lambda *_: solve_reference(
             {**TABLE, **TOP, "lower_ball_joint": (0, 0, -300)}, {"arm_angle": (3.0, 0, 0)}
         ),
         ("arm choice", "limit"),
@@ -297,7 +296,7 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: uncertified(), ("limit",), {"what": bool, "value": bool, "limit": bool}
     ),
     "validate.reference.errors.SingularPoseError": Recipe(
-        lambda *_: solve_truth({**TABLE, **TOP}, {"arm_angle": (0, 1, 0)}),
+        lambda *_: solve_reference({**TABLE, **TOP}, {"arm_angle": (0, 1, 0)}),
         ("no certificate with 400 digits", "dead point", "move an input"),
         {"digits": 400, "reason": lambda reason: type(reason).__name__ == "NotDecidedError"},
     ),

@@ -7,21 +7,31 @@ equations for direction cosines.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import ClassVar
 
 import mpmath
-from hypothesis import Phase
+from closed_forms import (
+    ClosedFormCar,
+    Points,
+    Pose,
+    lower_ball_joint,
+    numbers,
+    rational_turn,
+    size,
+    steered,
+    tie_rod,
+    turned,
+    unit,
+)
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from validate.reference.vectors import Vector, cross, dot, minus, plus, times
-
-Points = dict[str, Vector]
-
-# Without shrinking: a failure is told in seconds, and a car of round numbers explains no more.
-PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
+from validate.reference.macpherson import DRAWN
+from validate.reference.macpherson.drawn import AXIS
+from validate.reference.vectors import Vector, dot, minus, plus, times
 
 # A strut of a real car's size, mm; the ball joint is a few centimetres beside the strut's axis.
 BASE: Points = {
@@ -40,23 +50,39 @@ BASE: Points = {
 
 
 @dataclass(frozen=True)
-class OffAxisCar:
-    """A drawing that closes, and the car's directions; exact fractions."""
+class OffAxisCar(ClosedFormCar):
+    """A strut as drawn."""
 
-    points: Points
-    up: Vector
-    right: Vector
+    linkage = DRAWN
+    suspension = "macpherson"
+    bodies: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "knuckle": (
+            "lower_ball_joint",
+            "tie_rod_outer",
+            "strut_lower",
+            "wheel_centre",
+            "wheel_axis_inner",
+        ),
+        "lower_arm": ("lower_arm_front", "lower_arm_rear", "lower_ball_joint"),
+    }
 
-    @property
-    def frame(self) -> dict[str, Vector]:
-        return {"up": self.up, "right": self.right}
+    def poses(self, theta: object, travel: object, heave: object = 0) -> Iterator[Pose]:
+        """Every assembly: arm, slide and tie rod have two answers each, or none."""
+        p = {name: numbers(place) for name, place in self.points.items()}
+        up, right = numbers(self.up), numbers(self.right)
+        for sides in itertools.product((1, -1), repeat=3):
+            pose = _pose(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
+            if pose is not None:
+                yield pose
 
-    @property
-    def drawn(self) -> tuple[mpf, mpf]:
-        """theta and S of the drawing."""
-        p, arm = self.points, minus(self.points["lower_ball_joint"], self.points["lower_arm_front"])
-        angle = mpmath.acos(number(dot(arm, self.up)) / mpmath.sqrt(number(dot(arm, arm))))
-        return angle, number(dot(minus(p["rack_centre"], p["tie_rod_inner"]), self.right))
+    def shape(self, p: Points) -> Points:
+        """The knuckle in its own frame, its axis from strut_lower to strut_top and the rod as drawn."""
+        carried = ("tie_rod_outer", "strut_lower", "wheel_centre", "wheel_axis_inner")
+        return {
+            **{name: minus(p[name], p["lower_ball_joint"]) for name in carried},
+            AXIS: minus(p["strut_top"], p["strut_lower"]),
+            "strut_rod_end": minus(p["strut_rod_end"], p["strut_top"]),
+        }
 
 
 def closing(points: Points, rod: Fraction, travel: Fraction, right: Vector) -> Points:
@@ -87,89 +113,14 @@ def off_axis_cars(draw: st.DrawFn) -> OffAxisCar:
     )
 
 
-def rational_turn(quaternion: tuple[int, int, int, int]) -> tuple[Vector, Vector, Vector]:
-    """The columns of a turn, exact, from a quaternion of whole numbers."""
-    w, *v = (Fraction(n) for n in quaternion)
-    axis, size = (v[0], v[1], v[2]), sum(Fraction(n) ** 2 for n in quaternion)
-    units = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-
-    def column(e: Vector) -> Vector:
-        across = cross(axis, e)
-        return times(
-            plus(
-                times(e, w * w - dot(axis, axis)), plus(times(axis, 2 * dot(axis, e)), times(across, 2 * w))
-            ),
-            1 / size,
-        )
-
-    return column(units[0]), column(units[1]), column(units[2])
-
-
-def turned(columns: tuple[Vector, Vector, Vector], p: Vector) -> Vector:
-    return plus(plus(times(columns[0], p[0]), times(columns[1], p[1])), times(columns[2], p[2]))
-
-
-@dataclass(frozen=True)
-class Pose:
-    """An assembly by the closed form; mm.
-
-    Attributes:
-        points: by name.
-        columns: of the knuckle's turn from the drawing.
-        slide: the strut top's place on the axis, as a share of 7-4 as drawn.
-        sides: of the arm, the slide and the tie rod, each +1 or -1.
-    """
-
-    points: Points
-    columns: tuple[Vector, Vector, Vector]
-    slide: mpf
-    sides: tuple[int, int, int]
-
-
-def poses(car: OffAxisCar, theta: object, travel: object, heave: object = 0) -> Iterator[Pose]:
-    """Every assembly, by the closed form: arm, slide and tie rod have two answers each, or none."""
-    p = {name: numbers(place) for name, place in car.points.items()}
-    up, right = numbers(car.up), numbers(car.right)
-    for sides in itertools.product((1, -1), repeat=3):
-        pose = _pose(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
-        if pose is not None:
-            yield pose
-
-
-def drawn_pose(car: OffAxisCar, theta: object, travel: object, heave: object = 0) -> Pose | None:
-    """The assembly on the sides of the drawing, or none."""
-    wanted = drawn_sides(car)
-    return next((pose for pose in poses(car, theta, travel, heave) if pose.sides == wanted), None)
-
-
-def drawn_sides(car: OffAxisCar) -> tuple[int, int, int]:
-    """The sides on which the drawing itself lies: of its own assemblies it is the one that moves nothing."""
-
-    def moved(pose: Pose) -> mpf:
-        return max(abs(x) for n, q in pose.points.items() for x in minus(q, numbers(car.points[n])))
-
-    return min(poses(car, *car.drawn), key=moved).sides
-
-
 def _pose(
     p: Points, up: Vector, right: Vector, sides: tuple[int, int, int], inputs: tuple[mpf, mpf, mpf]
 ) -> Pose | None:
-    theta, travel, heave = inputs
-    lift = times(up, heave)
-    p1, p2, p3, p4 = (
-        plus(p[name], lift) for name in ("lower_arm_front", "lower_arm_rear", "rack_centre", "strut_top")
-    )
-    ball = p["lower_ball_joint"]
-    arm = minus(ball, p["lower_arm_front"])
-    pivot = unit(minus(p2, p1))
-    foot = times(pivot, dot(arm, pivot))
-    e = minus(arm, foot)
-    f = cross(pivot, e)
-    goal = size(arm) * mpmath.cos(theta) - dot(foot, up)
-    phi = angle(dot(e, up), dot(f, up), goal, sides[0])
-    if phi is None:
+    lower = lower_ball_joint(p, up, right, sides[0], *inputs)
+    if lower is None:
         return None
-    p5 = plus(plus(p1, foot), plus(times(e, mpmath.cos(phi)), times(f, mpmath.sin(phi))))
+    ball, p5, p9 = p["lower_ball_joint"], lower["lower_ball_joint"], lower["tie_rod_inner"]
+    p4 = plus(p["strut_top"], times(up, inputs[2]))
 
     k = {name: minus(place, ball) for name, place in p.items()}
     u, strut = minus(k["strut_top"], k["strut_lower"]), minus(p4, p5)
@@ -179,70 +130,22 @@ def _pose(
         return None
     slide = (-half + sides[1] * mpmath.sqrt(under)) / dot(u, u)
 
-    # First the shortest turn that lays the knuckle's line to the strut top on the car's, then one about it.
-    was, now = unit(plus(k["strut_lower"], times(u, slide))), unit(strut)
-    p9 = minus(p3, times(right, travel))
-    w, r9 = _shortest(was, now, k["tie_rod_outer"]), minus(p9, p5)
-    along = times(now, dot(w, now))
-    tie = minus(p["tie_rod_outer"], p["tie_rod_inner"])
-    goal = (dot(w, w) + dot(r9, r9) - dot(tie, tie)) / 2 - dot(along, r9)
-    psi = angle(dot(minus(w, along), r9), dot(cross(now, w), r9), goal, sides[2])
-    if psi is None:
+    top = plus(k["strut_lower"], times(u, slide))
+    place = steered(top, strut, k["tie_rod_outer"], minus(p9, p5), tie_rod(p), sides[2])
+    if place is None:
         return None
-
-    def place(v: Vector) -> Vector:
-        v = _shortest(was, now, v)
-        on = times(now, dot(v, now))
-        return plus(on, plus(times(minus(v, on), mpmath.cos(psi)), times(cross(now, v), mpmath.sin(psi))))
 
     carried = ("tie_rod_outer", "strut_lower", "wheel_centre", "wheel_axis_inner")
     points = {name: plus(p5, place(k[name])) for name in carried if name in k}
     rod = minus(p["strut_rod_end"], p["strut_top"])
     axis = unit(place(u))
     side = 1 if dot(rod, u) > 0 else -1
-    points |= {
-        "lower_arm_front": p1,
-        "lower_arm_rear": p2,
-        "rack_centre": p3,
-        "strut_top": p4,
-        "lower_ball_joint": p5,
-        "tie_rod_inner": p9,
-        "strut_rod_end": plus(p4, times(axis, side * size(rod))),
-    }
+    points |= lower | {"strut_top": p4, "strut_rod_end": plus(p4, times(axis, side * size(rod)))}
+    # The columns of the knuckle's turn from the drawing, and the strut top's place as a share of 7-4 as
+    # drawn.
     columns = (
         place((mpf(1), mpf(0), mpf(0))),
         place((mpf(0), mpf(1), mpf(0))),
         place((mpf(0), mpf(0), mpf(1))),
     )
-    return Pose(points, columns, slide, sides)
-
-
-def angle(a: mpf, b: mpf, c: mpf, side: int) -> mpf | None:
-    """An angle with a cos + b sin = c, or none."""
-    reach = mpmath.sqrt(a * a + b * b)
-    return None if abs(c) > reach else mpmath.atan2(b, a) + side * mpmath.acos(c / reach)
-
-
-def _shortest(was: Vector, now: Vector, v: Vector) -> Vector:
-    """v turned as the unit vector `was` turns to `now`, about the normal of both (Rodrigues)."""
-    normal = cross(was, now)
-    return plus(plus(v, cross(normal, v)), times(cross(normal, cross(normal, v)), 1 / (1 + dot(was, now))))
-
-
-def unit(v: Vector) -> Vector:
-    return times(v, 1 / size(v))
-
-
-def size(v: Vector) -> mpf:
-    return mpmath.sqrt(dot(v, v))
-
-
-def number(value: object) -> mpf:
-    if isinstance(value, mpf):
-        return value
-    fraction = Fraction(value)
-    return mpf(fraction.numerator) / fraction.denominator
-
-
-def numbers(vector: Vector) -> Vector:
-    return number(vector[0]), number(vector[1]), number(vector[2])
+    return Pose(points, [*p5, *(x for column in columns for x in column), slide], sides)

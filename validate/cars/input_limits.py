@@ -1,9 +1,10 @@
-"""How far the inputs of a strut go before its links cannot follow, in plain floating point.
+"""How far the inputs of a car go before its links cannot follow, in plain floating point.
 
-The lower arm has two dead points, where its ball joint is highest or lowest on its circle. The slide runs out
-where the ball joint is as near to the strut's top as it lies beside the strut's axis; a strut whose axis
-passes through the ball joint never does. Tie rod and steering arm can come to lie in line. All three are
-taken from the closed form, apart from the models and from the truth.
+The lower arm has two dead points, where its ball joint is highest or lowest on its circle. What holds the
+knuckle's upper end locks by itself: the slide of a strut runs out where the ball joint is as near to the
+strut's top as it lies beside the strut's axis; upper arm and kingpin of a double wishbone come to lie in one
+plane with the upper pivots. Tie rod and steering arm can come to lie in line. All three are taken from the
+closed form, apart from the models and from the reference.
 """
 
 from __future__ import annotations
@@ -15,27 +16,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.closed_form import ClosedForm, Closure
+from validate.cars.car import Car
+from validate.cars.closed_form import BALL, INNER, OUTER, RACK, REAR, ClosedForm
+from validate.cars.registry import suspension_of
+from validate.cars.suspension import Suspension
 
 Array = NDArray[np.float64]
 Inputs = dict[str, float]
 
 DRIVEN = ("arm_angle", "rack")
-ARM, STRUT, TIE_ROD = "arm", "strut", "tie_rod"
+ARM, TIE_ROD = "arm", "tie_rod"
 SCAN = 200  # places between the drawing and the end of an input where a lock is looked for
 PATH = 60  # places on the way from the drawing where there must be room
 PARTS, ROUNDS = 64, 10  # dividing an interval in 64 parts ten times leaves 2^-60 of it: rounding
-
-
-@dataclass(frozen=True)
-class Car:
-    """Hardpoints, mm, how the car stands in the frame, and what its strut is."""
-
-    points: Mapping[str, tuple[float, float, float]]
-    side: str
-    up: tuple[float, float, float]
-    right: tuple[float, float, float]
-    closure: Closure = "drawn"
+SHORT = 0.05  # of the car: links no shorter make a sound car
 
 
 @dataclass(frozen=True)
@@ -43,11 +37,13 @@ class Linkage:
     """How far a car's inputs go; arrays of inputs at once."""
 
     form: ClosedForm
+    suspension: Suspension
 
     @classmethod
     def of(cls, car: Car) -> Linkage:
         """Taken from a car's hardpoints."""
-        return cls(ClosedForm.of(car.points, car.up, car.right, car.closure))
+        suspension = suspension_of(car)
+        return cls(suspension.form.of(car), suspension)
 
     @property
     def p(self) -> Mapping[str, Array]:
@@ -72,31 +68,39 @@ class Linkage:
     @property
     def arm_length(self) -> float:
         """From the front pivot to the ball joint."""
-        return float(np.linalg.norm(self.p["lower_ball_joint"]))
+        return float(np.linalg.norm(self.p[BALL]))
+
+    @property
+    def steering_arm(self) -> float:
+        """From the ball joint to the tie rod's outer end."""
+        return float(np.linalg.norm(self.p[OUTER] - self.p[BALL]))
 
     @property
     def drawn_angle(self) -> float:
         """Arm angle of the drawing."""
-        return math.acos(float(self.p["lower_ball_joint"] @ self.up) / self.arm_length)
+        return math.acos(float(self.p[BALL] @ self.up) / self.arm_length)
 
     @property
     def drawn_rack(self) -> float:
         """Rack travel of the drawing; positive against `right`."""
-        return -float((self.p["tie_rod_inner"] - self.p["rack_centre"]) @ self.right)
+        return -float((self.p[INNER] - self.p[RACK]) @ self.right)
+
+    @property
+    def home(self) -> Inputs:
+        """The inputs of the drawing."""
+        return {"arm_angle": self.drawn_angle, "rack": self.drawn_rack}
 
     @property
     def sound(self) -> bool:
-        """Whether neither link is shorter than a twentieth of the car, nor the drawing flat or upright."""
-        ball, outer, lower = (self.p[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower"))
-        lengths = (ball, outer - ball, outer - lower, outer - self.p["tie_rod_inner"], lower - ball)
-        axis = self.p["lower_arm_rear"]
+        """Whether no link is shorter than a twentieth of the car, nor the arm drawn at its dead point."""
+        axis, ball = self.p[REAR], self.p[BALL]
         flat = abs(float(np.cross(axis, self.up) @ ball)) / float(np.linalg.norm(axis) * self.arm_length)
-        shortest = min(float(np.linalg.norm(vector)) for vector in lengths)
-        return shortest > 0.05 * self.size and flat > 0.05
+        lengths = (float(np.linalg.norm(self.p[a] - self.p[b])) for a, b in self.suspension.links)
+        return min(lengths) > SHORT * self.size and flat > SHORT
 
     def dead_points(self) -> tuple[float, float]:
         """Arm angles at which the ball joint is highest and lowest on its circle about the arm's axis."""
-        axis, ball = self.p["lower_arm_rear"], self.p["lower_ball_joint"]
+        axis, ball = self.p[REAR], self.p[BALL]
         along = float(axis @ ball) / float(axis @ axis)
         radius = float(np.linalg.norm(ball - along * axis))
         middle = along * float(axis @ self.up)
@@ -106,13 +110,13 @@ class Linkage:
         return math.acos(high), math.acos(low)
 
     def spare(self, angle: Array, rack: Array) -> Array:
-        """How far slide and tie rod are from their ends, the nearer of both; see `ClosedForm`.
+        """How far upper end and tie rod are from their ends, the nearer of both; see `ClosedForm`.
 
         Negative or not a number where there is no pose.
         """
         with np.errstate(invalid="ignore", divide="ignore"):
-            slide = self.form.slide_spare(angle)
-            return np.asarray(np.minimum(slide, self.form.tie_spare(angle, rack)))
+            upper = self.form.upper_spare(angle)
+            return np.asarray(np.minimum(upper, self.form.tie_spare(angle, rack)))
 
     def end(self, inputs: Inputs, driven: str, ahead: bool) -> tuple[float, str] | None:
         """Last value of an input that can be reached from `inputs`, and what locks there; None if none."""
@@ -139,8 +143,18 @@ class Linkage:
             return (limit, lock) if lock else None
         first = int(np.argmin(open_))
         inside, outside = _narrowed(spare, float(values[first - 1]), float(values[first]))
-        run_out = driven == "arm_angle" and float(self.form.slide_spare(np.array(outside))) <= 0.0
-        return inside, STRUT if run_out else TIE_ROD
+        return inside, self._lock(np.array(outside)) if driven == "arm_angle" else TIE_ROD
+
+    def _lock(self, angle: Array) -> str:
+        """What has no place any more at an arm angle beyond an end."""
+        if np.isnan(self.form.ball_joint(angle)).any():
+            return ARM
+        return TIE_ROD if float(self.form.upper_spare(angle)) > 0.0 else self.suspension.upper_lock
+
+    def ends(self, inputs: Inputs, driven: str) -> list[tuple[float, str]]:
+        """The ends of an input, upper and lower, as far as it has them."""
+        found = (self.end(inputs, driven, ahead) for ahead in (True, False))
+        return [end for end in found if end is not None]
 
     def way_is_open(self, home: Inputs, inputs: Inputs) -> bool:
         """Whether there is room all along the straight way of ball joint height and rack."""

@@ -1,6 +1,6 @@
 """Random cars driven close to a pose where the mechanism locks, each reproducible by its number.
 
-With the links given, an input can go only so far (see `input_ends`). Here it is driven to such an end of a
+With the links given, an input can go only so far (see `input_limits`). Here it is driven to such an end of a
 random car and steps back by a drawn share of its whole range.
 """
 
@@ -11,11 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validate.cars.closed_form import Closure
-from validate.cars.input_limits import DRIVEN, Car, Inputs, Linkage
-from validate.cars.random_struts import as_tuple, as_tuples, placed, random_drawing, with_slide_that_runs_out
+from validate.cars.car import Car
+from validate.cars.input_limits import DRIVEN, Inputs, Linkage
+from validate.cars.random_cars import Kind, random_car
 
 NEAREST = 1e-12  # of an input's range: its own rounding is 1e-4 of that
+# Most cars lock in whatever way comes first; two in ten by the arm, two in ten by the knuckle's upper end.
+MADE: tuple[Kind, ...] = ("regular", "regular", "regular", "dead arm", "upper lock")
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class NearPose:
         home: the inputs at which the car is drawn; the way from there to `inputs` is open.
         inputs: arm angle (rad), rack and heave (mm).
         driven: the input that is near its last reachable value.
-        lock: what locks there, `arm`, `strut` or `tie_rod`.
+        lock: what locks there: `arm`, `tie_rod` or the suspension's `upper_lock`.
         reach: range of that input, rad or mm.
         distance: from the last reachable value, in parts of the range.
     """
@@ -56,9 +58,8 @@ def near_pose(number: int, seed: int = 0, nearest: float = NEAREST, farthest: fl
 
 
 def _attempt(number: int, rng: np.random.Generator, nearest: float, farthest: float) -> NearPose | None:
-    car = random_car(rng)
     return approach(
-        car,
+        car_with_ends(rng),
         driven=DRIVEN[int(rng.integers(2))],
         forward=bool(rng.integers(2)),
         aside=rng.uniform(-1.0, 1.0),
@@ -66,6 +67,11 @@ def _attempt(number: int, rng: np.random.Generator, nearest: float, farthest: fl
         heave=rng.uniform(-1.0, 1.0) if rng.random() < 0.3 else 0.0,
         number=number,
     )
+
+
+def car_with_ends(rng: np.random.Generator) -> Car:
+    """A random car, now and then one whose arm or upper end can come to lock."""
+    return random_car(rng, MADE[int(rng.integers(len(MADE)))])[0]
 
 
 def approach(
@@ -92,7 +98,7 @@ def approach(
     if not linkage.sound:
         return None
     size = linkage.size
-    home = {"arm_angle": linkage.drawn_angle, "rack": linkage.drawn_rack, "heave": 0.0}
+    home = linkage.home | {"heave": 0.0}
     held = dict(home)
     if driven == "arm_angle":
         held["rack"] += 0.06 * size * aside
@@ -107,17 +113,3 @@ def approach(
     if not (0.0 < inputs["arm_angle"] < math.pi and linkage.way_is_open(home, inputs)):
         return None
     return NearPose(number, car, home, inputs, driven, lock, abs(other[0] - value), distance)
-
-
-def random_car(rng: np.random.Generator) -> Car:
-    """A car of `drawings`, three in ten collinear and two in ten with a slide that can run out."""
-    share = rng.random()
-    closure: Closure = "collinear" if share < 0.3 else "drawn"
-    drawn = random_drawing(rng.uniform, closure)
-    if share > 0.8:
-        drawn = with_slide_that_runs_out(rng.uniform, drawn)
-    side = ("left", "right")[int(rng.integers(2))]
-    if side == "right":
-        drawn = {name: place * (1.0, -1.0, 1.0) for name, place in drawn.items()}
-    points, up, right, _ = placed(rng, drawn)
-    return Car(as_tuples(points), side, as_tuple(up), as_tuple(right), closure)

@@ -1,8 +1,8 @@
-"""The paper's strut, Table 1: what random cars and hard cases are made from."""
+"""The paper's strut, Table 1, and the effects that its scenes ask for."""
 
 from __future__ import annotations
 
-Points = dict[str, tuple[float, float, float]]
+from validate.cars.car import Points
 
 PAPER: Points = {
     "lower_arm_front": (270.0, -5.0, -10.0),
@@ -17,8 +17,3 @@ PAPER: Points = {
     "wheel_centre": (452.0, -410.0, 20.0),
 }
 EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
-
-
-def mirrored(points: Points) -> Points:
-    """The same strut on the other side of the car."""
-    return {name: (x, -y, z) for name, (x, y, z) in points.items()}

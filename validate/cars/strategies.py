@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from pointcoord import Scene
-from validate.cars.closed_form import Closure
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.paper_car import EFFECTS, mirrored
-from validate.cars.random_scenes import CLOSURES
-from validate.cars.random_struts import LEFT_OVER, REACH, as_tuples, random_drawing
+from validate.cars.car import RIGHT, UP, Car, Closure, as_tuple, as_tuples, other_side
+from validate.cars.input_limits import Linkage
+from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
+from validate.cars.scene_content import scene_content
+from validate.cars.suspension import LEFT_OVER, REACH
 from validate.extras import MissingPackage
 
 try:
     from hypothesis import strategies as st
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.cars.strategies", error, "test") from None
-
-UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 
 
 def _between(low: float, high: float) -> st.SearchStrategy[float]:
@@ -32,41 +32,36 @@ def _floats(reach: float) -> st.SearchStrategy[float]:
 @st.composite
 def cars(
     draw: st.DrawFn,
-    closures: Sequence[Closure] = CLOSURES,
+    variants: Sequence[Variant] = VARIANTS,
     reach: float = REACH,
     left_over: float = LEFT_OVER,
 ) -> Car:
-    """A random strut on either side, of one of these kinds; see `drawings`."""
-    kind = draw(st.sampled_from(closures))
-    points = as_tuples(random_drawing(lambda low, high: draw(_between(low, high)), kind, reach, left_over))
-    side = draw(st.sampled_from(["left", "right"]))
-    return Car(mirrored(points) if side == "right" else points, side, UP, RIGHT, kind)
+    """A random car on either side, of one of these suspensions; see `suspension.RandomDrawing`."""
+    variant = draw(st.sampled_from(variants))
+    drawing = SUSPENSIONS[variant.suspension].drawing
+    drawn = drawing(lambda low, high: draw(_between(low, high)), variant.closure, reach, left_over)
+    left = Car(as_tuples(drawn), "left", closure=variant.closure, suspension=variant.suspension)
+    return other_side(left) if draw(st.booleans()) else left
 
 
 @st.composite
 def scenes(
-    draw: st.DrawFn, closures: Sequence[Closure] = CLOSURES, reach: float = REACH, samples: int = 5
+    draw: st.DrawFn, variants: Sequence[Variant] = VARIANTS, reach: float = REACH, samples: int = 5
 ) -> Scene:
     """A random car with random inputs and rates about its own drawing.
 
     The arm turns and the rack slides by polynomials or sines, and the chassis may heave. Whether the
     mechanism can follow is not known beforehand.
     """
-    car = draw(cars(closures, reach))
+    car = draw(cars(variants, reach))
     inputs: dict[str, Any] = {
         "arm_angle": draw(_law(Linkage.of(car).drawn_angle, 0.25, 0.6)),
         "rack": draw(_law(0.0, 20.0, 60.0)),
     }
     if draw(st.booleans()):
         inputs["heave"] = draw(_law(0.0, 30.0, 200.0))
-    return make_scene(
-        car.points,
-        inputs,
-        closure=car.closure,
-        side=car.side,
-        stop=draw(st.sampled_from([0.05, 0.2, 0.5])),
-        samples=samples,
-    )
+    stop = draw(st.sampled_from([0.05, 0.2, 0.5]))
+    return Scene.from_mapping(scene_content(car, **inputs, stop=stop, samples=samples))
 
 
 @st.composite
@@ -84,29 +79,16 @@ def make_scene(
     inputs: Mapping[str, Any],
     *,
     closure: Closure,
+    suspension: str = "macpherson",
     side: str = "left",
     up: Sequence[float] = UP,
     right: Sequence[float] = RIGHT,
     stop: float = 0.2,
     samples: int = 5,
-    tolerance: float = 1e-9,
-    effects: tuple[str, ...] = EFFECTS,
+    **settings: Any,
 ) -> Scene:
-    """A scene from plain data, checked like a file."""
-    return Scene.from_mapping(
-        {
-            "title": "random scene",
-            "effects": list(effects),
-            "tolerance": tolerance,
-            "mechanism": {
-                "type": "macpherson",
-                "closure": closure,
-                "side": side,
-                "up": list(up),
-                "right": list(right),
-                "points": {name: list(point) for name, point in points.items()},
-            },
-            "inputs": dict(inputs),
-            "time": {"start": 0.0, "stop": stop, "samples": samples},
-        }
-    )
+    """A scene from plain data, checked like a file; see `scene_content` for the settings."""
+    places = {name: np.array(place) for name, place in points.items()}
+    axes = as_tuple(np.array(up)), as_tuple(np.array(right))
+    car = Car(as_tuples(places), side, *axes, closure=closure, suspension=suspension)
+    return Scene.from_mapping(scene_content(car, **inputs, stop=stop, samples=samples, **settings))

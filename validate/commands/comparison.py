@@ -12,6 +12,7 @@ from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
     UsageError,
+    add_quiet,
     load_scene,
     require_target,
 )
@@ -20,11 +21,12 @@ from validate.exit_status import ExitStatus, combined
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, formulation
 from validate.output import report
-from validate.output.console import Console, shown
+from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.paper.errata import Finding, findings
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
+from validate.plain_text import shown
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -43,7 +45,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     parser.add_argument("--second", metavar="NAME", help="the other one")
     parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
-    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    add_quiet(parser)
     parser.set_defaults(run=run)
 
 

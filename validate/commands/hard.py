@@ -1,10 +1,10 @@
-"""`pointcoord hard`: the cases that are known to be hard, held to the truth."""
+"""`pointcoord hard`: the cases that are known to be hard, held to the reference."""
 
 from __future__ import annotations
 
 import argparse
 
-from validate.commands.usage import UsageError, require_target
+from validate.commands.usage import UsageError, add_quiet, require_target
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -13,14 +13,14 @@ from validate.output.document import Head, Journal
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "hard", help="try the cases that are known to be hard, and hold them to the truth"
+        "hard", help="try the cases that are known to be hard, and hold them to the reference"
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
     parser.add_argument(
         "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
     )
-    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    add_quiet(parser)
     parser.set_defaults(run=run)
 
 
@@ -29,11 +29,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Raises:
         UsageError: no case has such a name, or no file.
-        MissingPackage: the truth, or a formulation, is not there.
+        MissingPackage: the reference, or a formulation, is not there.
         OutputError: the results cannot be written.
     """
     require_target(options.json, "--json")
-    # The truth needs packages that the solvers do without.
+    # The reference needs packages that the solvers do without.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run

@@ -3,46 +3,35 @@
 from __future__ import annotations
 
 import argparse
-from typing import get_args
 
-from pointcoord import (
-    Motion,
-    MotionTooLong,
-    MotionTooRough,
-    PointcoordError,
-    SceneError,
-    simulate,
-)
-from pointcoord.simulation import Method
-from validate.commands.usage import (
-    SCENE_HELP,
-    STANDARD_INPUT,
-    STANDARD_INPUT_NAME,
-    load_scene,
-    require_target,
-)
+from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import METHODS, Method
+from validate.closed_drawing import warnings_of
+from validate.commands.usage import add_quiet, add_scene, load_scene, name_of, place_of_result, told_as
 from validate.exit_status import ExitStatus
-from validate.output.closing import warnings_of
-from validate.output.console import STANDARD_OUTPUT, Console, shown
-from validate.output.files import require_known_ending, require_writable
+from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.motion_tables import ENDINGS, write_csv, write_motion
+from validate.paper.printed import PRINTED
+
+BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser("simulate", help="solve a scene by point coordinates only")
-    parser.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
+    add_scene(parser)
     parser.add_argument(
         "-o", "--output", metavar="FILE", help=f"{' or '.join(ENDINGS)}; none, or -: CSV on standard output"
     )
     parser.add_argument(
         "--method",
-        choices=get_args(Method),
+        choices=tuple(BY_NAME),
         default="series",
         help="a chain of power series; Newton's method at every instant; or that with the paper's formulas "
         "as printed, which are wrong in places",
     )
-    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    add_quiet(parser)
     parser.set_defaults(run=run)
 
 
@@ -54,36 +43,34 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         SceneError: the scene is wrong.
         OutputError: the motion cannot be written.
     """
-    target: str | None = None if options.output == "-" else options.output
     console.quiet = options.quiet
-    require_target(target, "-o", (options.scene,))
-    if target is None:
-        console.require("use -o FILE")
-    else:
-        require_known_ending(target, ENDINGS)
-        require_writable(target)
-    scene = load_scene(options.scene)
-    name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
+    target = place_of_result(options, ENDINGS, console)
+    scene, name = load_scene(options.scene), name_of(options.scene)
     try:
-        motion = simulate(scene, options.method)
-        for warning in (*warnings_of(motion.closing), *scene.mechanism.doubts):
-            console.warn(f"{name}: {warning}")
-        said = {*warnings_of(motion.closing), *scene.mechanism.doubts}
-        for note in motion.notes:
-            if note not in said:
-                console.note(f"{name}: {note}")
-        if motion.closing.moves and not motion.closing.noticeable:
-            console.note(f"{name}: {motion.closing.words}")
-        if "wheel_angles" in scene.effects:
-            for taken in scene.mechanism.defaults_taken:
-                console.note(f"{name}: {taken}")
+        with told_as(name):
+            motion = simulate(scene, BY_NAME[options.method])
+        _comment(scene, name, motion, console)
         _write(target, motion, console)
-    except SceneError as error:
-        raise SceneError(name, error.key, error.problem, error.allowed) from error
+    except SceneError:
+        raise
     except PointcoordError as error:
         console.complain(f"{name}: {error}{_advice(error)}{_kept(target, error, console)}")
         return ExitStatus.NO_VERDICT
     return ExitStatus.AGREE
+
+
+def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
+    """Warn of what looks wrong with the drawing, and note what was taken for granted."""
+    warnings = warnings_of(scene, motion.closing)
+    for warning in warnings:
+        console.warn(f"{name}: {warning}")
+    notes = [note for note in motion.notes if note not in warnings]
+    if motion.closing.moves and not motion.closing.noticeable:
+        notes.append(motion.closing.words)
+    if any("wheel_axis" in EFFECTS[effect].axes for effect in scene.effects):
+        notes += scene.mechanism.defaults_taken
+    for note in notes:
+        console.note(f"{name}: {note}")
 
 
 def _advice(error: PointcoordError) -> str:
@@ -92,12 +79,12 @@ def _advice(error: PointcoordError) -> str:
 
 def _kept(target: str | None, error: PointcoordError, console: Console) -> str:
     """Write what was solved before the motion stopped, and say where it is and how far it goes."""
-    partial = getattr(error, "partial", None)
-    if not isinstance(partial, Motion) or not len(partial.times):
+    partial: Motion | None = error.partial
+    if partial is None:
         return "; nothing is written"
     _write(target, partial, console)
     instants = f"{len(partial.times)} instants" if len(partial.times) > 1 else "one instant"
-    moved = "".join(f"; {warning}" for warning in warnings_of(partial.closing))
+    moved = f"; {partial.closing.words}" if partial.closing.noticeable else ""
     return (
         f"{moved}; what was solved, {instants} up to t = {partial.times[-1]:.10g} s, is "
         f"{f'on {STANDARD_OUTPUT}' if target is None else f'in {target}'}"

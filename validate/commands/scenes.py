@@ -6,20 +6,22 @@ import argparse
 
 import numpy as np
 
-from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, standing
+from pointcoord import AssemblyError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import End, Standing
-from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.results.closing import ALLOWED
-from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, STANDARD_INPUT_NAME, load_scene
+from validate.closed_drawing import warnings_of
+from validate.commands.usage import add_scene, load_scene, name_of, told_as
 from validate.exit_status import ExitStatus
-from validate.output.closing import warnings_of
-from validate.output.console import Console, shown
+from validate.output.console import Console
+from validate.plain_text import shown
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add both commands."""
     plan = commands.add_parser("plan", help="say what a scene would compute, what not, and why")
-    plan.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
+    add_scene(plan)
     plan.set_defaults(run=run_plan)
     scenes = commands.add_parser("scenes", help="list the built-in scenes")
     scenes.set_defaults(run=run_scenes)
@@ -35,19 +37,20 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects)
-    name = STANDARD_INPUT_NAME if options.scene == STANDARD_INPUT else shown(options.scene)
+    evaluated = plan.derivatives(scene.mechanism.topology).values()
+    name = name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {scene.mechanism.type}, {scene.mechanism.side} side; inputs: {', '.join(scene.inputs)}",
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
-        "computed: position of every point, mm",
+        *(f"computed: {effect.gives}" for effect in ALWAYS),
         *(f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects),
         *(
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
             for effect in plan.left_out
         ),
-        f"derivatives solved for: {plan.derivative}; evaluated for every point: {plan.derivative_of_points}, "
-        f"for the knuckle's points: {plan.derivative_of_knuckle}",
+        f"derivatives solved for: {plan.derivative}; evaluated for every point: {min(evaluated)}, "
+        f"for some: {max(evaluated)}",
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
@@ -56,9 +59,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
     """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
     try:
-        stands = standing(scene)
-    except SceneError as error:
-        raise SceneError(name, error.key, error.problem, error.allowed) from None
+        with told_as(name):
+            stands = standing(scene)
     except AssemblyError as error:
         console.complain(f"{name}: {error}")
         return ExitStatus.NO_VERDICT
@@ -68,7 +70,7 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
         for input_name, value in stands.inputs.items()
     ]
     inner = "wheel_axis_inner" if "wheel_axis_inner" in scene.mechanism.points else "strut_lower (by default)"
-    angles = ", ".join(f"{n} {_degrees(getattr(stands, n))} deg" for n in ("camber", "kingpin"))
+    angles = ", ".join(f"{name} {_degrees(angle)} deg" for name, angle in stands.angles.items())
     lines.append(f"there: {angles}; the wheel turns about the line from {inner} to wheel_centre")
     lines.append(stands.closing.words)
     console.say("\n".join(lines))
@@ -79,7 +81,7 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
             f"allowed: {limit}; draw the points that miss where they belong"
         )
         return ExitStatus.WRONG_INPUT
-    for warning in (*warnings_of(stands.closing), *scene.mechanism.doubts, *_out_of_reach(scene, stands)):
+    for warning in (*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands)):
         console.warn(f"{name}: {warning}")
     return ExitStatus.AGREE
 

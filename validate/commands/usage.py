@@ -1,13 +1,19 @@
-"""What every command shares: the mistakes of a command line, and where scenes come from."""
+"""What every command shares: the mistakes of a command line, where scenes come from, where results go."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import stat
 import sys
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pointcoord import Scene, SceneError
+from validate.output.console import Console
+from validate.output.files import require_known_ending, require_writable
+from validate.plain_text import shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
@@ -16,6 +22,66 @@ SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standa
 
 class UsageError(Exception):
     """The command line is wrong."""
+
+
+def add_scene(parser: argparse.ArgumentParser) -> None:
+    """The one scene that a command is about."""
+    parser.add_argument("scene", metavar="SCENE", help=SCENE_HELP)
+
+
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """Nothing but what was asked for."""
+    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+
+
+def name_of(scene: str) -> str:
+    """What messages call a scene that the command line names."""
+    return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
+
+
+@contextmanager
+def told_as(name: str) -> Iterator[None]:
+    """Gives faults of a scene the name that the command line gives it, and not its title.
+
+    Raises:
+        SceneError: the scene is wrong.
+    """
+    try:
+        yield
+    except SceneError as error:
+        raise SceneError(name, error.key, error.problem, error.allowed) from error
+
+
+def load_scene(name: str) -> Scene:
+    """Read a scene as the command line names it.
+
+    Raises:
+        SceneError: there is none, or it is not written as it must be.
+    """
+    if not name:
+        raise SceneError("''", "", "names no scene", SCENE_HELP)
+    if name != STANDARD_INPUT:
+        return Scene.load(name)
+    if sys.stdin is None:
+        raise SceneError(STANDARD_INPUT_NAME, "", "cannot be read (it is closed)", SCENE_HELP)
+    return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
+
+
+def place_of_result(options: argparse.Namespace, endings: Collection[str], console: Console) -> str | None:
+    """The file that `-o` names, found to be writable before anything is solved; None is standard output.
+
+    Raises:
+        UsageError, UnknownEnding: the file has no name, or one that does not say how to write it.
+        OutputError: it cannot be written.
+    """
+    target: str | None = None if options.output == "-" else options.output
+    require_target(target, "-o", (options.scene,))
+    if target is None:
+        console.require("use -o FILE")
+    else:
+        require_known_ending(target, endings)
+        require_writable(target)
+    return target
 
 
 def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()) -> None:
@@ -44,18 +110,3 @@ def _is_standard_output(target: str) -> bool:
     except (OSError, ValueError):
         return False
     return os.path.samestat(out, place) and not stat.S_ISCHR(out.st_mode)
-
-
-def load_scene(name: str) -> Scene:
-    """Read a scene as the command line names it.
-
-    Raises:
-        SceneError: there is none, or it is not written as it must be.
-    """
-    if not name:
-        raise SceneError("''", "", "names no scene", SCENE_HELP)
-    if name != STANDARD_INPUT:
-        return Scene.load(name)
-    if sys.stdin is None:
-        raise SceneError(STANDARD_INPUT_NAME, "", "cannot be read (it is closed)", SCENE_HELP)
-    return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)

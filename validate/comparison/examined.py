@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
+from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.comparison.compare import Outcome, compare
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.refusals import Refusal, refusal_of
 from validate.formulations.registry import formulation
-from validate.output.closing import closing_data, closing_of, warnings_of
-from validate.output.console import shown
+from validate.plain_text import shown
 
 NEWTON = " (--first pointcoord-newton)"
 PRINTED = "printed"
@@ -202,7 +202,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
             one.name for one in once.values() if isinstance(one.answer, Solution) and one.name not in refusals
         ),
         advice=_advice(once.values()),
-        warnings=(*warnings_of(moved), *scene.mechanism.doubts),
+        warnings=warnings_of(scene, moved),
         closing=closing_data(moved),
         defaults=scene.mechanism.defaults_taken,
     )

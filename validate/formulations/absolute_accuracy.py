@@ -5,15 +5,7 @@ as four standard deviations of the counted roundings, and measures lengths from 
 scene has thousands of numbers, of which one in 16,000 goes beyond four deviations and none beyond eight, so
 twice the estimate is claimed. A rate is claimed to eps of the largest one of its kind at least: its equations
 are solved at once, and rounding in one unknown is seen in all (Higham, ch. 9). To this come the sum with
-that place, rounded by u of the result, and the chassis' displacement along `up`, u of it. An angle of a line
-a, seen along z = a . right + i a . up, is off by
-
-    |d z| / |z| + 4 eps,    |d z| = |right| |d a| + |up| |d a|,
-
-where d a is at most the sum of its ends' errors and, of the spin axis, also at most the error of the
-knuckle's rotation times a, with the rounding of the ends, which are turned and moved in numbers as large as
-the car; the smaller of the two. The ball joint is an end of
-the arm as well, and no more is claimed of a line to it than of its ends.
+that place, rounded by u of the result, and the chassis' displacement along `up`, u of it.
 """
 
 from __future__ import annotations
@@ -25,29 +17,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 import absolute
-from pointcoord.scene.scene_file import MechanismPart
 from validate.formulations.protocol import Accuracy
 
 Array = NDArray[np.float64]
 Arrays = Mapping[str, Array]
 
 EPS = float(np.finfo(float).eps)
-SPIN_AXIS = ("strut_lower", "wheel_centre", "wheel_axis_inner")
 
 
 def claims(
-    part: MechanismPart,
     solved: absolute.Solution,
     position: Arrays,
     chassis: Array | None,
-    lines: Mapping[str, tuple[str, str]],
 ) -> Accuracy:
     """The claims for a solution.
 
     Args:
         position: as reported, from the user's origin, (N, 3), mm.
         chassis: displacement, velocity and acceleration of the chassis, (N, 3, 3), mm and s; None at rest.
-        lines: for each wheel angle its line, from point to point.
     Raises:
         AccuracyError: the model does not know the error of a number.
     """
@@ -64,7 +51,7 @@ def claims(
         acceleration=_at_least(solved.acceleration, solved.acceleration_error, moved[2]),
         angular_velocity=_at_least(solved.angular_velocity, solved.angular_velocity_error),
         angular_acceleration=_at_least(solved.angular_acceleration, solved.angular_acceleration_error),
-        wheel={name: _angle(part, solved, line) for name, line in lines.items()},
+        wheel=dict(solved.effect_errors),
     )
 
 
@@ -91,27 +78,5 @@ def _twice(solved: absolute.Solution) -> absolute.Solution:
         angular_velocity_error=twice(solved.angular_velocity_error),
         angular_acceleration_error=twice(solved.angular_acceleration_error),
         rotation_error=twice(solved.rotation_error),
+        effect_errors=twice(solved.effect_errors),
     )
-
-
-def _size(position: Arrays) -> float:
-    """The longest side of the box around all points at the first instant, mm."""
-    return float(np.ptp(np.array([place[0] for place in position.values()]), axis=0).max())
-
-
-def _angle(part: MechanismPart, solved: absolute.Solution, line: tuple[str, str]) -> Array:
-    start, end = line
-    along = solved.position[end] - solved.position[start]
-    off = solved.position_error[start] + solved.position_error[end]
-    if start in SPIN_AXIS and end in SPIN_AXIS:
-        turn, size = solved.rotation_error["knuckle"], np.abs(along)
-        turned = np.roll(turn, -1, axis=-1) * np.roll(size, -2, axis=-1)
-        turned += np.roll(turn, -2, axis=-1) * np.roll(size, -1, axis=-1)
-        large = _size(solved.position)
-        rounded = sum(EPS * np.maximum(np.abs(solved.position[point]), large) for point in line)
-        off = np.minimum(off, turned + rounded)
-    right, up = np.array(part.right), np.array(part.up)
-    seen = off @ np.abs(right) + off @ np.abs(up)
-    with np.errstate(divide="ignore"):
-        # No angle is off by more than half a turn.
-        return np.asarray(np.minimum(seen / np.hypot(along @ right, along @ up), np.pi) + 4.0 * EPS)

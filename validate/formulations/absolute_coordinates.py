@@ -23,6 +23,9 @@ except ModuleNotFoundError as error:
 
 Array = NDArray[np.float64]
 
+# What the scene's effect `wheel_angles` stands for.
+WHEEL_ANGLES = ("camber", "kingpin")
+
 SLOW = 2.0**-200  # rad/s and mm/s
 LONGEST = 500  # s, as a power of two whose square is still a number
 LARGEST = 1e300  # mm: four times that, and sums of ten coordinates, stay finite
@@ -50,7 +53,9 @@ class AbsoluteCoordinates:
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(near, up=part.up, right=part.right, closure=part.closure)
+            model = absolute.macpherson(
+                near, up=part.up, right=part.right, side=part.side, closure=part.closure
+            )
             _require_the_drawn_car(scene, model)
             solved = absolute.solve(
                 model,
@@ -59,6 +64,7 @@ class AbsoluteCoordinates:
                 rates=needs_rates,
                 conditions=True,
                 errors=True,
+                effects=WHEEL_ANGLES,
             )
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
@@ -66,7 +72,7 @@ class AbsoluteCoordinates:
             raise FormulationError(self.name, error) from error
         solved, position = _per_second(unit, solved), _moved(solved.position, origin)
         try:
-            accuracy = claims(part, solved, position, chassis, angle_lines(part, solved.position))
+            accuracy = claims(solved, position, chassis)
         except AccuracyError as error:
             raise FormulationError(self.name, error) from error
         return Solution(
@@ -77,7 +83,7 @@ class AbsoluteCoordinates:
             acceleration=solved.acceleration if "acceleration" in wanted else {},
             angular_velocity=_knuckle(solved.angular_velocity, wanted),
             angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
-            wheel=wheel_angles(part, solved.position) if "wheel_angles" in wanted else {},
+            wheel=solved.effects if "wheel_angles" in wanted else {},
             accuracy=accuracy,
         )
 
@@ -179,28 +185,3 @@ def near_origin(part: MechanismPart) -> Array:
     grid = 4.0 * np.ldexp(1.0, np.frexp(size)[1])
     middle = np.array(list(part.points.values())).mean(axis=0)
     return np.asarray(np.trunc(middle / grid) * grid + 0.0)
-
-
-def wheel_angles(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, Array]:
-    """Camber (17) and kingpin (16) as arguments of complex numbers in the car's transverse plane.
-
-    The kingpin leads from the lower ball joint to the strut top, or to strut_lower (the paper's) where the
-    strut is collinear; the wheel's axis from wheel_axis_inner, or from strut_lower where it is not given.
-
-    A right wheel is first mirrored to the left, where the paper's formulas hold. The argument tells an
-    inboard wheel or a strut that hangs upside down apart, which the printed quotients cannot.
-    """
-    right, up = np.array(part.right), np.array(part.up)
-    side = 1.0 if part.side == "left" else -1.0
-    lines = angle_lines(part, position)
-    names = (*lines["kingpin"], *lines["camber"])
-    low, high, inner, outer = (side * (position[n] @ right) + 1j * (position[n] @ up) for n in names)
-    # pi/2 - arg z, between -pi and pi.
-    return {"kingpin": np.angle(1j * np.conj(high - low)), "camber": np.angle(inner - outer)}
-
-
-def angle_lines(part: MechanismPart, position: Mapping[str, Array]) -> dict[str, tuple[str, str]]:
-    """The lines that the wheel angles are of, from point to point."""
-    upper = "strut_top" if part.closure == "drawn" else "strut_lower"
-    hub = "wheel_axis_inner" if "wheel_axis_inner" in position else "strut_lower"
-    return {"camber": (hub, "wheel_centre"), "kingpin": ("lower_ball_joint", upper)}

@@ -1,7 +1,7 @@
 """Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
 
 Polynomials and sines are taken in many digits and rounded once: their terms may cancel, and an angle may be
-many turns. A table means scipy's cubic spline, for every model and for the truth.
+many turns. A table means scipy's cubic spline, for every model and for the reference.
 """
 
 from __future__ import annotations

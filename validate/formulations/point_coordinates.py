@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
-from pointcoord.simulation import Method
+from pointcoord.method import Method
 from validate.formulations.protocol import NUMBERS_OF, Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
@@ -66,8 +66,8 @@ class PointCoordinates:
         """
         uncertain = _uncertain_laws(scene)
         claims: dict[str, Array] = {}
-        expected = getattr(proof.expected, quantity)
-        for name, proven in getattr(proof.proven, quantity).items():
+        expected = proof.expected[quantity]
+        for name, proven in proof.proven[quantity].items():
             # What is not a number has no error; the comparison finds it.
             number = np.isfinite(getattr(motion, quantity)[name])
             bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pointcoord.method import NEWTON, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
+from validate.paper.printed import PRINTED
 
 
 class UnknownFormulation(Exception):
@@ -18,9 +20,9 @@ class UnknownFormulation(Exception):
 _POINT_COORDINATES: dict[str, Formulation] = {
     f.name: f
     for f in (
-        PointCoordinates("pointcoord", "series"),
-        PointCoordinates("pointcoord-newton", "newton"),
-        PointCoordinates("printed", "printed"),
+        PointCoordinates("pointcoord", SERIES),
+        PointCoordinates("pointcoord-newton", NEWTON),
+        PointCoordinates("printed", PRINTED),
     )
 }
 

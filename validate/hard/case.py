@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-# right: every number lies within its bound of the truth. refused: a reason in place of numbers. noted: some
-# numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so. unjudged:
-# the truth could not be proven, which is a failure of the catalogue.
+# right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
+# some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
+# unjudged: the reference could not be proven, which is a failure of the catalogue.
 Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
 
 
@@ -18,9 +18,9 @@ class Answer:
 
     Attributes:
         formulation: its name.
-        outcome: held to the truth.
+        outcome: held to the reference.
         reason: of a refusal; else which quantity came closest to its bound, or exceeded it the most.
-        error: largest distance of a point from the truth, in the case's unit; None without numbers.
+        error: largest distance of a point from the reference, in the case's unit; None without numbers.
         bound: largest bound that the formulation gives for it, in the same unit.
         share: largest error of any quantity, rates and angles too, in parts of its bound.
         condition: largest condition number.
@@ -90,6 +90,11 @@ class Case:
     behaviour: str
     examine: Callable[[float], Trial]
     unit: str = "mm"
+
+
+def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
+    """One value per decade, going in: from 10^high down to 10^low."""
+    return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
 
 
 def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:

@@ -1,4 +1,4 @@
-"""A solution held to the truth, in one answer: right, noted or wrong, by how much and in what.
+"""A solution held to the reference, in one answer: right, noted or wrong, by how much and in what.
 
 A formulation may say itself that some of its numbers have no meaning. Such a note covers the numbers that
 are not finite in the quantity that it names, and nothing else: they are left out, and the rest is judged
@@ -21,47 +21,47 @@ from validate.hard.case import Answer, Outcome
 Array = NDArray[np.float64]
 
 
-def judged_answer(scene: Scene, answer: Solution, truth: Solution) -> Answer:
-    """Hold all numbers of a solution to the truth, each to what the solution itself claims of it."""
-    rows = compare_solutions(scene, answer, truth, "hard").rows
-    outcome = _outcome(scene, answer, truth, rows)
+def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
+    """Hold all numbers of a solution to the reference, each to what the solution itself claims of it."""
+    rows = compare_solutions(scene, answer, reference, "hard").rows
+    outcome = _outcome(scene, answer, reference, rows)
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
     bound = max(float(np.max(claim)) for claim in answer.accuracy.position.values())
     return Answer(
         formulation=answer.formulation,
         outcome=outcome,
         reason=_reason(worst, answer, outcome),
-        error=_finite(_error(answer, truth)),
+        error=_finite(_error(answer, reference)),
         bound=_finite(bound),
         share=_finite(worst.share),
         condition=_finite(float(np.max(answer.accuracy.condition))),
     )
 
 
-def _outcome(scene: Scene, answer: Solution, truth: Solution, rows: tuple[Comparison, ...]) -> Outcome:
+def _outcome(scene: Scene, answer: Solution, reference: Solution, rows: tuple[Comparison, ...]) -> Outcome:
     if not _wrong(rows):
         return "right"
-    rest = compare_solutions(scene, _without_noted(answer, truth), truth, "hard").rows
+    rest = compare_solutions(scene, _without_noted(answer, reference), reference, "hard").rows
     return "wrong" if _wrong(rest) else "noted"
 
 
 def _wrong(rows: tuple[Comparison, ...]) -> bool:
     """Whether a number is further off than the solution claims, or not given at all.
 
-    However much it claims: the truth tells what a partner with a wide tolerance could not.
+    However much it claims: the reference tells what a partner with a wide tolerance could not.
     """
     return any(row.verdict in ("disagrees", "not given") for row in rows)
 
 
-def _without_noted(answer: Solution, truth: Solution) -> Solution:
-    """The answer with the truth in place of what is not finite and has a note."""
+def _without_noted(answer: Solution, reference: Solution) -> Solution:
+    """The answer with the reference in place of what is not finite and has a note."""
     return replace(
         answer,
         angular_velocity=_mended(
-            answer.angular_velocity, truth.angular_velocity, "angular velocity", answer.notes
+            answer.angular_velocity, reference.angular_velocity, "angular velocity", answer.notes
         ),
         angular_acceleration=_mended(
-            answer.angular_acceleration, truth.angular_acceleration, "angular acceleration", answer.notes
+            answer.angular_acceleration, reference.angular_acceleration, "angular acceleration", answer.notes
         ),
     )
 
@@ -74,9 +74,11 @@ def _mended(
     return {name: np.where(np.isfinite(array), array, true[name]) for name, array in given.items()}
 
 
-def _error(answer: Solution, truth: Solution) -> float:
-    """Largest component of the distance of any point from the truth, mm."""
-    return max(float(np.max(np.abs(answer.position[name] - truth.position[name]))) for name in truth.position)
+def _error(answer: Solution, reference: Solution) -> float:
+    """Largest component of the distance of any point from the reference, mm."""
+    return max(
+        float(np.max(np.abs(answer.position[name] - reference.position[name]))) for name in reference.position
+    )
 
 
 def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:

@@ -1,4 +1,4 @@
-"""The part of a motion that an error keeps, held to the truth."""
+"""The part of a motion that an error keeps, held to the reference."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
 from pointcoord.suspensions.macpherson import DRAWN
-from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.formulations.input_rates import rates
-from validate.reference import TruthError
+from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Kept(Protocol):
 def fault_of_kept(reason: Exception, scene: Scene, end: float, driven: str) -> str:
     """What is wrong with the motion that an error keeps; nothing if it is right.
 
-    It must hold every instant before the end, and every point of each within its bound of the truth.
+    It must hold every instant before the end, and every point of each within its bound of the reference.
 
     Args:
         reason: an error with the attribute `partial`.
@@ -55,18 +55,18 @@ def fault_of_kept(reason: Exception, scene: Scene, end: float, driven: str) -> s
     bounds = _bounds(partial, scene)
     for index, time in enumerate(before.tolist()):
         try:
-            truth = true_instant(scene, inputs_at(scene, time))
-        except TruthError as error:
-            return f"the kept instant {index} has no truth: {error}"
+            reference = reference_instant(scene, inputs_at(scene, time))
+        except NoReferenceError as error:
+            return f"the kept instant {index} has no reference: {error}"
         for name, place in position.items():
-            off = float(np.abs(place[index] - truth.position_as_float(name)).max())
+            off = float(np.abs(place[index] - reference.position_as_float(name)).max())
             if not off <= bounds[name][index]:
                 return f"{name} of the kept instant {index} is off by {off:.3g} mm"
     return ""
 
 
 def _bounds(partial: Motion | Kept, scene: Scene) -> dict[str, Array]:
-    """Bound of every point at every kept instant, mm; the truth's own rounding added."""
+    """Bound of every point at every kept instant, mm; the reference's own rounding added."""
     position = partial.position
     rounding = EPS * max(float(np.abs(place).max()) for place in position.values())
     corners = np.array(list(scene.mechanism.points.values()))

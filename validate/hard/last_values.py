@@ -1,4 +1,4 @@
-"""The last values that inputs can reach, to sixteen digits, from the truth alone.
+"""The last values that inputs can reach, to sixteen digits, from the reference alone.
 
 A pose either is proven to exist or proven not to. Between two values of an input, one of each kind, the
 interval is halved in fractions until it is shorter than 1e-16 of the input's range.
@@ -13,13 +13,13 @@ from functools import cache
 
 import numpy as np
 
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.paper_car import mirrored
-from validate.cars.random_struts import as_tuple
-from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, RIGHT, UP, WIDE_CAR, any_rotation, turned
-from validate.reference import InfeasibleError, SingularPoseError, solve_truth
+from validate.cars.car import RIGHT, UP, Car, any_rotation, as_tuple, mirrored, turned
+from validate.cars.input_limits import Linkage
+from validate.cars.macpherson import BESIDE
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR, WIDE_CAR
+from validate.reference import InfeasibleError, SingularPoseError, solve_reference
 
-DIGITS = 15  # of the truth: only whether there is a pose counts, which is proven anyhow
+DIGITS = 15  # of the reference: only whether there is a pose counts, which is proven anyhow
 NEAR = 1e-6  # of the range: what the rough end, good to rounding, is off by at most
 HALVED = Fraction(1, 10**16)  # of the range
 
@@ -104,7 +104,7 @@ def reachable(car: str, values: Mapping[str, Fraction | float]) -> bool:
     hardpoints = car_called(car)
     inputs = {name: (value, 0, 0) for name, value in values.items()}
     try:
-        solve_truth(
+        solve_reference(
             hardpoints.points,
             inputs,
             up=hardpoints.up,

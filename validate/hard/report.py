@@ -19,7 +19,7 @@ OURS, OTHER = "pointcoord", "absolute"
 
 
 # What nothing has to be said of.
-PLAIN = {"truth": "answers"}
+PLAIN = {"reference": "answers"}
 
 
 def listing(cases: Sequence[Case]) -> str:

@@ -1,4 +1,4 @@
-"""A scene made from a value of a parameter, tried by formulations and held to the truth.
+"""A scene made from a value of a parameter, tried by formulations and held to the reference.
 
 Every number that a formulation gives is compared: positions, velocities, accelerations, body rates and
 wheel angles at every instant, each against the formulation's own bound or tolerance (see `tolerance`).
@@ -8,21 +8,19 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from pointcoord import Scene, SceneError
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution, what_both_give
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
-from validate.hard.content import decades as decades
-from validate.hard.content import paper_car as paper_car
 from validate.hard.judged import judged_answer
-from validate.reference import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, NoReferenceError
 
 Facts = Mapping[str, float | str]
 
@@ -33,13 +31,13 @@ class Tried:
 
     Attributes:
         solutions: of the formulations that answered, by name.
-        truth: at the scene's instants; None if there is none.
+        reference: at the scene's instants; None if there is none.
     """
 
     value: float
     scene: Scene
     solutions: Mapping[str, Solution]
-    truth: Solution | None
+    reference: Solution | None
 
 
 Measure = Callable[[Tried], Facts]
@@ -60,7 +58,7 @@ def scene_case(
     """A case whose trial is one scene.
 
     Args:
-        scene: the content of the scene at a value of the parameter; see `content.paper_car`.
+        scene: the content of the scene at a value of the parameter; see `scene_content`.
         expected: by name of a formulation; these are tried.
         measure: what else is measured on the solutions.
     """
@@ -74,31 +72,33 @@ def scene_case(
 def try_scene(
     value: float, content: Mapping[str, Any], formulations: Sequence[str], measure: Measure | None = None
 ) -> Trial:
-    """Solve a scene by each formulation and hold the answers to the truth.
+    """Solve a scene by each formulation and hold the answers to the reference.
 
-    A scene that cannot be read is refused by all. Where the truth has no pose no answer is right.
+    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. The
+    drawings of hard cases are exact, so that the reference takes an unclear side from exact products.
     """
     try:
         scene = Scene.from_mapping(content)
     except SceneError as error:
         refused = tuple(Answer(name, "refused", _told(error)) for name in formulations)
-        return Trial(value, refused, {"truth": "not asked"})
+        return Trial(value, refused, {"reference": "not asked"})
     tried = {name: solved(name, scene) for name in formulations}
     solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
-    truth = _truth(scene)
+    reference = _reference(scene)
     answers = []
     for name, one in tried.items():
         if isinstance(one, Answer):
             answers.append(one)
-        elif isinstance(truth, InfeasibleError):
-            answers.append(Answer(name, "wrong", f"answers where there is no pose: {truth}"))
-        elif isinstance(truth, Exception):
-            answers.append(Answer(name, "unjudged", _told(truth)))
+        elif isinstance(reference, InfeasibleError):
+            answers.append(Answer(name, "wrong", f"answers where there is no pose: {reference}"))
+        elif isinstance(reference, Exception):
+            answers.append(Answer(name, "unjudged", _told(reference)))
         else:
-            answers.append(_judged(scene, one, truth))
-    facts: dict[str, float | str] = {"truth": _told(truth) if isinstance(truth, Exception) else "answers"}
+            answers.append(_judged(scene, one, reference))
+    said = _told(reference) if isinstance(reference, Exception) else "answers"
+    facts: dict[str, float | str] = {"reference": said}
     if measure is not None:
-        known = None if isinstance(truth, Exception) else truth
+        known = None if isinstance(reference, Exception) else reference
         facts |= measure(Tried(value, scene, solutions, known))
     return Trial(value, tuple(answers), facts)
 
@@ -126,29 +126,22 @@ def solved(name: str, scene: Scene) -> Solution | Answer:
         return Answer(name, "wrong", f"fails: {_told(error)}")
 
 
-def _truth(scene: Scene) -> Solution | Exception:
-    """The truth, or why there is none."""
+def _reference(scene: Scene) -> Solution | Exception:
+    """The reference, or why there is none."""
     try:
-        return true_solution(scene)
-    except TruthError as error:
+        return reference_solution(scene, exact_sides=True)
+    except NoReferenceError as error:
         return error
     except (ValueError, ArithmeticError) as error:
         # Inputs that overflow have no exact value to solve for.
         return error
 
 
-def _judged(scene: Scene, answer: Solution, truth: Solution) -> Answer:
-    angles = truth.wheel
-    if len(angles) < len(answer.wheel):
-        # An angle that the truth leaves out is 0/0 there, or half a turn, where its sign has no meaning.
-        answer = replace(answer, wheel={name: answer.wheel[name] for name in angles})
-        if not angles:
-            scene = scene.model_copy(
-                update={"effects": tuple(e for e in scene.effects if e != "wheel_angles")}
-            )
+def _judged(scene: Scene, answer: Solution, reference: Solution) -> Answer:
+    asked, shared = what_both_give(scene, answer, reference)
     try:
         with np.errstate(all="ignore"):
-            return judged_answer(scene, answer, truth)
+            return judged_answer(asked, shared, reference)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
         return Answer(answer.formulation, "unjudged", f"cannot be compared: {_told(error)}")
 

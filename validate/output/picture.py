@@ -14,12 +14,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import AssemblyError, Scene
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.results.closing import Closing, closing
-from pointcoord.simulation import scene_mechanism
-from pointcoord.solve.assembly import close_drawing
+from validate.closed_drawing import ClosedDrawing
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]
@@ -54,19 +50,14 @@ class View:
     up: Array
 
 
-def svg(scene: Scene) -> str:
-    """The picture of a scene's drawing; what closing moves by more than a pixel is drawn a second time.
-
-    Raises:
-        SceneError: the hardpoints make no mechanism.
-    """
-    mechanism = scene_mechanism(scene)
-    points = {name: np.array(scene.mechanism.points[name]) for name in mechanism.topology.points}
-    closed, words = _closed(mechanism)
+def svg(drawing: ClosedDrawing) -> str:
+    """The picture of a scene's drawing; what closing moves by more than a pixel is drawn a second time."""
+    scene, topology = drawing.scene, drawing.mechanism.topology
+    points = {name: np.array(scene.mechanism.points[name]) for name in topology.points}
     numbers = {name: str(i) for i, name in enumerate(points, 1)}
     width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
-    lines = _legend(points, numbers, mechanism.topology)
-    rows, below_lines = -(-len(lines) // 2), wrap(words, LETTERS)
+    lines = _legend(points, numbers, topology)
+    rows, below_lines = -(-len(lines) // 2), wrap(drawing.words, LETTERS)
     height = top + VIEW + MARGIN + (rows + len(below_lines) + 3) * LINE
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
@@ -85,7 +76,7 @@ def svg(scene: Scene) -> str:
     scale = VIEW / max(float(np.ptp([p @ a for p in points.values()])) for a in (right, up, rearward))
     for i, view in enumerate(views):
         corner = (MARGIN + i * (VIEW + MARGIN), top)
-        parts += _view(view, corner, scale, mechanism.topology, points, closed, numbers)
+        parts += _view(view, corner, scale, topology, points, drawing.places, numbers)
     below = top + VIEW + MARGIN + LINE
     for i, line in enumerate(lines):
         parts.append(_text(MARGIN + (i // rows) * width / 2, below + (i % rows) * LINE, line))
@@ -101,17 +92,6 @@ def _named(direction: Array) -> str:
     if len(along) == 1:
         return f"{'+' if direction[along[0]] > 0.0 else '-'}{'xyz'[along[0]]}"
     return f"({', '.join(f'{c:.3g}' for c in direction)})"
-
-
-def _closed(mechanism: Mechanism) -> tuple[Places, str]:
-    """Where the points are when the drawing is closed, mm, and what closing does, in words."""
-    try:
-        y = close_drawing(mechanism).y
-    except AssemblyError as error:
-        return {}, f"this drawing cannot be closed: {error.problem}"
-    moved: Closing = closing(mechanism, y)
-    unit = float(mechanism.unit)
-    return {name: mechanism.origin + unit * p for name, p in mechanism.places(y).items()}, moved.words
 
 
 def _legend(points: Places, numbers: Mapping[str, str], topology: Topology) -> list[str]:

@@ -1,4 +1,4 @@
-"""The truth: the equations of both struts in many digits, with a proof of every one.
+"""The reference: the equations of every suspension in many digits, with a proof of every one.
 
 Third and independent: it shares no code with the formulations it judges. Where the project says
 "error" it means the distance from these numbers.
@@ -9,19 +9,19 @@ from validate.extras import MissingPackage
 try:
     from validate.reference.assemblies import Assemblies as Assemblies
     from validate.reference.assemblies import count_assemblies as count_assemblies
-    from validate.reference.branches import Choices as Choices
     from validate.reference.drawing import ClosedDrawing as ClosedDrawing
     from validate.reference.drawing import closed_drawing as closed_drawing
     from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
     from validate.reference.errors import BadInputError as BadInputError
     from validate.reference.errors import InfeasibleError as InfeasibleError
+    from validate.reference.errors import NoReferenceError as NoReferenceError
     from validate.reference.errors import NotDecidedError as NotDecidedError
     from validate.reference.errors import SingularPoseError as SingularPoseError
-    from validate.reference.errors import TruthError as TruthError
     from validate.reference.instant import Instant as Instant
+    from validate.reference.linkage import Choices as Choices
     from validate.reference.sensitivity import Sensitivity as Sensitivity
     from validate.reference.sensitivity import sensitivities as sensitivities
-    from validate.reference.solve import solve_truth as solve_truth
+    from validate.reference.solve import solve_reference as solve_reference
     from validate.reference.time_functions import time_function_value as time_function_value
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.reference", error) from None

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 from flint import arb
 
-from validate.reference.branches import every_candidate
-from validate.reference.closures import DEFAULT, equations_for
+from validate.reference.candidates import every_candidate
 from validate.reference.design import Design, Driven, values_only
-from validate.reference.equations import Known
 from validate.reference.errors import BadInputError, InfeasibleError, SingularPoseError
 from validate.reference.instant import Instant, prove_instant
+from validate.reference.linkage import Known
 from validate.reference.solve import Points, with_enough_digits
+from validate.reference.suspensions import CLOSURE, SUSPENSION
 from validate.reference.vectors import Vector, minus
 
 Floats = npt.NDArray[np.float64]
@@ -58,7 +58,8 @@ def count_assemblies(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = DEFAULT,
+    closure: str = CLOSURE,
+    suspension: str = SUSPENSION,
 ) -> Assemblies:
     """Search the assemblies of a pose from random starts and prove each find.
 
@@ -67,8 +68,8 @@ def count_assemblies(
     two numbers check each other.
 
     Args:
-        points: as for `solve_truth`, mm; also up, right, side, digits, closure.
-        inputs: as for `solve_truth`.
+        points: as for `solve_reference`, mm; also up, right, side, digits, closure, suspension.
+        inputs: as for `solve_reference`.
         starts: number of random starts.
         seed: of the random numbers.
     Raises:
@@ -77,8 +78,8 @@ def count_assemblies(
     """
     if starts < 1:
         raise BadInputError("starts", starts, "at least 1")
-    design = Design.from_points(points, up, right, side, closure)
-    driven = Driven.from_mapping(inputs)
+    design = Design.from_points(points, up, right, side, closure, suspension)
+    driven = design.driven(inputs)
     ends = _search(_as_floats(design, driven), starts, np.random.default_rng(seed))
 
     found: list[Instant] = []
@@ -101,11 +102,11 @@ def count_assemblies(
 
 def _search(known: Known, starts: int, random: np.random.Generator) -> list[Floats]:
     """Newton's method in float64 from all starts at once; the unknowns of those that settle."""
-    equations = equations_for(known.closure)
-    points = equations.COORDINATES
+    linkage = known.linkage
+    points = linkage.coordinates
     corners = np.array(list(known.chassis.values()))
     reach = sum(float(squared) ** 0.5 for squared in known.squared_length.values())
-    unknown = random.uniform(-1.0, 1.0, (equations.SIZE, starts))
+    unknown = random.uniform(-1.0, 1.0, (linkage.size, starts))
     unknown[:points] *= 0.5 * reach
     unknown[:points] += np.tile(corners.mean(axis=0), points // 3)[:, None]
     unknown[points:] *= 2.0  # ratios and direction cosines of an assembly are of order one
@@ -117,16 +118,16 @@ def _search(known: Known, starts: int, random: np.random.Generator) -> list[Floa
         settled = size < SETTLED
         ends.extend(unknown[:, settled].T)
         unknown = unknown[:, ~settled & np.isfinite(size)]
-    return [end for end in ends if equations.handedness(list(end)) > 0]
+    return [end for end in ends if linkage.handedness(list(end)) > 0]
 
 
 def _newton_step(unknown: Floats, known: Known) -> Floats:
     """C'^-1 C for a batch of unknowns, shape (n, starts)."""
-    equations, starts = equations_for(known.closure), unknown.shape[1]
-    rows = np.array([np.broadcast_to(row, starts) for row in equations.residual(list(unknown), known)])
+    linkage, starts = known.linkage, unknown.shape[1]
+    rows = np.array([np.broadcast_to(row, starts) for row in linkage.residual(list(unknown), known)])
     # A shift far below the accuracy asked for: an exactly singular matrix must not stop the batch.
-    matrix = np.tile(1e-14 * np.eye(equations.SIZE), (starts, 1, 1))
-    for row, column, entry in equations.jacobian(list(unknown), known):
+    matrix = np.tile(1e-14 * np.eye(linkage.size), (starts, 1, 1))
+    for row, column, entry in linkage.jacobian(list(unknown), known):
         matrix[:, row, column] += entry
     step: Floats = np.linalg.solve(matrix, rows.T[:, :, None])[:, :, 0].T
     return step
@@ -171,7 +172,6 @@ def _as_floats(design: Design, driven: Driven) -> Known:
         up=floats(known.up),
         right=floats(known.right),
         squared_length={link: float(squared) for link, squared in known.squared_length.items()},
-        arm_height=float(known.arm_height),
-        rack=float(known.rack),
+        driven={name: float(number) for name, number in known.driven.items()},
         knuckle={n: floats(numbers) for n, numbers in known.knuckle.items()},
     )

@@ -17,10 +17,9 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx
 
-from validate.reference.closures import equations_for
-from validate.reference.equations import CHASSIS, MOVING, Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball
+from validate.reference.linkage import Known
 from validate.reference.vectors import minus, plus
 
 MOST_STEPS = 60  # quadratic convergence needs 5 from float accuracy; the rest is for a far guess
@@ -34,7 +33,7 @@ class Certificate:
         centre: exact middle of the box.
         radius: half the box's width in each coordinate of the points.
         enclosure: balls that contain the zero, far inside the box.
-        shift: its points 5 to 9 are at most so far from the centre's.
+        shift: its joints are at most so far from the centre's.
         condition: of the Jacobian, in the maximum norm, each row scaled to unit absolute sum.
     """
 
@@ -55,11 +54,7 @@ def refine(start: Sequence[arb], known: Known) -> list[arb]:
     good_enough = arb(2) ** (-ctx.prec // 2)  # the next step's error is the square of this one's
     for _ in range(MOST_STEPS):
         try:
-            step = (
-                jacobian_matrix(x, known)
-                .mid()
-                .solve(_column(equations_for(known.closure).residual(x, known)))
-            )
+            step = jacobian_matrix(x, known).mid().solve(_column(known.linkage.residual(x, known)))
         except ZeroDivisionError:
             raise NotDecidedError("Newton's method: the Jacobian has no inverse", "0", "not 0") from None
         corrections = step.entries()
@@ -78,15 +73,15 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     Raises:
         NotDecidedError: the proof fails, because the centre is wrong, the pose singular or digits few.
     """
-    equations, width = equations_for(known.closure), as_ball(radius).upper()
+    linkage, width = known.linkage, as_ball(radius).upper()
     box = [arb(number, width) for number in centre]
     # The other unknowns follow from the points, so they need not be searched: give them room for every
     # value that points near these can have. Then "one zero in the box" is "one assembly near the points".
     near = {
-        n: p if n in CHASSIS else plus(p, (arb(0, width),) * 3)
-        for n, p in equations.points_of(centre, known).items()
+        n: p if n in linkage.chassis else plus(p, (arb(0, width),) * 3)
+        for n, p in linkage.points_of(centre, known).items()
     }
-    for place, value in enumerate(equations.implied(near, known), start=equations.COORDINATES):
+    for place, value in enumerate(linkage.implied(near, known), start=linkage.coordinates):
         box[place] = arb(centre[place], abs(value - centre[place]).upper())
 
     at_centre = jacobian_matrix(centre, known).mid()
@@ -94,16 +89,16 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
         inverse = at_centre.inv().mid()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian", "0", "not 0") from None
-    newton = inverse * _column(equations.residual(centre, known))
-    contraction = _identity(equations.SIZE) - inverse * jacobian_matrix(box, known)
+    newton = inverse * _column(linkage.residual(centre, known))
+    contraction = _identity(linkage.size) - inverse * jacobian_matrix(box, known)
     spread = contraction * _column([side - number for side, number in zip(box, centre, strict=True)])
     enclosure = [number - newton[i, 0] + spread[i, 0] for i, number in enumerate(centre)]
     for number, side, image in zip(centre, box, enclosure, strict=True):
         if not side.contains_interior(image):
             reach = (image - number).abs_upper()
             raise NotDecidedError("Krawczyk's image inside its box, reach from the centre", reach, side.rad())
-    there, here = (equations.points_of(y, known) for y in (enclosure, centre))
-    shift = _largest([x for n in MOVING for x in minus(there[n], here[n])])
+    there, here = (linkage.points_of(y, known) for y in (enclosure, centre))
+    shift = _largest([x for n in linkage.joints for x in minus(there[n], here[n])])
     if not shift < width:
         raise NotDecidedError("the points of the zero within the radius of the centre's", shift, width)
     return Certificate(centre, radius, enclosure, shift, _condition(at_centre, inverse))
@@ -111,9 +106,9 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
 
 def jacobian_matrix(unknown: Sequence[arb], known: Known) -> arb_mat:
     """dC/dy as a square matrix of balls."""
-    equations = equations_for(known.closure)
-    matrix = arb_mat(equations.SIZE, equations.SIZE)
-    for row, column, entry in equations.jacobian(unknown, known):
+    linkage = known.linkage
+    matrix = arb_mat(linkage.size, linkage.size)
+    for row, column, entry in linkage.jacobian(unknown, known):
         matrix[row, column] = entry
     return matrix
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from flint import arb
 
 
-class TruthError(Exception):
+class NoReferenceError(Exception):
     """Base of every failure of `validate.reference`."""
 
 
-class BadInputError(TruthError):
+class BadInputError(NoReferenceError):
     """A point, input or setting cannot be used.
 
     Attributes:
@@ -26,14 +26,13 @@ class BadInputError(TruthError):
         super().__init__(f"{what} is {value!r}; allowed is {allowed}")
 
 
-class InfeasibleError(TruthError):
+class InfeasibleError(NoReferenceError):
     """The inputs ask for a pose that the links cannot reach, and that is proven.
 
     Attributes:
-        closure: "arm" (the lower ball joint), "strut" (a drawn axis that passes the ball joint farther off
-            than the strut top is) or "tie_rod" (its outer end).
-        gap: how far the link is too short, mm (the 5-1 length for the arm, 5-4 for the strut, 6-5 for the
-            tie rod).
+        closure: "arm" (the lower ball joint), "tie_rod" (its outer end), or what the suspension's closed form
+            names (see its `branches`).
+        gap: how far a link of it is too short, mm.
     """
 
     def __init__(self, closure: str, gap: float) -> None:
@@ -44,7 +43,7 @@ class InfeasibleError(TruthError):
         super().__init__(f"the {closure} closure misses by {gap:.6g} mm (limit 0); try {remedy}")
 
 
-class AmbiguousAssemblyError(TruthError):
+class AmbiguousAssemblyError(NoReferenceError):
     """Nothing says which of several assemblies is wanted.
 
     Attributes:
@@ -58,7 +57,7 @@ class AmbiguousAssemblyError(TruthError):
         super().__init__(f"{what}: {value:.3g}, limit {limit:.3g}; {remedy}")
 
 
-class NotDecidedError(TruthError):
+class NotDecidedError(NoReferenceError):
     """A certificate does not hold at the present number of digits; more digits may help.
 
     Attributes:
@@ -74,7 +73,7 @@ class NotDecidedError(TruthError):
         super().__init__(f"{what}: {value}, limit {limit}")
 
 
-class SingularPoseError(TruthError):
+class SingularPoseError(NoReferenceError):
     """No certificate at the greatest number of digits: the pose is singular, or all but singular.
 
     Attributes:

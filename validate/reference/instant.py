@@ -9,14 +9,15 @@ from fractions import Fraction
 from flint import arb
 from mpmath import mpf
 
-from validate.reference.branches import Choices, choices_of
+from validate.reference.candidates import choices_of
 from validate.reference.certificate import Certificate, certify, refine
-from validate.reference.closures import equations_for
 from validate.reference.design import Design, ball_vector, values_only
-from validate.reference.equations import Known
-from validate.reference.errors import NotDecidedError, TruthError
+from validate.reference.effects.effect import Axes
+from validate.reference.effects.registry import EFFECTS
+from validate.reference.errors import BadInputError, NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
-from validate.reference.kinematics import body_turns, unknown_jets, wheel_angles
+from validate.reference.kinematics import body_turns, unknown_jets
+from validate.reference.linkage import Choices, Known
 from validate.reference.vectors import Vector, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
@@ -24,7 +25,7 @@ Triple = tuple[mpf, mpf, mpf]
 
 @dataclass(frozen=True)
 class Instant:
-    """The truth at one instant. Mappings go by point or body name; mm, s, rad.
+    """The reference at one instant. Mappings go by point or body name; mm, s, rad.
 
     The mpf numbers hold more digits than mpmath's default: set `mpmath.mp.dps` before computing with
     them, or mpmath rounds the result.
@@ -35,7 +36,7 @@ class Instant:
         acceleration: every point, mm/s^2.
         angular_velocity: "knuckle" and "lower_arm", rad/s.
         angular_acceleration: "knuckle" and "lower_arm", rad/s^2.
-        angles: "camber" and "kingpin", rad; one that is undefined (0/0, or at 180 deg) is left out.
+        effects: by name, see `effects.registry`; one that is undefined (0/0, or at 180 deg) is left out.
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
@@ -48,35 +49,33 @@ class Instant:
     acceleration: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
-    angles: Mapping[str, mpf]
+    effects: Mapping[str, mpf]
     radius: mpf
     error_bound: Mapping[str, mpf]
     condition: float
     choices: Choices
     digits: int
 
-    @property
-    def camber(self) -> mpf:
-        """Camber, rad, positive when the wheel leans out at the top."""
-        return self._angle("camber")
+    def effect(self, name: str) -> mpf:
+        """An effect that must be there.
 
-    @property
-    def kingpin(self) -> mpf:
-        """Kingpin angle, rad, positive when the steering axis leans in at the top."""
-        return self._angle("kingpin")
+        Raises:
+            BadInputError: there is no such effect.
+            NoReferenceError: it is undefined in this pose.
+        """
+        if name not in EFFECTS:
+            raise BadInputError("effect", name, f"one of {', '.join(EFFECTS)}")
+        if name not in self.effects:
+            raise NoReferenceError(
+                f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg; "
+                "use the positions instead"
+            )
+        return self.effects[name]
 
     def position_as_float(self, name: str) -> tuple[float, float, float]:
         """The point rounded to float64, mm: the nearest, up to `radius` where two are equally near."""
         x, y, z = (float(as_fraction(number, name)) for number in self.position[name])
         return x, y, z
-
-    def _angle(self, name: str) -> mpf:
-        if name not in self.angles:
-            raise TruthError(
-                f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg; "
-                "use the positions instead"
-            )
-        return self.angles[name]
 
 
 def prove_instant(
@@ -101,10 +100,10 @@ def prove_instant(
     still = values_only(known)
     certificate = prove_pose(still, start, expected, digits, working)
     solved = unknown_jets(certificate.enclosure, known)
-    points = equations_for(known.closure).points_of(solved, known)
+    points = known.linkage.points_of(solved, known)
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    named = {name: points[number] for name, number in design.names.items()}
+    named = {name: points[name] for name in design.names}
     position = {name: plus(origin, times(_part(p, "value"), unit)) for name, p in named.items()}
     velocity = {name: times(_part(p, "rate"), unit) for name, p in named.items()}
     acceleration = {name: times(_part(p, "acceleration"), unit) for name, p in named.items()}
@@ -143,14 +142,13 @@ def prove_instant(
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
-    angles = {}
-    for name, angle in wheel_angles(points, design, still).items():
-        if angle.rad() < as_ball(Fraction(1, 10**digits)):
-            angles[name] = angle
-    bounds["angles"] = max((angle.rad() for angle in angles.values()), default=arb(0))
+    axes = Axes.of({name: _part(p, "value") for name, p in points.items()}, still, design.outboard)
+    balls = {name: effect.value(axes) for name, effect in EFFECTS.items()}
+    effects = {name: ball for name, ball in balls.items() if ball.rad() < as_ball(Fraction(1, 10**digits))}
+    bounds["effects"] = max((ball.rad() for ball in effects.values()), default=arb(0))
     return Instant(
         **{quantity: _centres(balls) for quantity, balls in vectors.items()},
-        angles={name: centre_of(angle) for name, angle in angles.items()},
+        effects={name: centre_of(ball) for name, ball in effects.items()},
         radius=mpf_from_fraction(radius, working),
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
         condition=certificate.condition,
@@ -170,7 +168,7 @@ def prove_pose(
     # Extra digits go half into a smaller box, which keeps a close second assembly out, and half into
     # the arithmetic, which a nearly singular Jacobian wears down.
     certificate = certify(refine(start, known), known, Fraction(1, 10 ** ((digits + working) // 2)))
-    points = equations_for(known.closure).points_of(certificate.enclosure, known)
+    points = known.linkage.points_of(certificate.enclosure, known)
     choices = choices_of(points, known)
     if expected is not None and choices != expected:
         raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))

@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from flint import arb, arb_mat
 
 from validate.reference.certificate import jacobian_matrix
-from validate.reference.closures import equations_for
-from validate.reference.design import Design, values_only
-from validate.reference.equations import Known
+from validate.reference.design import values_only
 from validate.reference.errors import NotDecidedError
 from validate.reference.jet import Jet
-from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
+from validate.reference.linkage import Known
+from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 
 def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
@@ -24,7 +23,7 @@ def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
-    residual, inverse = equations_for(known.closure).residual, inverse_jacobian(enclosure, values_only(known))
+    residual, inverse = known.linkage.residual, inverse_jacobian(enclosure, values_only(known))
     zero = arb(0)
     still = [Jet(value, zero, zero) for value in enclosure]
     velocity = inverse * _right_hand_side([row.rate for row in residual(still, known)])
@@ -46,13 +45,13 @@ def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
 
 
 def body_turns(
-    solved: Sequence[Jet], points: Mapping[int, Vector], known: Known
+    solved: Sequence[Jet], points: Mapping[str, Vector], known: Known
 ) -> dict[str, tuple[Vector, Vector]]:
-    """Angular velocity and acceleration of the knuckle and the lower arm, rad/s, rad/s^2."""
-    return {
-        "knuckle": body_rates(*equations_for(known.closure).knuckle_frame(solved, known)),
-        "lower_arm": body_rates(minus(points[2], points[1]), minus(points[5], points[1])),
-    }
+    """Angular velocity and acceleration of the knuckle and the arms, rad/s, rad/s^2."""
+    turns = {"knuckle": body_rates(*known.linkage.knuckle_frame(solved, known))}
+    for body, (a, b, c) in known.linkage.arms.items():
+        turns[body] = body_rates(minus(points[b], points[a]), minus(points[c], points[a]))
+    return turns
 
 
 def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
@@ -81,32 +80,6 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
     second_rates = [_part(vector, "acceleration") for vector in frame]
     alpha = half_curl([minus(d, c) for d, c in zip(second_rates, centripetal, strict=True)])
     return omega, alpha
-
-
-def wheel_angles(points: Mapping[int, Vector], design: Design, known: Known) -> dict[str, arb]:
-    """Camber and kingpin angle, rad, balls."""
-    return {name: arb.atan2(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
-
-
-def wheel_directions(
-    points: Mapping[int, Vector], design: Design, known: Known
-) -> dict[str, tuple[Scalar, Scalar]]:
-    """(y, x) of each wheel angle atan2(y, x), eqs. (17) and (16), side aware.
-
-    With a the steering axis, from 5 to 7 (collinear) or 4 (drawn), and w the wheel's spin axis, to 10
-    from 11 or, where that is not given, from 7:
-
-    camber  = atan2(-w . up, w . outboard)
-    kingpin = atan2(a . inboard, a . up)
-    """
-    p = {n: _part(point, "value") for n, point in points.items()}
-    outboard = times(known.right, design.outboard)
-    axis = minus(p[equations_for(known.closure).KINGPIN_TOP], p[5])
-    spin = minus(p[10], p.get(11, p[7]))
-    return {
-        "camber": (-dot(spin, known.up), dot(spin, outboard)),
-        "kingpin": (-dot(axis, outboard), dot(axis, known.up)),
-    }
 
 
 def _right_hand_side(rows: Sequence[arb]) -> arb_mat:

@@ -14,18 +14,20 @@ from functools import partial
 from flint import arb, arb_mat
 from mpmath import mpf
 
-from validate.reference.branches import CLEAR_SIGN, Choices, candidate, choices_of_table
-from validate.reference.closures import DEFAULT, equations_for
-from validate.reference.design import INPUTS, Design, Driven, balls, values_only
-from validate.reference.dual import Dual, slope_of, value_of
-from validate.reference.equations import Known
+from validate.reference.candidates import CLEAR_SIGN, choices_of_table
+from validate.reference.design import Design, Driven, balls, values_only
+from validate.reference.dual import Dual, slope_of
+from validate.reference.effects.effect import Axes
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball, centre_of
 from validate.reference.instant import Triple, prove_pose
 from validate.reference.jet import Jet
-from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets, wheel_directions
+from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
+from validate.reference.linkage import Choices, Known
 from validate.reference.solve import Points, with_enough_digits
-from validate.reference.vectors import Scalar, Vector, times
+from validate.reference.suspensions import CLOSURE, SUSPENSION
+from validate.reference.vectors import Vector, times
 
 ORDERS = ("value", "rate", "acceleration")
 
@@ -37,7 +39,7 @@ class Sensitivity:
     Attributes:
         position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
         angular_velocity, angular_acceleration: of "knuckle" and "lower_arm".
-        angles: of "camber" and "kingpin"; one that is undefined (0/0) is left out.
+        effects: by name, see `effects.registry`; one that is undefined (0/0) is left out.
         error_bound: proven bound on the error of each quantity above.
     """
 
@@ -46,7 +48,7 @@ class Sensitivity:
     acceleration: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
-    angles: Mapping[str, mpf]
+    effects: Mapping[str, mpf]
     error_bound: Mapping[str, mpf]
 
 
@@ -57,8 +59,9 @@ def sensitivities(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = DEFAULT,
+    closure: str = CLOSURE,
     clearness: float = CLEAR_SIGN,
+    suspension: str = SUSPENSION,
 ) -> dict[tuple[str, str], Sensitivity]:
     """The derivatives of an instant by the value, rate and acceleration of each input.
 
@@ -66,15 +69,16 @@ def sensitivities(
     e_i times these, to first order.
 
     Args:
-        points: as for `solve_truth`, mm; also inputs, up, right, side, digits, closure, clearness.
+        points: as for `solve_reference`, mm; also inputs, up, right, side, digits, closure, clearness,
+            suspension.
     Returns:
         By (input, "value" | "rate" | "acceleration").
     Raises:
-        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
-    design = Design.from_points(points, up, right, side, closure)
-    driven = Driven.from_mapping(inputs)
-    choices = choices_of_table(design.table, design.up, closure, clearness)
+    design = Design.from_points(points, up, right, side, closure, suspension)
+    driven = design.driven(inputs)
+    choices = choices_of_table(design.table, design.up, design.linkage, clearness)
     return with_enough_digits(partial(_attempt, design, driven, choices, digits), digits)
 
 
@@ -83,14 +87,14 @@ def _attempt(
 ) -> dict[tuple[str, str], Sensitivity]:
     known = design.known(driven)
     still = values_only(known)
-    chosen = candidate(still, choices)
+    chosen = design.linkage.candidate(still, choices)
     chosen.require_feasible(float(design.unit))
-    start = equations_for(design.closure).unknown_of(chosen.points, still)
+    start = design.linkage.unknown_of(chosen.points, still)
     enclosure = prove_pose(still, start, choices, digits, working).enclosure
     inverse, jets = inverse_jacobian(enclosure, still), unknown_jets(enclosure, known)
     return {
         (name, order): _by(design, _changed(design, driven, name, order), jets, inverse)
-        for name in INPUTS
+        for name in driven
         for order in ORDERS
     }
 
@@ -99,44 +103,45 @@ def _changed(design: Design, driven: Driven, name: str, order: str) -> Known:
     """What is given, with its slope by one number of one input."""
 
     def dual(other: str) -> Jet:
-        jet = balls(getattr(driven, other))
+        jet = balls(driven[other])
         return Jet(*(Dual(getattr(jet, o), arb(int((other, o) == (name, order)))) for o in ORDERS))
 
-    return design.known_for(dual("arm_angle"), dual("rack"), dual("heave"))
+    return design.known_for({other: dual(other) for other in driven})
 
 
 def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> Sensitivity:
-    equations = equations_for(known.closure)
     slopes: list[list[arb]] = [[arb(0)] * 3 for _ in jets]
     for order, name in enumerate(ORDERS):
-        rows = equations.residual(_with_slopes(jets, slopes), known)
+        rows = known.linkage.residual(_with_slopes(jets, slopes), known)
         step = inverse * arb_mat(len(rows), 1, [-slope_of(getattr(row, name)) for row in rows])
         for i, slope in enumerate(slopes):
             slope[order] = step[i, 0]
     solved = _with_slopes(jets, slopes)
-    points, unit = equations.points_of(solved, known), as_ball(design.unit)
+    points, unit = known.linkage.points_of(solved, known), as_ball(design.unit)
     turns = body_turns(solved, points, known)
     vectors = {
-        quantity: {name: times(_slope(points[n], order), unit) for name, n in design.names.items()}
+        quantity: {name: times(_slope(points[name], order), unit) for name in design.names}
         for quantity, order in zip(("position", "velocity", "acceleration"), ORDERS, strict=True)
     }
     for i, quantity in enumerate(("angular_velocity", "angular_acceleration")):
         vectors[quantity] = {body: _slope_of(turn[i]) for body, turn in turns.items()}
     if not all(x.is_finite() for named in vectors.values() for vector in named.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
-    angles = {name: _angle_slope(y, x) for name, (y, x) in wheel_directions(points, design, known).items()}
-    angles = {name: slope for name, slope in angles.items() if slope.is_finite()}
+    places = {name: _part(p, "value") for name, p in points.items()}
+    axes = Axes.of(places, known, design.outboard)
+    slopes_of_effects = {name: effect.slope(axes) for name, effect in EFFECTS.items()}
+    effects = {name: slope for name, slope in slopes_of_effects.items() if slope.is_finite()}
     bounds = {
         quantity: max(x.rad() for vector in named.values() for x in vector)
         for quantity, named in vectors.items()
     }
-    bounds["angles"] = max((slope.rad() for slope in angles.values()), default=arb(0))
+    bounds["effects"] = max((slope.rad() for slope in effects.values()), default=arb(0))
     return Sensitivity(
         **{
             quantity: {name: (centre_of(x), centre_of(y), centre_of(z)) for name, (x, y, z) in named.items()}
             for quantity, named in vectors.items()
         },
-        angles={name: centre_of(slope) for name, slope in angles.items()},
+        effects={name: centre_of(slope) for name, slope in effects.items()},
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
     )
 
@@ -149,16 +154,13 @@ def _with_slopes(jets: Sequence[Jet], slopes: Sequence[Sequence[arb]]) -> list[J
 
 
 def _slope(point: Vector, order: str) -> Vector:
-    return _slope_of((getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)))
+    return _slope_of(_part(point, order))
+
+
+def _part(point: Vector, order: str) -> Vector:
+    return getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)
 
 
 def _slope_of(vector: Vector) -> Vector:
     x, y, z = (arb(slope_of(number)) for number in vector)
     return x, y, z
-
-
-def _angle_slope(y: Scalar, x: Scalar) -> arb:
-    """Of atan2(y, x)."""
-    across, along = value_of(y), value_of(x)
-    turning = along * slope_of(y) - across * slope_of(x)
-    return arb(turning / (along * along + across * across))

@@ -8,10 +8,8 @@ from typing import TypeVar
 
 from flint import arb, ctx
 
-from validate.reference.branches import CLEAR_SIGN, Candidate, candidate, choices_of_table, every_candidate
-from validate.reference.closures import DEFAULT, equations_for
-from validate.reference.design import Design, Driven, ball_vector, exact_vector, values_only
-from validate.reference.equations import Known
+from validate.reference.candidates import CLEAR_SIGN, choices_of_table, every_candidate
+from validate.reference.design import Design, ball_vector, exact_vector, values_only
 from validate.reference.errors import (
     AmbiguousAssemblyError,
     BadInputError,
@@ -20,6 +18,8 @@ from validate.reference.errors import (
 )
 from validate.reference.exact import as_ball, bits
 from validate.reference.instant import Instant, prove_instant
+from validate.reference.linkage import Candidate, Known
+from validate.reference.suspensions import CLOSURE, SUSPENSION
 from validate.reference.vectors import Vector, minus, times
 
 MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
@@ -31,7 +31,7 @@ Answer = TypeVar("Answer")
 Points = Mapping[str, Sequence[object]]
 
 
-def solve_truth(
+def solve_reference(
     points: Points,
     inputs: Mapping[str, Sequence[object]],
     guess: Points | None = None,
@@ -39,13 +39,14 @@ def solve_truth(
     right: Sequence[object] = (0, 1, 0),
     side: str = "left",
     digits: int = 60,
-    closure: str = DEFAULT,
+    closure: str = CLOSURE,
     clearness: float = CLEAR_SIGN,
+    suspension: str = SUSPENSION,
 ) -> Instant:
     """Solve the car at one instant, with a proof of every digit.
 
     All numbers given (int, float, Fraction, mpf) are taken as exact. Without a guess the assembly
-    is the one that the given points make: the same four `Choices`, which is the assembly that a
+    is the one that the given points make: the same `Choices`, which is the assembly that a
     regular motion leads to from the design. With a guess it is the assembly nearest to the guess.
     The number of digits rises by itself where the pose is nearly singular.
     It sets the precision of python-flint, which is global: not for several threads at once.
@@ -53,18 +54,19 @@ def solve_truth(
     Args:
         points: the points by name, mm; they fix the lengths and need not be assembled. Without
             rack_centre the rack's line passes through tie_rod_inner; without wheel_axis_inner the wheel's
-            spin axis starts in strut_lower.
+            spin axis starts in the strut's strut_lower.
         inputs: "arm_angle" (rad), "rack" (mm), "heave" (mm), each (value, rate, acceleration).
         guess: some or all points by name, mm, near the wanted assembly.
         up: unit vector of the paper's z in the frame of the points.
         right: unit vector of the paper's y in the frame of the points.
         side: "left" or "right" wheel, for camber and kingpin angle.
         digits: digits of every number, relative to the greatest of its kind; 15 to 200.
-        closure: "drawn" holds the strut's axis in the knuckle on the line of strut_lower and strut_top as
-            drawn (see `knuckle_equations`); "collinear" is the paper's strut, the ball joint on one
-            line with it (see `equations`).
+        closure: "drawn" takes a suspension as it is drawn, a strut with its axis in the knuckle on the line
+            of strut_lower and strut_top; "collinear" is the paper's strut, the ball joint on one line with
+            it.
         clearness: how far the given points must be from where two assemblies meet, as a sine; 0 takes
             the exact sign, however small the product.
+        suspension: its type, a name in `suspensions.SUSPENSIONS`.
     Returns:
         The instant, mm, s, rad.
     Raises:
@@ -73,13 +75,16 @@ def solve_truth(
         AmbiguousAssemblyError: points or guess do not single out an assembly.
         SingularPoseError: no proof with 400 digits.
     """
-    design = Design.from_points(points, up, right, side, closure)
-    driven = Driven.from_mapping(inputs)
-    choose: Callable[[Known], Candidate]
+    design = Design.from_points(points, up, right, side, closure, suspension)
+    driven = design.driven(inputs)
     if guess is None:
-        choose = partial(candidate, choices=choices_of_table(design.table, design.up, closure, clearness))
+        choices = choices_of_table(design.table, design.up, design.linkage, clearness)
     else:
-        choose = partial(_nearest, near=_local(guess, design))
+        near = _local(guess, design)
+
+    def choose(known: Known) -> Candidate:
+        return _nearest(known, near) if guess is not None else design.linkage.candidate(known, choices)
+
     return prove_assembly(design, partial(design.known, driven), choose, digits)
 
 
@@ -92,7 +97,7 @@ def prove_assembly(
         given: what the equations take as given, with rates, at the present precision.
         choose: the closed form to start from.
     Raises:
-        InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_truth`.
+        InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
 
     def attempt(working: int) -> Instant:
@@ -100,7 +105,7 @@ def prove_assembly(
         still = values_only(known)
         chosen = choose(still)
         chosen.require_feasible(float(design.unit))
-        start = equations_for(design.closure).unknown_of(chosen.points, still)
+        start = design.linkage.unknown_of(chosen.points, still)
         return prove_instant(design, known, start, chosen.choices, digits, working)
 
     return with_enough_digits(attempt, digits)
@@ -125,17 +130,17 @@ def with_enough_digits(attempt: Callable[[int], Answer], digits: int) -> Answer:
     raise NotDecidedError("a proof, digits of the arithmetic", working, MOST_DIGITS)
 
 
-def _local(guess: Points, design: Design) -> dict[int, Vector]:
+def _local(guess: Points, design: Design) -> dict[str, Vector]:
     near = {}
     for name, place in guess.items():
         if name not in design.names:
             raise BadInputError("guess", name, f"names among {', '.join(design.names)}")
         absolute = exact_vector(place, f"guess[{name!r}]")
-        near[design.names[name]] = times(minus(absolute, design.origin), 1 / design.unit)
+        near[name] = times(minus(absolute, design.origin), 1 / design.unit)
     return near
 
 
-def _nearest(known: Known, near: Mapping[int, Vector]) -> Candidate:
+def _nearest(known: Known, near: Mapping[str, Vector]) -> Candidate:
     """The candidate nearest to the guess in the maximum norm; it may still be infeasible."""
 
     def distance(one: Candidate) -> arb:

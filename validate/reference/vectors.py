@@ -33,3 +33,11 @@ def dot(a: Vector, b: Vector) -> Scalar:
 def cross(a: Vector, b: Vector) -> Vector:
     """a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def squares(*vectors: Vector) -> Scalar:
+    """|a|^2 |b|^2 ...: the scale, squared, of a product of these vectors."""
+    product = dot(vectors[0], vectors[0])
+    for vector in vectors[1:]:
+        product = product * dot(vector, vector)
+    return product

@@ -1,7 +1,7 @@
 """Whether what a formulation claims of its accuracy holds, number by number, and how loose it is.
 
-Random scenes by number (see `random_cars`), a tenth of them close to a singular pose, each number of every
-instant held against the truth:
+Random scenes by number (see `random_scenes`), a tenth of them close to a singular pose, each number of every
+instant held against the reference:
 
     python -m validate.studies.claims --formulation pointcoord --count 300
 """
@@ -9,6 +9,7 @@ instant held against the truth:
 from __future__ import annotations
 
 import argparse
+import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -18,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import SceneError
-from validate.adjudication.true_solution import DUST, as_solution, scales
-from validate.adjudication.verdicts import inputs_at, true_instant
-from validate.cars.random_scenes import RandomCar, random_car
+from validate.adjudication.reference_solution import DUST, as_solution, inputs_at, reference_instant, scales
+from validate.cars.random_scenes import RandomScene, random_scene
+from validate.cars.registry import VARIANTS, Variant
 from validate.formulations.protocol import NUMBERS_OF, FormulationError, Solution
 from validate.formulations.registry import NAMES, formulation
 from validate.output.report import table
-from validate.reference import TruthError
+from validate.reference import NoReferenceError
 from validate.reference.exact import as_fraction
 from validate.reference.instant import Instant
 
@@ -34,16 +35,18 @@ LEVELS = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class Held:
-    """The numbers of one quantity of one scene, held against the truth.
+    """The numbers of one quantity of one scene, held against the reference.
 
     Attributes:
         scene, kind: its number, and what it comes close to.
+        variant: its kind of suspension.
         error, claim: of every number that is off, (numbers,).
         exact: how many are not off at all.
     """
 
     scene: int
     kind: str
+    variant: Variant
     quantity: str
     error: Array
     claim: Array
@@ -56,25 +59,25 @@ class Held:
             return float(np.max(self.error / self.claim, initial=0.0))
 
 
-def held_scene(car: RandomCar, name: str) -> list[Held]:
-    """All quantities of a scene; none where the formulation refuses it or there is no truth."""
+def held_scene(car: RandomScene, name: str) -> list[Held]:
+    """All quantities of a scene; none where the formulation refuses it or there is no reference."""
     scene = car.scene
     try:
         solution = formulation(name).solve(scene)
-        instants = [true_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
-    except (FormulationError, SceneError, TruthError):
+        instants = [reference_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
+    except (FormulationError, SceneError, NoReferenceError):
         return []
-    truth = as_solution(scene.instants, instants)
-    return [_held(car, quantity, solution, truth, instants) for quantity in NUMBERS_OF]
+    reference = as_solution(scene.instants, instants)
+    return [_held(car, quantity, solution, reference, instants) for quantity in NUMBERS_OF]
 
 
 def _held(
-    car: RandomCar, quantity: str, solution: Solution, truth: Solution, instants: Sequence[Instant]
+    car: RandomScene, quantity: str, solution: Solution, reference: Solution, instants: Sequence[Instant]
 ) -> Held:
     found: list[tuple[float, float]] = []
-    # The truth's own error is that of numbers as large as the largest ones that a number is made of.
-    dust = DUST * scales({q: getattr(truth, q) for q in NUMBERS_OF})[quantity]
-    for name in getattr(truth, quantity):
+    # The reference's own error is that of numbers as large as the largest ones that a number is made of.
+    dust = DUST * scales({q: getattr(reference, q) for q in NUMBERS_OF})[quantity]
+    for name in getattr(reference, quantity):
         numbers = getattr(solution, quantity)[name].reshape(len(instants), -1)
         claims = getattr(solution.accuracy, quantity)[name].reshape(len(instants), -1)
         for row, claim, instant in zip(numbers, claims, instants, strict=True):
@@ -82,27 +85,29 @@ def _held(
             found += [(e if e > dust else 0.0, float(c)) for e, c in zip(errors, claim, strict=True)]
     error, claim = np.array(found).reshape(-1, 2).T
     off = error > 0.0
-    return Held(car.number, car.kind, quantity, error[off], claim[off], int(np.count_nonzero(~off)))
+    return Held(
+        car.number, car.kind, car.variant, quantity, error[off], claim[off], int(np.count_nonzero(~off))
+    )
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
-    return [instant.angles[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
+    return [instant.effects[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
 
 
 def _distance(found: float, exact: Any) -> float:
     return float(abs(as_fraction(exact, "number") - Fraction(float(found))))
 
 
-def study(cars: Iterable[RandomCar], name: str) -> list[Held]:
-    """Every quantity of every scene that is answered and has a truth."""
+def study(cars: Iterable[RandomScene], name: str) -> list[Held]:
+    """Every quantity of every scene that is answered and has a reference."""
     return [held for car in cars for held in held_scene(car, name)]
 
 
 def study_text(helds: Sequence[Held]) -> str:
-    """A row for each quantity: how many numbers, the largest error / claim, and claim / error at levels."""
+    """A row for each suspension and quantity: numbers, the largest error / claim, claim / error at levels."""
     rows = []
-    for quantity in NUMBERS_OF:
-        part = [held for held in helds if held.quantity == quantity]
+    for variant, quantity in itertools.product(VARIANTS, NUMBERS_OF):
+        part = [held for held in helds if (held.variant, held.quantity) == (variant, quantity)]
         if not part:
             continue
         worst = max(part, key=lambda held: held.share)
@@ -110,6 +115,7 @@ def study_text(helds: Sequence[Held]) -> str:
             loose = np.concatenate([held.claim / held.error for held in part])
         rows.append(
             (
+                variant.words,
                 quantity.replace("_", " "),
                 str(sum(len(held.error) + held.exact for held in part)),
                 str(sum(held.exact for held in part)),
@@ -118,10 +124,10 @@ def study_text(helds: Sequence[Held]) -> str:
                 *(f"{np.quantile(loose, level):.3g}" if len(loose) else "-" for level in LEVELS),
             )
         )
-    head = ("quantity", "numbers", "exact", "largest error / claim", "scene")
+    head = ("suspension", "quantity", "numbers", "exact", "largest error / claim", "scene")
     levels = tuple(f"claim / error at {100 * level:g}%" for level in LEVELS)
     scenes = len({held.scene for held in helds})
-    return f"{scenes} scenes held against the truth\n{table((*head, *levels), rows)}"
+    return f"{scenes} scenes held against the reference\n{table((*head, *levels), rows)}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -131,7 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--count", type=int, default=300, help="scenes")
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     options = parser.parse_args(arguments)
-    cars = (random_car(number) for number in range(options.first, options.first + options.count))
+    cars = (random_scene(number) for number in range(options.first, options.first + options.count))
     helds = study(cars, options.formulation)
     print(study_text(helds))
     return 1 if any(not held.share <= 1.0 for held in helds) else 0

@@ -4,7 +4,7 @@
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
 in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
-to the truth, in every quantity. Nothing is folded away: the table at the end counts them all.
+to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
 
 The store goes on where it ended, whatever ended it. It belongs to one state of the models: after a change to
 them give another file.
@@ -32,27 +32,33 @@ from validate.adjudication.verdicts import (
     obstacle,
     unanswered,
 )
-from validate.cars.random_scenes import CLOSURES, KINDS, SEED, RandomCar, random_car
+from validate.cars.random_cars import KINDS
+from validate.cars.random_scenes import SEED, RandomScene, random_scene
+from validate.cars.registry import VARIANTS
 from validate.comparison.compare import Outcome, compare_solutions
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
-from validate.studies.chunk_store import CHUNK, Chunk, Store, StoreError
-from validate.studies.random_runs_table import table_text
+from validate.output.report import table
+from validate.studies.chunk_store import CHUNK, Chunk, Record, Store, StoreError
 
 MODELS = ("pointcoord", "absolute")
 ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
-HELD = 20  # every so many scenes are held to the truth although both models agree
+HELD = 20  # every so many scenes are held to the reference although both models agree
 # What makes the status 1; an answer that stands alone and is wrong is one of them.
 FAULTY = (
     "disagreed",
     " fails: ",
-    "agreed, the truth: pointcoord",
-    "agreed, the truth: absolute",
-    "agreed, the truth: no such pose",
+    "agreed, the reference: pointcoord",
+    "agreed, the reference: absolute",
+    "agreed, the reference: no such pose",
     "answer wrong",
 )
+
+
+# How outcomes begin, in the order in which they are shown.
+HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
 
 
 @dataclass(frozen=True)
@@ -72,7 +78,7 @@ class Result:
     kept: bool
 
 
-def examine(car: RandomCar) -> Result:
+def examine(car: RandomScene) -> Result:
     """Solve one scene by both models and say what came of it."""
     answers: list[Solution | FormulationError] = []
     for name in MODELS:
@@ -96,7 +102,7 @@ def examine(car: RandomCar) -> Result:
     return _one_sided(car, answers)
 
 
-def _solved(name: str, car: RandomCar) -> Solution:
+def _solved(name: str, car: RandomScene) -> Solution:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
@@ -105,14 +111,14 @@ def _solved(name: str, car: RandomCar) -> Solution:
             raise FormulationError(name, error) from error
 
 
-def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
+def _compared(car: RandomScene, first: Solution, second: Solution) -> Result:
     outcome = compare_solutions(car.scene, first, second, car.scene.title)
     if outcome.agreed and car.number % HELD:
         return Result("agreed", "", _shares(outcome), False)
     if outcome.agreed:
         verdict = judged(car.scene, first, second)
         right = verdict == NEITHER_WRONG
-        name = "agreed, and with the truth" if right else f"agreed, the truth: {verdict}"
+        name = "agreed, and with the reference" if right else f"agreed, the reference: {verdict}"
         return Result(name, "", _shares(outcome), not right)
     worst = (*outcome.disagreements, *outcome.undecided)[0]
     reason = (
@@ -126,7 +132,7 @@ def _compared(car: RandomCar, first: Solution, second: Solution) -> Result:
     return Result(kind, reason, {}, True)
 
 
-def _one_sided(car: RandomCar, answers: Sequence[Solution | FormulationError]) -> Result:
+def _one_sided(car: RandomScene, answers: Sequence[Solution | FormulationError]) -> Result:
     (error,) = (a for a in answers if isinstance(a, FormulationError))
     (answer,) = (a for a in answers if isinstance(a, Solution))
     verdict = judged_alone(car.scene, answer)
@@ -160,9 +166,9 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
     shares: dict[str, tuple[float, int]] = {}
     found = []
     for index in range(number * CHUNK, (number + 1) * CHUNK):
-        car = random_car(index)
+        car = random_scene(index)
         result = examine(car)
-        outcomes[f"{car.closure}/{car.kind}/{result.outcome}"] += 1
+        outcomes[f"{car.variant.words}/{car.kind}/{result.outcome}"] += 1
         for quantity, share in result.shares.items():
             shares[quantity] = max(shares.get(quantity, (share, index)), (share, index))
         if result.kept:
@@ -170,7 +176,7 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
             if index not in known:
                 data = car.scene.model_dump(mode="json", exclude_none=True)
                 line = {
-                    "closure": car.closure,
+                    "suspension": car.variant.words,
                     "kind": car.kind,
                     "outcome": result.outcome,
                     "reason": result.reason,
@@ -217,8 +223,54 @@ def run(count: int, path: Path, workers: int = 1) -> int:
         if any(process.exitcode for process in crew):
             raise StoreError(f"{path}: a worker died; start again, and it goes on from what is recorded")
     record = store.read()
-    print(table_text(record, CLOSURES, KINDS), flush=True)
+    print(table_text(record), flush=True)
     return 1 if any(word in o for o in record.outcomes() for word in FAULTY) else 0
+
+
+def table_text(record: Record) -> str:
+    """Every outcome by suspension and by kind of scene, and the largest share of each tolerance."""
+    total = record.outcomes()
+    blocks = [_summary(total)]
+    blocks += [f"{variant.words}:\n{_outcomes(total, variant.words)}" for variant in VARIANTS]
+    shares = record.shares()
+    if shares:
+        lines = [(q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items()]
+        blocks.append(
+            "Where both agreed:\n" + table(("quantity", "largest share of tolerance", "scene"), lines)
+        )
+    seconds = sum(chunk.seconds for chunk in record.chunks.values())
+    blocks.append(
+        f"{len(record.chunks)} chunks of {CHUNK} scenes, {len(record.findings)} scenes written down, "
+        f"{record.torn} torn lines ignored, {seconds:.0f} s."
+    )
+    return "\n\n".join(blocks)
+
+
+def _summary(total: Counter[str]) -> str:
+    """A row for each suspension and closure."""
+    rows = []
+    for variant in VARIANTS:
+        here = {key: n for key, n in total.items() if key.startswith(f"{variant.words}/")}
+        begun = [sum(n for key, n in here.items() if key.split("/", 2)[2].startswith(h)) for h in HEADS]
+        faulty = sum(n for key, n in here.items() if any(word in key for word in FAULTY))
+        rows.append((variant.words, *map(str, (sum(here.values()), *begun, faulty))))
+    return table(("suspension", "scenes", *HEADS, "of these wrong"), rows)
+
+
+def _outcomes(total: Counter[str], suspension: str) -> str:
+    here = [key for key in total if key.startswith(f"{suspension}/")]
+    outcomes = sorted({key.split("/", 2)[2] for key in here}, key=_order)
+    rows = []
+    for outcome in outcomes:
+        counts = [total[f"{suspension}/{kind}/{outcome}"] for kind in KINDS]
+        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
+    tried = [sum(total[key] for key in here if key.startswith(f"{suspension}/{kind}/")) for kind in KINDS]
+    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
+    return table(("outcome", "all", *KINDS), rows)
+
+
+def _order(outcome: str) -> tuple[int, str]:
+    return next((i for i, head in enumerate(HEADS) if outcome.startswith(head)), len(HEADS)), outcome
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

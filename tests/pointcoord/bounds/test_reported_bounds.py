@@ -1,18 +1,16 @@
 """A bound for every number that a motion reports: rates, body rates and angles as well as positions."""
 
-from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds.reported_bounds import Bounds
-from pointcoord.results.motion import Channel, Motion
+from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.results.motion import Motion
 
 Array = NDArray[np.float64]
-QUANTITIES = tuple(field.name for field in fields(Bounds))
 SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut", "double-wishbone")
 
 
@@ -22,9 +20,8 @@ def short(name: str, **changes: object) -> Scene:
     return scene.model_copy(update={"time": time, **changes})
 
 
-def named(bounds: Bounds) -> dict[tuple[str, str], Array]:
-    parts: dict[str, Mapping[str, Array]] = {quantity: getattr(bounds, quantity) for quantity in QUANTITIES}
-    return {(quantity, name): array for quantity, part in parts.items() for name, array in part.items()}
+def named(bounds: Numbers) -> dict[tuple[str, str], Array]:
+    return {(quantity, name): array for quantity, part in bounds.items() for name, array in part.items()}
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -33,7 +30,7 @@ def test_two_methods_differ_by_no_more_than_both_prove_and_prove_no_more_than_th
     one, other = series.proof(rates=True), newton.proof(rates=True)
     for (quantity, part), bound in named(one.proven).items():
         gap = np.abs(getattr(series, quantity)[part] - getattr(newton, quantity)[part])
-        assert (gap <= bound + getattr(other.proven, quantity)[part]).all(), (quantity, part)
+        assert (gap <= bound + other.proven[quantity][part]).all(), (quantity, part)
         largest = max(float(np.abs(array).max()) for array in getattr(series, quantity).values())
         assert (bound <= 1e-13 * largest).all(), (quantity, part)
     for motion, proof in ((series, one), (newton, other)):
@@ -68,19 +65,19 @@ def test_a_wrong_number_is_proven_to_be_off_and_is_not_expected_to_be(quantity: 
     motion = simulate(short("bounce-and-steer"))
 
     def spoilt(wrong: Motion) -> Motion:
-        channel = getattr(wrong, quantity)
+        channel = wrong.numbers[quantity]
         arrays = {name: array * (1.0 + 1e-9) for name, array in channel.items()}
-        return replace(wrong, **{quantity: Channel(channel.quantity, channel.effect, arrays)})
+        return replace(wrong, numbers={**wrong.numbers, quantity: channel.with_arrays(arrays)})
 
     right, wrong = motion.proof(rates=True), spoilt(motion).proof(rates=True)
     for name, numbers in getattr(motion, quantity).items():
         off = 1e-9 * np.abs(numbers)
-        proven = getattr(wrong.proven, quantity)[name]
-        before = getattr(right.proven, quantity)[name]
+        proven = wrong.proven[quantity][name]
+        before = right.proven[quantity][name]
         assert (proven >= (1.0 - 1e-6) * off - before).all()
         assert (proven <= (1.0 + 1e-5) * off + 1.1 * before).all()
-        expected = getattr(wrong.expected, quantity)[name]
-        assert expected == pytest.approx(getattr(right.expected, quantity)[name], rel=1e-6, abs=1e-300)
+        expected = wrong.expected[quantity][name]
+        assert expected == pytest.approx(right.expected[quantity][name], rel=1e-6, abs=1e-300)
 
 
 def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are() -> None:

@@ -9,7 +9,8 @@ import pytest
 import pointcoord.solve.pointwise
 import pointcoord.solve.taylor
 from pointcoord import NotComputed, Scene, UnknownName, simulate
-from pointcoord.effects.effect import EFFECTS, plan_effects
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.numerics import newton
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve import assembly

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pointcoord.effects.wheel_angles import camber_angle, kingpin_angle
+from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
+from pointcoord.linkage.car_axes import CarAxes
 
 EPS = np.finfo(float).eps
-UP, LEFT = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
+UP, RIGHTWARD = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+LEFT, RIGHT = CarAxes(UP, RIGHTWARD, -RIGHTWARD), CarAxes(UP, RIGHTWARD, RIGHTWARD)
 coordinate = st.floats(-500.0, 500.0, allow_subnormal=False)
 point = st.tuples(coordinate, coordinate, coordinate).map(np.array)
 
@@ -21,7 +23,7 @@ def test_kingpin_is_the_lean_of_the_axis_inboard_at_the_top(degrees: float, cast
     # Left wheel: inboard is +y. Caster, along x, is not seen in the transverse plane.
     upper = lower + 300.0 * np.array([0.0, np.sin(lean), np.cos(lean)]) + [caster, 0.0, 0.0]
     # A few roundings of coordinates up to 600 over the length of 300.
-    assert kingpin_angle(lower, upper, UP, LEFT) == pytest.approx(lean, abs=16 * EPS * 600 / 300)
+    assert KINGPIN.value(lower, upper, LEFT) == pytest.approx(lean, abs=16 * EPS * 600 / 300)
 
 
 @pytest.mark.parametrize("degrees", [-20.0, -3.0, 0.0, 5.0, 12.5, 45.0])
@@ -32,34 +34,34 @@ def test_camber_is_the_lean_of_the_wheel_outwards_at_the_top(degrees: float, toe
     inner = np.array([10.0, -500.0, 300.0])
     centre = inner + 90.0 * np.array([0.0, -np.cos(lean), -np.sin(lean)]) + [toe, 0.0, 0.0]
     # A few roundings of coordinates up to 590 over the length of 90.
-    assert camber_angle(inner, centre, UP, LEFT) == pytest.approx(lean, abs=16 * EPS * 590 / 90)
+    assert CAMBER.value(inner, centre, LEFT) == pytest.approx(lean, abs=16 * EPS * 590 / 90)
 
 
 @settings(deadline=None)
 @given(first=point, second=point)
 def test_mirrored_wheel_has_the_same_angles(first: np.ndarray, second: np.ndarray) -> None:
     mirror = np.array([1.0, -1.0, 1.0])
-    for angle in (kingpin_angle, camber_angle):
+    for angle in (KINGPIN, CAMBER):
         # A change of sign rounds nothing.
-        assert angle(first * mirror, second * mirror, UP, -LEFT) == angle(first, second, UP, LEFT)
+        assert angle.value(first * mirror, second * mirror, RIGHT) == angle.value(first, second, LEFT)
 
 
 @settings(deadline=None)
 @given(first=point, second=point, power=st.integers(-30, 30))
 def test_angles_do_not_depend_on_size(first: np.ndarray, second: np.ndarray, power: int) -> None:
-    for angle in (kingpin_angle, camber_angle):
-        assert angle(np.ldexp(first, power), np.ldexp(second, power), UP, LEFT) == angle(
-            first, second, UP, LEFT
+    for angle in (KINGPIN, CAMBER):
+        assert angle.value(np.ldexp(first, power), np.ldexp(second, power), LEFT) == angle.value(
+            first, second, LEFT
         )
 
 
 def test_angles_of_many_poses_are_those_of_each() -> None:
     first, second = np.random.default_rng(1).normal(size=(2, 4, 3))
-    for angle in (kingpin_angle, camber_angle):
-        together = angle(first, second, UP, LEFT)
+    for angle in (KINGPIN, CAMBER):
+        together = angle.value(first, second, LEFT)
         assert together.shape == (4,)
         # The same products, which may be summed in another order.
-        alone = [float(angle(a, b, UP, LEFT)) for a, b in zip(first, second, strict=True)]
+        alone = [float(angle.value(a, b, LEFT)) for a, b in zip(first, second, strict=True)]
         assert np.abs(together - alone).max() <= 16 * EPS
 
 
@@ -70,5 +72,5 @@ def test_paper_formulas_for_the_left_wheel() -> None:
         np.array([452.0, -410.0, 25.0]),
     )
     # eqs. (16) and (17), in the quadrant where the arc tangent is its own branch
-    assert kingpin_angle(p5, p7, UP, LEFT) == pytest.approx(np.arctan(10.0 / 60.0), abs=4 * EPS)
-    assert camber_angle(p7, p10, UP, LEFT) == pytest.approx(np.arctan(-5.0 / 90.0), abs=4 * EPS)
+    assert KINGPIN.value(p5, p7, LEFT) == pytest.approx(np.arctan(10.0 / 60.0), abs=4 * EPS)
+    assert CAMBER.value(p7, p10, LEFT) == pytest.approx(np.arctan(-5.0 / 90.0), abs=4 * EPS)

@@ -18,11 +18,11 @@ from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.constraints.on_axis import OnAxis
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
 from pointcoord.linkage.constraints.rack import Rack
 from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
+from validate.paper.printed_parallel import PrintedParallel
 
 Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2

@@ -14,6 +14,7 @@ from pointcoord import MechanismError, Scene, UnknownName, simulate
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.method import NEWTON, SERIES, Method
 from pointcoord.numerics.linear import null_directions
 from pointcoord.suspensions.macpherson import COLLINEAR
 
@@ -192,10 +193,10 @@ def test_car_a_thousand_kilometres_away_moves_as_at_home(
 
 
 @pytest.mark.parametrize("power", [-300, -40, -1, 1, 10, 300])
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", [SERIES, NEWTON], ids=str)
 @by_car
 def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
-    car: SampleCar, make_scene: Callable[..., Scene], power: int, method: str
+    car: SampleCar, make_scene: Callable[..., Scene], power: int, method: Method
 ) -> None:
     rack = np.array([10.0, 30.0, 5.0])
     plain = simulate(make_scene(car=car, rack=rack, samples=5), method)

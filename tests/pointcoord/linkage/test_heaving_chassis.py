@@ -7,16 +7,17 @@ import pytest
 from sample_cars import SampleCar, by_car
 
 from pointcoord import InputOutOfRange, Scene, simulate
+from pointcoord.method import NEWTON, SERIES, Method
 
 EPS = np.finfo(float).eps
 AMPLITUDE, FREQUENCY = 12.0, 3.0
 
 
 @by_car
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", [SERIES, NEWTON], ids=str)
 @pytest.mark.parametrize("tilted", [False, True])
 def test_heave_adds_itself_to_positions_and_its_rates_to_rates(
-    make_scene: Callable[..., Scene], car: SampleCar, method: str, tilted: bool
+    make_scene: Callable[..., Scene], car: SampleCar, method: Method, tilted: bool
 ) -> None:
     # Heave is along the car's own up: a car turned about x by 30 degrees shows that.
     c, s = (np.cos(np.pi / 6), 0.5) if tilted else (1.0, 0.0)
@@ -42,15 +43,13 @@ def test_heave_adds_itself_to_positions_and_its_rates_to_rates(
     }
     # Poses: both proven bounds; for the series the truncation of both, 1e-9 mm each.
     pose = (
-        (one.carried_bound + other.carried_bound).max()
-        + (2e-9 if method == "series" else 0.0)
-        + 16 * EPS * 600
+        (one.carried_bound + other.carried_bound).max() + (2e-9 if method.by_series else 0.0) + 16 * EPS * 600
     )
     # Rates: a pose's error times its proven effect, and the rounding of one solve, condition number times
     # eps of the largest rate; for the series the same share of the rate as the tolerance is of the car.
     # Carried points are multiplied by their weights, up to 30.
     condition = max(one.condition.max(), other.condition.max())
-    share = 64 * EPS * condition + (1e-9 / 256 if method == "series" else 0.0)
+    share = 64 * EPS * condition + (1e-9 / 256 if method.by_series else 0.0)
     fast, hard = (
         max(np.abs(v).max() for v in getattr(moved, q).values()) for q in ("velocity", "acceleration")
     )
@@ -83,7 +82,7 @@ def test_heave_that_is_not_given_is_no_heave(make_scene: Callable[..., Scene]) -
 @pytest.mark.parametrize("method", ["series", "newton"])
 @pytest.mark.parametrize("height", [1e3, 1e9, 1e299])
 def test_height_of_the_chassis_costs_a_rate_no_digit(
-    make_scene: Callable[..., Scene], method: str, height: float, car: SampleCar
+    make_scene: Callable[..., Scene], method: Method, height: float, car: SampleCar
 ) -> None:
     # Constraints are made of differences, so a chassis that has gone up changes no bit of a rate, and of a
     # coordinate only what its storage rounds: one unit in the last place of the height.

@@ -6,10 +6,15 @@ import pytest
 from pointcoord import UnknownName
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions import PRINTED_TOPOLOGIES, SUSPENSIONS
+from pointcoord.method import SERIES
+from validate.paper.printed import PRINTED
 
-CLOSURES = [*(suspension.closures for suspension in SUSPENSIONS.values()), *PRINTED_TOPOLOGIES.values()]
-EVERY = [topology for closures in CLOSURES for topology in closures.values()]
+EVERY = [
+    topology
+    for method in (SERIES, PRINTED)
+    for suspension in method.suspensions.values()
+    for topology in suspension.closures.values()
+]
 by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topology.name)
 
 

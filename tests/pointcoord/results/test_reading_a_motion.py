@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Scene, UnknownName, simulate
+from pointcoord.method import NEWTON, SERIES, Method
+from validate.paper.printed import PRINTED
 
 EPS = np.finfo(float).eps
 CHANNELS = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
@@ -18,10 +20,10 @@ def motion(make_scene: Callable[..., Scene]) -> Motion:
     )
 
 
-@pytest.mark.parametrize("method", ["series", "newton", "printed"])
-def test_arrays_of_a_motion_cannot_be_written(make_scene: Callable[..., Scene], method: str) -> None:
+@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=str)
+def test_arrays_of_a_motion_cannot_be_written(make_scene: Callable[..., Scene], method: Method) -> None:
     motion = simulate(make_scene(), method)
-    for samples in (motion, motion.at([0.5, 1.0])) if method == "series" else (motion,):
+    for samples in (motion, motion.at([0.5, 1.0])) if method.by_series else (motion,):
         for name in CHANNELS:
             for array in getattr(samples, name).values():
                 with pytest.raises(ValueError, match="read-only"):

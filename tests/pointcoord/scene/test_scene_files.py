@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
-from pointcoord.effects.effect import EFFECTS
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import NEWTON, SERIES
+from validate.paper.printed import PRINTED
 
 POINTS = "\n".join(
     f"{name} = {place}"
@@ -247,7 +249,7 @@ def test_scenes_of_the_paper_are_built_in() -> None:
 def test_one_sample_is_one_instant(make_scene: Callable[..., Scene]) -> None:
     scene = make_scene(start=1.0, stop=1.0, samples=1)
     assert scene.instants.tolist() == [1.0]
-    for method in ("series", "newton", "printed"):
+    for method in (SERIES, NEWTON, PRINTED):
         assert simulate(scene, method).position["wheel_centre"].shape == (1, 3)
 
 

@@ -9,19 +9,20 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, UnknownName, simulate
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.printed_parallel import PrintedParallel
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.method import NEWTON, SERIES, Method
 from pointcoord.numerics.newton import polish
-from pointcoord.printed import printed_body_rates, printed_square_velocity_term
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.pointwise import square_velocity_term
-from pointcoord.suspensions.macpherson import COLLINEAR, PRINTED
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.paper.printed import PRINTED, TOPOLOGY, PrintedQuotients, printed_square_velocity_term
+from validate.paper.printed_parallel import PrintedParallel
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
 EPS = np.finfo(float).eps
-METHODS = ("series", "newton", "printed")
+METHODS = (SERIES, NEWTON, PRINTED)
 STEER = {"arm_angle": (np.pi / 2,), "rack": (0.0, 150.0, 25.0), "stop": 0.4}
 
 
@@ -35,7 +36,7 @@ def cars(points: dict[str, Array], up: Array, right: Array) -> dict[str, Mechani
     axes = {"up": up, "right": right}
     return {
         "slide": build_mechanism(COLLINEAR, points, axes),
-        "printed": build_mechanism(PRINTED, points, axes),
+        "printed": build_mechanism(TOPOLOGY, points, axes),
     }
 
 
@@ -43,8 +44,8 @@ def pose_of(mechanism: Mechanism, angle: float = 1.5) -> Pose:
     return assemble(mechanism, {"arm_angle": np.array(angle), "rack": np.array(0.0)})
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_velocity_is_the_derivative_of_the_position(make_scene: Callable[..., Scene], method: str) -> None:
+@pytest.mark.parametrize("method", METHODS, ids=str)
+def test_velocity_is_the_derivative_of_the_position(make_scene: Callable[..., Scene], method: Method) -> None:
     h = 2.0**-10
     motion = simulate(make_scene(rack=(0.0, 20.0), start=0.5, stop=0.5 + 8 * h, samples=9), method)
     bound = float(motion.proof().bound.max())
@@ -52,7 +53,7 @@ def test_velocity_is_the_derivative_of_the_position(make_scene: Callable[..., Sc
         # Central differences of order 8 over the nine instants: no truncation is left at this step (the
         # ninth derivative is below 1e9 mm / s^9, times h^8); rounding: the weights sum to 2.1.
         weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-        tolerance = 1e9 * h**8 + 2.1 * 2 * bound / h + 2.1 * 1e-9 * (method == "series") / h * 1e-3
+        tolerance = 1e9 * h**8 + 2.1 * 2 * bound / h + 2.1 * 1e-9 * method.by_series / h * 1e-3
         assert np.abs(weights @ p / h - motion.velocity[name][4]).max() <= tolerance
 
 
@@ -68,7 +69,7 @@ def test_acceleration_is_the_derivative_of_the_velocity_and_the_printed_one_is_n
 ) -> None:
     h = 2.0**-10
     gaps = {
-        method: acceleration_gap(
+        method.name: acceleration_gap(
             simulate(make_scene(rack=(0.0, 20.0), start=0.5, stop=0.5 + 8 * h, samples=9), method), h
         )
         for method in METHODS
@@ -76,11 +77,11 @@ def test_acceleration_is_the_derivative_of_the_velocity_and_the_printed_one_is_n
     # Velocities up to 400 mm/s with the rounding of two solves, condition number below 100 and 4000 for the
     # two formulations, over h; no truncation is left.
     tolerance = 2.1 * 64 * EPS * 400.0 * 4000.0 / h
-    assert gaps["series"] <= tolerance
-    assert gaps["newton"] <= tolerance
+    assert gaps[SERIES.name] <= tolerance
+    assert gaps[NEWTON.name] <= tolerance
     # Eq. (23) lacks a factor of two and repeats a row: off by more than any rounding.
-    assert gaps["printed"] > 1e3 * tolerance
-    assert gaps["printed"] > 1.0  # mm/s^2
+    assert gaps[PRINTED.name] > 1e3 * tolerance
+    assert gaps[PRINTED.name] > 1.0  # mm/s^2
 
 
 def test_square_velocity_term_is_the_second_difference_of_the_constraints(strut: Mechanism) -> None:
@@ -92,10 +93,10 @@ def test_square_velocity_term_is_the_second_difference_of_the_constraints(strut:
 
 
 def test_printed_term_differs_in_the_rows_of_the_strut_only(table: Points) -> None:
-    system = PRINTED.map
+    system = TOPOLOGY.map
     v = np.random.default_rng(2).normal(size=system.size)
     true, printed = square_velocity_term(system, v), printed_square_velocity_term(system, v)
-    strut_rows = [i for i, label in enumerate(PRINTED.labels) if "parallel" in label]
+    strut_rows = [i for i, label in enumerate(TOPOLOGY.labels) if "parallel" in label]
     others = [i for i in range(len(true)) if i not in strut_rows]
     assert np.array_equal(printed[others], true[others])
     assert np.array_equal(printed[strut_rows[:3]], true[strut_rows[:3]] / 2)
@@ -104,7 +105,7 @@ def test_printed_term_differs_in_the_rows_of_the_strut_only(table: Points) -> No
 
 def test_printed_formulation_has_the_same_positions_and_velocities(make_scene: Callable[..., Scene]) -> None:
     scene = make_scene(rack=(0.0, 20.0))
-    newton, printed = simulate(scene, "newton"), simulate(scene, "printed")
+    newton, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
     one, other = newton.proof(), printed.proof()
     for name in newton.position:
         gap = np.abs(newton.position[name] - printed.position[name]).max(axis=-1)
@@ -146,8 +147,8 @@ def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not
         # The axis is flat up to the rounding of the turn and of the pose.
         y, tolerance = pose.y, 16 * EPS + 4 * float(pose.bound / flat.unit)
     shape = replace(
-        PRINTED,
-        constraints=tuple(c for c in PRINTED.constraints if isinstance(c, PrintedParallel)),
+        TOPOLOGY,
+        constraints=tuple(c for c in TOPOLOGY.constraints if isinstance(c, PrintedParallel)),
     )
     z = np.zeros(shape.layout.size)
     for name in (*shape.moving, *shape.chassis):
@@ -169,7 +170,7 @@ def test_printed_quotient_fails_in_the_steering_scene_and_least_squares_do_not(
     make_scene: Callable[..., Scene],
 ) -> None:
     scene = make_scene(**STEER, samples=81)
-    ours, printed = simulate(scene, "newton"), simulate(scene, "printed")
+    ours, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
     omega = ours.angular_velocity["knuckle"]
     # The arm stands still, so the knuckle turns about the steering axis through points 5 and 4.
     axis = ours.position["strut_top"] - ours.position["lower_ball_joint"]
@@ -198,7 +199,7 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
     v = np.cross(omega, points)
     a = np.cross(alpha, points) + np.cross(omega, v)
     names = ("a", "b", "c")
-    found = printed_body_rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
+    found = PrintedQuotients().rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
     r = points[2] - points[0]
     for exact, value in zip((omega, alpha), found, strict=True):
         # v65 x v75 = omega (v65 . r75): a few roundings over the cosine that the quotient divides by.
@@ -207,7 +208,7 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
 
 
 def test_unknown_method_is_refused_with_the_methods_that_exist(make_scene: Callable[..., Scene]) -> None:
-    with pytest.raises(UnknownName, match="series, newton, printed"):
+    with pytest.raises(UnknownName, match="series, newton"):
         simulate(make_scene(), "newtom")
 
 
@@ -223,7 +224,7 @@ def test_newton_at_every_instant_ends_at_rounding(make_scene: Callable[..., Scen
 @pytest.mark.parametrize("method", ["series", "newton"])
 @pytest.mark.parametrize("short", [1e-5, 1e-8])
 def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
-    make_scene: Callable[..., Scene], strut: Mechanism, method: str, short: float
+    make_scene: Callable[..., Scene], strut: Mechanism, method: Method, short: float
 ) -> None:
     # A Jacobian of Newton's last but one place, off by more than the pose's error, gave velocities that
     # stretched the links of the reported pose.

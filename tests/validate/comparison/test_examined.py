@@ -335,7 +335,7 @@ def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
 
     monkeypatch.setattr("validate.commands.motion.simulate", never)
     monkeypatch.setattr("validate.commands.comparison.examine", never)
-    monkeypatch.setattr("validate.commands.draw.svg", never)
+    monkeypatch.setattr("validate.commands.draw.closed_drawing", never)
     command, option, target = words
     assert main([command, "bounce", option, target]) == status
     out, err = capsys.readouterr()

@@ -14,16 +14,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
-from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.cars.car import Car, any_rotation, as_tuple, mirrored, turned
 from validate.cars.closed_form import ClosedForm
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.paper_car import mirrored
-from validate.cars.random_struts import as_tuple
+from validate.cars.input_limits import Linkage
 from validate.cars.strategies import cars, make_scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR, any_rotation, turned
-from validate.reference import TruthError
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR
+from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]
@@ -74,8 +73,8 @@ def gain(name: str, scene: Scene) -> float:
 
 def true_places(scene: Scene) -> Places:
     try:
-        instant = true_instant(scene, inputs_at(scene, 0.0))
-    except TruthError:
+        instant = reference_instant(scene, inputs_at(scene, 0.0))
+    except NoReferenceError:
         assume(False)
         raise
     return {name: np.array(instant.position_as_float(name)) for name in instant.position}
@@ -113,7 +112,7 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
         for point, distance in off(drawing, there).items():
             assert distance <= rounding + allowed(solution), (name, point)
     for point, distance in off(drawing, true_places(scene)).items():
-        assert distance <= rounding, ("truth", point)
+        assert distance <= rounding, ("reference", point)
 
 
 @given(cars(["drawn"]), SHARES, SHARES)
@@ -130,7 +129,7 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
         for point, distance in off(there, exact).items():
             assert distance <= allowed(solution) + last, (name, point)
     for point, distance in off(true_places(scene), exact).items():
-        assert distance <= last, ("truth", point)
+        assert distance <= last, ("reference", point)
 
 
 @searched

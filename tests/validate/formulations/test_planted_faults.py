@@ -9,15 +9,16 @@ import pytest
 
 import absolute
 import pointcoord.effects.rigid
-import pointcoord.effects.wheel_angles
 import pointcoord.results.readout
 import pointcoord.solve.dense_output
 import pointcoord.solve.pointwise
 import pointcoord.solve.taylor
 import validate.formulations.absolute_coordinates
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.results.motion import Channel, Samples
+from pointcoord.results.samples import Samples
 from validate.comparison.compare import compare
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
@@ -80,8 +81,9 @@ def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
-    angle = pointcoord.effects.wheel_angles.kingpin_angle
-    patch.setattr(pointcoord.results.readout.wheel, "kingpin_angle", lambda *a: -angle(*a))
+    right = EFFECTS["wheel_angles"]
+    wrong = replace(right, angles=(CAMBER, replace(KINGPIN, sine="outboard")))
+    patch.setitem(EFFECTS, right.name, wrong)
 
 
 def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
@@ -227,8 +229,8 @@ def _off_in_pointcoord(quantity: str) -> Plant:
 
     def wrong(*args: object) -> Samples:
         right = samples(*args)
-        channel = getattr(right, quantity)
-        return replace(right, **{quantity: Channel(channel.quantity, channel.effect, _scaled(channel))})
+        channel = right.numbers[quantity]
+        return replace(right, numbers={**right.numbers, quantity: channel.with_arrays(_scaled(channel))})
 
     return lambda patch: patch.setattr(pointcoord.results.readout.Readout, "samples", wrong)
 

@@ -8,7 +8,8 @@ import pytest
 
 from pointcoord import Motion, Scene, SingularConfiguration
 from pointcoord.bounds.proof import Proof
-from validate.cars.input_limits import Car, Linkage
+from validate.cars.car import Car
+from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
@@ -81,8 +82,8 @@ def test_a_fault_of_a_number_does_not_widen_what_is_claimed_of_it(
 
     def spoilt(motion: Motion, rates: bool = False) -> Proof:
         proof = prove(motion, rates)
-        wider = {name: bound + 1.0 for name, bound in getattr(proof.proven, quantity).items()}
-        return replace(proof, proven=replace(proof.proven, **{quantity: wider}))
+        wider = {name: bound + 1.0 for name, bound in proof.proven[quantity].items()}
+        return replace(proof, proven={**proof.proven, quantity: wider})
 
     right = formulation("pointcoord").solve(Scene.load("steer")).accuracy
     monkeypatch.setattr(Motion, "proof", spoilt)

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
-from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial
+from validate.hard.cars import paper_car
+from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial, decades
 from validate.hard.judged import judged_answer
 from validate.hard.report import case_text, results_data, summary_text
 from validate.hard.run import as_expected, examine
-from validate.hard.trial import decades, paper_car, scene_case, try_scene
+from validate.hard.trial import scene_case, try_scene
 from validate.output.document import json_text
 
 OURS = ("pointcoord", "absolute")
@@ -31,8 +32,8 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def truth(scene: Scene) -> Solution:
-    return true_solution(scene)
+def reference(scene: Scene) -> Solution:
+    return reference_solution(scene)
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +70,7 @@ def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition()
         assert answer.error is not None
         assert answer.bound is not None
         assert answer.share is not None
-        # Half a rounding of 570 mm at least separates the truth from what is stored of it.
+        # Half a rounding of 570 mm at least separates the reference from what is stored of it.
         assert 0.0 < answer.error <= answer.bound + 570 * np.finfo(float).eps
         assert answer.share <= 1.0
         assert answer.condition is not None
@@ -88,49 +89,49 @@ def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition()
     ],
 )
 def test_a_wrong_number_of_any_quantity_is_wrong(
-    scene: Scene, truth: Solution, solution: Solution, quantity: str, name: str, change: float
+    scene: Scene, reference: Solution, solution: Solution, quantity: str, name: str, change: float
 ) -> None:
-    assert judged_answer(scene, solution, truth).outcome == "right"
-    answer = judged_answer(scene, planted(solution, quantity, name, change), truth)
+    assert judged_answer(scene, solution, reference).outcome == "right"
+    answer = judged_answer(scene, planted(solution, quantity, name, change), reference)
     assert answer.outcome == "wrong"
     assert f"{quantity.replace('_', ' ')} of {name}" in answer.reason
 
 
 def test_a_missing_number_is_wrong_unless_a_note_says_so(
-    scene: Scene, truth: Solution, solution: Solution
+    scene: Scene, reference: Solution, solution: Solution
 ) -> None:
     note = ("angular velocity of knuckle is not a number at 1 of 3 instants",)
     silent = planted(solution, "angular_velocity", "knuckle", math.nan)
-    assert judged_answer(scene, silent, truth).outcome == "wrong"
+    assert judged_answer(scene, silent, reference).outcome == "wrong"
     said = planted(solution, "angular_velocity", "knuckle", math.nan, note)
-    assert judged_answer(scene, said, truth).outcome == "noted"
+    assert judged_answer(scene, said, reference).outcome == "noted"
     # The note speaks of numbers that are not there, and of no other quantity.
     other = planted(said, "acceleration", "strut_lower", 1.0, note)
-    assert judged_answer(scene, other, truth).outcome == "wrong"
+    assert judged_answer(scene, other, reference).outcome == "wrong"
     off = planted(solution, "angular_velocity", "knuckle", 1.0, note)
-    assert judged_answer(scene, off, truth).outcome == "wrong"
+    assert judged_answer(scene, off, reference).outcome == "wrong"
     lost = planted(solution, "position", "strut_lower", math.nan, note)
-    assert judged_answer(scene, lost, truth).outcome == "wrong"
+    assert judged_answer(scene, lost, reference).outcome == "wrong"
 
 
-def test_a_wide_claim_is_right_or_wrong_by_the_truth_however_wide_it_is(
-    scene: Scene, truth: Solution, solution: Solution
+def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
+    scene: Scene, reference: Solution, solution: Solution
 ) -> None:
-    """No partner is needed to test it: the truth is there."""
+    """No partner is needed to test it: the reference is there."""
     wide = {name: claim + 1.0 for name, claim in solution.accuracy.velocity.items()}
     claimed = replace(solution, accuracy=replace(solution.accuracy, velocity=wide))
-    assert judged_answer(scene, claimed, truth).outcome == "right"
+    assert judged_answer(scene, claimed, reference).outcome == "right"
     off = planted(claimed, "velocity", "strut_lower", 2.0)
-    assert judged_answer(scene, off, truth).outcome == "wrong"
+    assert judged_answer(scene, off, reference).outcome == "wrong"
 
 
-def test_the_truths_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
-    """A chassis that heaves evenly: no point accelerates, and the truth says so up to its 60 digits."""
+def test_the_reference_s_own_dust_about_zero_is_zero_and_nothing_else_is() -> None:
+    """A chassis that heaves evenly: no point accelerates, and the reference says so up to its 60 digits."""
     even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
-    instants = [true_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
+    instants = [reference_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
     largest = max(abs(float(x)) for i in instants for a in i.acceleration.values() for x in a)
     assert 0.0 < largest < 1e-100
-    still = true_solution(even)
+    still = reference_solution(even)
     assert all((array == 0.0).all() for array in still.acceleration.values())
     assert (still.velocity["strut_top"] == [0.0, 0.0, 100.0]).all()
 
@@ -148,7 +149,7 @@ def test_a_refusal_is_no_wrong_number_and_keeps_its_reason() -> None:
     result = try_scene(1.0, paper_car(rack=131.0), OURS)
     assert [a.outcome for a in result.answers] == ["refused", "refused"]
     assert "AssemblyError" in result.answers[0].reason
-    assert "InfeasibleError" in str(result.facts["truth"])
+    assert "InfeasibleError" in str(result.facts["reference"])
 
 
 def test_a_scene_that_cannot_be_read_is_refused_by_all() -> None:

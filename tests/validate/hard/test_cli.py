@@ -177,7 +177,7 @@ def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
 
 
-def test_without_the_packages_of_the_truth_one_line_says_what_to_install() -> None:
+def test_without_the_packages_of_the_reference_one_line_says_what_to_install() -> None:
     program = (
         "import sys; sys.modules['flint'] = None\n"
         "from validate.cli import main\n"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.closed_drawing import closed_drawing
 from validate.output.picture import svg
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -21,7 +22,7 @@ def content(scene: Scene, **points: tuple[float, float, float]) -> dict[str, Any
 @pytest.mark.parametrize("name", ["off-axis-strut", "bounce"])
 def test_every_point_stands_in_all_three_views_at_one_scale(name: str) -> None:
     scene = Scene.load(name)
-    root = ET.fromstring(svg(scene))
+    root = ET.fromstring(svg(closed_drawing(scene)))
     circles = [(float(c.get("cx", "")), float(c.get("cy", ""))) for c in root.iter(f"{SVG}circle")]
     points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
     order = scene.mechanism.topology.points
@@ -44,7 +45,9 @@ def test_every_point_stands_in_all_three_views_at_one_scale(name: str) -> None:
 
 
 def test_a_drawing_that_moves_when_it_closes_is_drawn_twice_and_says_so() -> None:
-    still, moving = (ET.fromstring(svg(Scene.load(name))) for name in ("off-axis-strut", "bounce"))
+    still, moving = (
+        ET.fromstring(svg(closed_drawing(Scene.load(name)))) for name in ("off-axis-strut", "bounce")
+    )
     assert not still.findall(f".//{SVG}line[@class='closed']")
     assert moving.findall(f".//{SVG}line[@class='closed']")
     words = " ".join(text.text or "" for text in moving.iter(f"{SVG}text"))
@@ -53,5 +56,5 @@ def test_a_drawing_that_moves_when_it_closes_is_drawn_twice_and_says_so() -> Non
 
 def test_odd_titles_leave_the_picture_well_formed() -> None:
     plain = content(Scene.load("off-axis-strut")) | {"title": "</svg> & \x1b[2J \n <b>"}
-    root = ET.fromstring(svg(Scene.from_mapping(plain)))
+    root = ET.fromstring(svg(closed_drawing(Scene.from_mapping(plain))))
     assert any("</svg> & " in (text.text or "") for text in root.iter(f"{SVG}text"))

@@ -6,25 +6,19 @@ from collections.abc import Iterator
 
 import mpmath
 import pytest
-
-TABLE_1 = {
-    "lower_arm_front": (270, -5, -10),
-    "lower_arm_rear": (540, -10, -20),
-    "rack_centre": (570, 60, 90),
-    "strut_top": (460, -180, 470),
-    "lower_ball_joint": (450, -330, -40),
-    "tie_rod_outer": (560, -300, 60),
-    "strut_lower": (452, -320, 20),
-    "strut_rod_end": (456, -250, 246),
-    "tie_rod_inner": (570, 60, 90),
-    "wheel_centre": (452, -410, 20),
-}
+from reference_cars import CARS, TABLE_1, ReferenceCar
 
 
 @pytest.fixture(scope="session")
 def table() -> dict[str, tuple[int, int, int]]:
     """Table 1, mm, left wheel."""
     return dict(TABLE_1)
+
+
+@pytest.fixture(scope="session", params=CARS)
+def car(request: pytest.FixtureRequest) -> ReferenceCar:
+    """A car of each linkage in turn."""
+    return CARS[request.param]
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,136 +1,48 @@
-"""The equations are the paper's, and they are differentiated rightly."""
+"""The equations of every linkage are differentiated rightly."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 
-import mpmath
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mpmath import mpf
+from reference_cars import CARS, equations_data
 
-from validate.reference import Instant, solve_truth
-from validate.reference.equations import CHASSIS, LINKS, NUMBER_OF, SIZE, Known, jacobian, residual
 from validate.reference.jet import Jet
 
-Table = dict[str, tuple[int, int, int]]
-fractions = st.integers(-1000, 1000).map(lambda n: Fraction(n, 16))
-unknowns = st.lists(fractions, min_size=SIZE, max_size=SIZE)
 
-
-def known_numbers(numbers: list[Fraction]) -> Known:
-    """A set of given quantities filled from a list of 27 fractions."""
-    take = iter(numbers)
-
-    def vector() -> tuple[Fraction, Fraction, Fraction]:
-        return next(take), next(take), next(take)
-
-    chassis, up, right = {n: vector() for n in CHASSIS}, vector(), vector()
-    return Known("collinear", chassis, up, right, {k: next(take) for k in LINKS}, *take, knuckle={})
-
-
-knowns = st.lists(fractions, min_size=27, max_size=27).map(known_numbers)
-
-
-@given(unknowns, unknowns, knowns)
-@settings(max_examples=40, deadline=None)
+@pytest.mark.parametrize("car", CARS)
+@given(data=st.data())
+@settings(max_examples=30, deadline=None)
 def test_the_jacobian_is_exactly_the_central_difference_of_the_quadratic_residual(
-    y: list[Fraction], step: list[Fraction], known: Known
+    car: str, data: st.DataObject
 ) -> None:
-    ahead = residual([a + b for a, b in zip(y, step, strict=True)], known)
-    behind = residual([a - b for a, b in zip(y, step, strict=True)], known)
-    product = [Fraction(0)] * SIZE
-    for row, column, entry in jacobian(y, known):
+    linkage = CARS[car].linkage
+    known, (y, step) = data.draw(equations_data(linkage, 2))
+    ahead = linkage.residual([a + b for a, b in zip(y, step, strict=True)], known)
+    behind = linkage.residual([a - b for a, b in zip(y, step, strict=True)], known)
+    product = [Fraction(0)] * linkage.size
+    for row, column, entry in linkage.jacobian(y, known):
         product[row] += entry * step[column]
     assert product == [(a - b) / 2 for a, b in zip(ahead, behind, strict=True)]
 
 
-@given(unknowns, unknowns, unknowns, knowns)
+@pytest.mark.parametrize("car", CARS)
+@given(data=st.data())
 @settings(max_examples=20, deadline=None)
-def test_jets_give_the_exact_derivatives_along_a_parabola(
-    y: list[Fraction], rate: list[Fraction], bend: list[Fraction], known: Known
-) -> None:
+def test_jets_give_the_exact_derivatives_along_a_parabola(car: str, data: st.DataObject) -> None:
+    linkage = CARS[car].linkage
+    known, (y, rate, bend) = data.draw(equations_data(linkage, 3))
+
     def at(t: int) -> list[Fraction]:
-        return residual([a + b * t + c * t * t / 2 for a, b, c in zip(y, rate, bend, strict=True)], known)
+        moved = [a + b * t + c * t * t / 2 for a, b, c in zip(y, rate, bend, strict=True)]
+        return linkage.residual(moved, known)
 
     # C(y(t)) has degree 4 in t, for which five-point differences are exact.
     p2, p1, p0, m1, m2 = (at(t) for t in (2, 1, 0, -1, -2))
-    jets = residual([Jet(a, b, c) for a, b, c in zip(y, rate, bend, strict=True)], known)
+    jets = linkage.residual([Jet(a, b, c) for a, b, c in zip(y, rate, bend, strict=True)], known)
     for i, jet in enumerate(jets):
         assert jet.value == p0[i]
         assert jet.rate == (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / 12
         assert jet.acceleration == (16 * (p1[i] + m1[i]) - (p2[i] + m2[i]) - 30 * p0[i]) / 12
-
-
-def exact(number: mpf) -> Fraction:
-    return Fraction(*(int(part) for part in number.as_integer_ratio()))
-
-
-def printed_residual(truth: Instant, table: Table, theta: float, rack: float) -> list[tuple[Fraction, int]]:
-    """The printed equations (1)-(15) in exact arithmetic at the answer, each with its degree."""
-    x, y, z = ({NUMBER_OF[k]: exact(p[i]) for k, p in truth.position.items()} for i in range(3))
-    given = {NUMBER_OF[k]: p for k, p in table.items()}
-    rows = []
-    for i, j in LINKS:
-        squared = sum((a - b) ** 2 for a, b in zip(given[i], given[j], strict=True))
-        rows.append(((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2 - squared, 2))
-    for c, (i, j) in ((y, (7, 5)), (x, (7, 5)), (y, (7, 4)), (x, (7, 4))):
-        rows.append(((c[i] - c[j]) * (z[8] - z[4]) - (z[i] - z[j]) * (c[8] - c[4]), 2))
-    d51 = mpmath.sqrt(sum((a - b) ** 2 for a, b in zip(given[5], given[1], strict=True)))
-    rows.append((z[5] - z[1] - exact(d51 * mpmath.cos(mpf(theta))), 1))
-    rows += [(x[9] - x[3], 1), (y[9] - y[3] + Fraction(rack), 1), (z[9] - z[3], 1)]
-    return rows
-
-
-@pytest.mark.parametrize(("theta", "rack"), [(0.8, 0.0), (1.5, 0.0), (1.5707963, 64.0), (2.4, -50.0)])
-def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
-    table: Table, theta: float, rack: float
-) -> None:
-    truth = solve_truth(table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear")
-    bound = truth.error_bound["position"]
-    for value, degree in printed_residual(truth, table, theta, rack):
-        # A row changes by at most 12 coordinates' errors times differences below 700 mm.
-        assert abs(value) <= exact(bound) * (12 * 700 if degree == 2 else 3) + Fraction(1, 10**140)
-
-
-def test_the_printed_equations_expose_a_shifted_answer(table: Table) -> None:
-    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
-    shifted = dict(truth.position)
-    x, y, z = shifted["tie_rod_outer"]
-    shifted["tie_rod_outer"] = (x + mpf("1e-50"), y, z)
-    wrong = Instant(**{**vars(truth), "position": shifted})
-    assert max(abs(value) for value, _ in printed_residual(wrong, table, 1.5, 0.0)) > Fraction(1, 10**50)
-
-
-def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equations_nothing(
-    table: Table,
-) -> None:
-    inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
-    upright = solve_truth(table, inputs, closure="collinear")
-    # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
-    turned_table = {name: (x, -z, y) for name, (x, y, z) in table.items()}
-    turned = solve_truth(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
-    bound = upright.radius + turned.radius
-    for name in table:
-        x, y, z = upright.position[name]
-        assert max(abs(a - b) for a, b in zip((x, -z, y), turned.position[name], strict=True)) <= bound
-    assert turned.condition < 1.5 * upright.condition
-    assert abs(turned.camber - upright.camber) < mpf("1e-60")
-
-    def printed_rank(truth: Instant, flat: bool) -> int:
-        p = {NUMBER_OF[k]: np.array([float(c) for c in v]) for k, v in truth.position.items()}
-        if flat:  # lay the strut's line level, whatever it costs the other links: only its rows are asked
-            p[8], p[7], p[5] = (p[4] + np.array([s, 2 * s, 0.0]) for s in (100.0, 200.0, 300.0))
-        rows = np.zeros((4, 9))  # by the coordinates of 5, 7 and 8, eqs. (8)-(11)
-        for row, (axis, far) in enumerate(((1, 5), (0, 5), (1, 4), (0, 4))):
-            rod, along = p[8] - p[4], p[7] - p[far]
-            rows[row, 3 + axis], rows[row, 5] = rod[2], -rod[axis]
-            rows[row, 6 + axis], rows[row, 8] = -along[2], along[axis]
-            if far == 5:
-                rows[row, axis], rows[row, 2] = -rod[2], rod[axis]
-        return int(np.linalg.matrix_rank(rows))
-
-    assert printed_rank(upright, flat=False) == 4
-    assert printed_rank(upright, flat=True) < 4

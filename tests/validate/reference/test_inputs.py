@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from validate.reference import BadInputError, TruthError, solve_truth, time_function_value
+from validate.reference import BadInputError, NoReferenceError, solve_reference, time_function_value
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction
 from validate.reference.jet import Jet
 
@@ -54,15 +55,15 @@ def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
     table: Table, change: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth(**{"points": table, "inputs": STILL, **change}, closure="collinear")
+        solve_reference(**{"points": table, "inputs": STILL, **change}, closure="collinear")
 
 
 @pytest.mark.parametrize(
     ("name", "place", "message"),
     [
-        ("strut_rod_end", (460, -180, 470), "length between points 8 and 4"),
+        ("strut_rod_end", (460, -180, 470), "distance from strut_rod_end to strut_top"),
         ("lower_arm_rear", (270, -5, 90), "axis not along up"),
-        ("tie_rod_outer", (454, -310, 80), "a triangle 5, 6, 7"),
+        ("tie_rod_outer", (454, -310, 80), "a triangle of these points"),
         ("strut_top", (460, -180, math.inf), "finite real number"),
     ],
 )
@@ -70,20 +71,20 @@ def test_a_mechanism_without_extent_is_refused(
     table: Table, name: str, place: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_truth({**table, name: place}, STILL, closure="collinear")
+        solve_reference({**table, name: place}, STILL, closure="collinear")
 
 
 def test_a_strut_top_in_the_ball_joint_is_an_error_and_never_a_number(table: Table) -> None:
-    with pytest.raises(TruthError):
-        solve_truth({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
+    with pytest.raises(NoReferenceError):
+        solve_reference({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
 
 
 def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:
     hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
-    truth = solve_truth(hub_in_axis, STILL, closure="collinear")
-    assert abs(truth.kingpin) < 1
-    with pytest.raises(TruthError, match="camber"):
-        _ = truth.camber
+    reference = solve_reference(hub_in_axis, STILL, closure="collinear")
+    assert abs(reference.effects["kingpin"]) < 1
+    with pytest.raises(NoReferenceError, match="camber"):
+        reference.effect("camber")
 
 
 def test_a_polynomial_of_floats_is_exact() -> None:
@@ -149,3 +150,23 @@ def test_jets_combine_with_plain_numbers_from_both_sides() -> None:
     assert 2 * jet == jet * 2 == Jet(6, 10, 14)
     assert 2 + jet == jet + 2 == Jet(5, 5, 7)
     assert 2 - jet == Jet(-1, -5, -7)
+
+
+def test_an_effect_that_does_not_exist_is_refused_and_the_message_names_those_that_do(table: Table) -> None:
+    instant = solve_reference(table, STILL, closure="collinear")
+    with pytest.raises(BadInputError, match="allowed is one of " + ", ".join(EFFECTS)):
+        instant.effect("scrub_radius")
+
+
+@pytest.mark.parametrize(
+    ("kind", "message"),
+    [
+        ({"suspension": "swing_axle"}, "suspension is 'swing_axle'; allowed is 'macpherson'"),
+        ({"closure": "bent"}, "closure is 'bent'; allowed is 'drawn' or 'collinear'"),
+    ],
+)
+def test_a_suspension_or_closure_that_does_not_exist_is_refused(
+    table: Table, kind: dict[str, str], message: str
+) -> None:
+    with pytest.raises(BadInputError, match=message):
+        solve_reference(table, STILL, **kind)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from fractions import Fraction
 
@@ -9,8 +10,8 @@ import mpmath
 import pytest
 from mpmath import mpf
 
-from validate.reference import InfeasibleError, solve_truth, time_function_value
-from validate.reference.vectors import dot, minus
+from validate.reference import InfeasibleError, Instant, solve_reference, time_function_value
+from validate.reference.vectors import cross, dot, minus
 
 Table = dict[str, tuple[int, int, int]]
 
@@ -49,11 +50,11 @@ def table_angle() -> mpf:
 
 def test_table_1_is_reached_at_94_617_degrees_in_all_but_the_strut(table: Table) -> None:
     assert mpmath.degrees(table_angle()) == pytest.approx(94.617, abs=5e-4)
-    truth = solve_truth(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    reference = solve_reference(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
     for name in ("lower_ball_joint", "tie_rod_inner"):
-        assert max(abs(x) for x in minus(truth.position[name], table[name])) < mpf("1e-57")
+        assert max(abs(x) for x in minus(reference.position[name], table[name])) < mpf("1e-57")
     for name in ("strut_lower", "strut_rod_end", "tie_rod_outer"):
-        assert max(abs(x) for x in minus(truth.position[name], table[name])) > 0.5
+        assert max(abs(x) for x in minus(reference.position[name], table[name])) > 0.5
 
 
 def test_table_1_bends_the_strut_by_7_94_degrees_and_the_assembly_does_not(table: Table) -> None:
@@ -64,19 +65,19 @@ def test_table_1_bends_the_strut_by_7_94_degrees_and_the_assembly_does_not(table
 
     given = {name: (mpf(x), mpf(y), mpf(z)) for name, (x, y, z) in table.items()}
     assert bend(given) == pytest.approx(7.94, abs=0.005)
-    truth = solve_truth(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
-    assert abs(bend(dict(truth.position))) < mpf("1e-35")
+    reference = solve_reference(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    assert abs(bend(dict(reference.position))) < mpf("1e-35")
 
 
 def test_the_printed_wheel_centres_differ_from_table_1_by_10_3_mm_mostly_in_y(table: Table) -> None:
     apart = []
     for t, x, y, z in TABLE_2:
-        truth = solve_truth(table, {"arm_angle": time_function_value(THETA, t)}, closure="collinear")
-        apart.append([float(x) for x in minus((x, y, z), truth.position["wheel_centre"])])
+        reference = solve_reference(table, {"arm_angle": time_function_value(THETA, t)}, closure="collinear")
+        apart.append([float(x) for x in minus((x, y, z), reference.position["wheel_centre"])])
     for t, x, y, z in TABLE_3:
         inputs = {"arm_angle": (math.pi / 2, 0, 0), "rack": time_function_value(RACK, t)}
-        truth = solve_truth(table, inputs, closure="collinear")
-        apart.append([float(x) for x in minus((x, y, z), truth.position["wheel_centre"])])
+        reference = solve_reference(table, inputs, closure="collinear")
+        apart.append([float(x) for x in minus((x, y, z), reference.position["wheel_centre"])])
     squares = [x * x for row in apart for x in row]
     assert math.sqrt(sum(squares) / len(squares)) == pytest.approx(10.3, abs=0.1)
     assert sum(row[1] for row in apart) / len(apart) == pytest.approx(-15, abs=2)
@@ -89,7 +90,7 @@ def test_the_reachable_range_ends_where_a_closure_does(table: Table) -> None:
             middle = (near + beyond) / 2
             inputs = {"arm_angle": (math.pi / 2, 0, 0), name: (middle, 0, 0)}
             try:
-                solve_truth(table, inputs, digits=15, closure="collinear")
+                solve_reference(table, inputs, digits=15, closure="collinear")
                 near = middle
             except InfeasibleError as error:
                 beyond, closure = middle, error.closure
@@ -107,33 +108,33 @@ def test_the_reachable_range_ends_where_a_closure_does(table: Table) -> None:
 
 def test_angles_follow_equations_16_and_17_and_are_those_of_the_mirrored_right_wheel(table: Table) -> None:
     inputs = {"arm_angle": (1.5, 0, 0), "rack": (20, 0, 0)}
-    left = solve_truth(table, inputs, closure="collinear")
+    left = solve_reference(table, inputs, closure="collinear")
     names = ("lower_ball_joint", "strut_lower", "wheel_centre")
     (y5, z5), (y7, z7), (y10, z10) = (left.position[name][1:] for name in names)
-    assert abs(left.kingpin - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
-    assert abs(left.camber - mpmath.atan((z7 - z10) / (y7 - y10))) < mpf("1e-58")
-    assert left.kingpin > 0  # point 5 lies outboard of 7
+    assert abs(left.effects["kingpin"] - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
+    assert abs(left.effects["camber"] - mpmath.atan((z7 - z10) / (y7 - y10))) < mpf("1e-58")
+    assert left.effects["kingpin"] > 0  # point 5 lies outboard of 7
 
     mirrored = {name: (x, -y, z) for name, (x, y, z) in table.items()}
-    right = solve_truth(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
-    assert abs(right.kingpin - left.kingpin) < mpf("1e-58")
-    assert abs(right.camber - left.camber) < mpf("1e-58")
+    right = solve_reference(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
+    assert abs(right.effects["kingpin"] - left.effects["kingpin"]) < mpf("1e-58")
+    assert abs(right.effects["camber"] - left.effects["camber"]) < mpf("1e-58")
 
 
 def test_a_wheel_that_leans_out_at_the_top_has_positive_camber(table: Table) -> None:
     # The design's spin axis is level in the table; jounce (a smaller theta) leans this wheel out.
-    assert solve_truth(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").camber > 0
-    truth = solve_truth(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
-    outward = minus(truth.position["wheel_centre"], truth.position["strut_lower"])
+    assert solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").effects["camber"] > 0
+    reference = solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
+    outward = minus(reference.position["wheel_centre"], reference.position["strut_lower"])
     assert outward[2] < 0  # the axle points down and out
 
 
 def test_the_knuckle_keeps_the_shape_and_handedness_of_the_table(table: Table) -> None:
-    truth = solve_truth(table, {"arm_angle": (2.2, 0, 0), "rack": (-40, 0, 0)}, closure="collinear")
+    reference = solve_reference(table, {"arm_angle": (2.2, 0, 0), "rack": (-40, 0, 0)}, closure="collinear")
     names = ("lower_ball_joint", "tie_rod_outer", "strut_lower", "wheel_centre")
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
-            now, then = minus(truth.position[a], truth.position[b]), minus(table[a], table[b])
+            now, then = minus(reference.position[a], reference.position[b]), minus(table[a], table[b])
             assert abs(dot(now, now) - dot(then, then)) < mpf("1e-54")
 
     def volume(p: dict[str, tuple[mpf, mpf, mpf]]) -> mpf:
@@ -144,14 +145,49 @@ def test_the_knuckle_keeps_the_shape_and_handedness_of_the_table(table: Table) -
             + a[2] * (b[0] * c[1] - b[1] * c[0])
         )
 
-    assert abs(volume(dict(truth.position)) - volume(table)) < mpf("1e-50")
+    assert abs(volume(dict(reference.position)) - volume(table)) < mpf("1e-50")
 
 
-def test_floats_are_the_nearest_to_the_truth(table: Table) -> None:
-    truth = solve_truth(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+def test_floats_are_the_nearest_to_the_reference(table: Table) -> None:
+    reference = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
     for value, number in zip(
-        truth.position_as_float("wheel_centre"), truth.position["wheel_centre"], strict=True
+        reference.position_as_float("wheel_centre"), reference.position["wheel_centre"], strict=True
     ):
         error = abs(mpf(value) - number)
         assert error <= min(abs(mpf(math.nextafter(value, to)) - number) for to in (-math.inf, math.inf))
-        assert error + truth.radius < Fraction(math.ulp(value)) / 2 + Fraction(1, 10**50)
+        assert error + reference.radius < Fraction(math.ulp(value)) / 2 + Fraction(1, 10**50)
+
+
+def steering(table: Table, t: Fraction) -> Instant:
+    """The paper's steering scene."""
+    inputs = {"arm_angle": (1.5707963267948966, 0, 0), "rack": time_function_value(RACK, t, 100)}
+    return solve_reference(table, inputs, digits=90, closure="collinear")
+
+
+def test_steering_turns_the_knuckle_about_the_axis_5_4_at_1_46_rad_per_s(table: Table) -> None:
+    start = steering(table, Fraction(0))
+    omega = start.angular_velocity["knuckle"]
+    axis = minus(start.position["strut_top"], start.position["lower_ball_joint"])
+    size = dot(omega, omega) ** mpf("0.5")
+    assert size == pytest.approx(1.463, abs=5e-4)
+    sine = dot(cross(omega, axis), cross(omega, axis)) ** mpf("0.5") / size / dot(axis, axis) ** mpf("0.5")
+    assert sine < mpf("1e-80")
+
+
+def test_the_printed_quotient_for_omega_is_0_over_0_in_the_steering_scene(table: Table) -> None:
+    now = steering(table, Fraction(1, 5))
+    v5 = now.velocity["lower_ball_joint"]
+    v65, v75 = minus(now.velocity["tie_rod_outer"], v5), minus(now.velocity["strut_lower"], v5)
+    r75 = minus(now.position["strut_lower"], now.position["lower_ball_joint"])
+    assert abs(dot(v65, r75)) < mpf("1e-75")
+    assert max(abs(x) for x in cross(v65, v75)) < mpf("1e-75")
+    assert dot(now.angular_velocity["knuckle"], now.angular_velocity["knuckle"]) > 2
+
+
+def test_the_steering_rate_grows_slowly_where_the_printed_column_jumps(table: Table) -> None:
+    sizes = []
+    for step in range(9):
+        omega = steering(table, Fraction(step, 20)).angular_velocity["knuckle"]
+        sizes.append(float(dot(omega, omega) ** mpf("0.5")))
+    ratios = [b / a for a, b in itertools.pairwise(sizes)]
+    assert all(1 < ratio < 1.1 for ratio in ratios)

@@ -2,37 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from mpmath import mpf
-from off_axis_cars import BASE, closing
+from reference_cars import ReferenceCar
 
-from validate.reference import InfeasibleError, Instant, sensitivities, solve_truth
+from validate.reference import InfeasibleError, Instant
 from validate.reference.dual import Dual
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import minus, times
 
-POINTS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
-INPUTS = {
-    "arm_angle": (Fraction(3, 2), Fraction(2), Fraction(-3)),
-    "rack": (Fraction(240), Fraction(150), Fraction(-400)),
-    "heave": (Fraction(5), Fraction(-60), Fraction(700)),
-}
 ORDERS = ("value", "rate", "acceleration")
 QUANTITIES = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
 STEP = Fraction(1, 10**22)
 
 
-@pytest.mark.parametrize("closure", ["drawn", "collinear"])
-@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize("name", ["arm_angle", "rack", "heave"])
 @pytest.mark.parametrize("order", range(3))
-def test_sensitivities_are_the_derivatives_of_every_quantity(closure: str, name: str, order: int) -> None:
-    slope = sensitivities(POINTS, INPUTS, side="right", closure=closure)[name, ORDERS[order]]
+def test_sensitivities_are_the_derivatives_of_every_quantity(
+    car: ReferenceCar, name: str, order: int
+) -> None:
+    slope = car.sensitivities()[name, ORDERS[order]]
 
     def at(sign: int) -> Instant:
-        moved = list(INPUTS[name])
+        moved = list(car.inputs[name])
         moved[order] += sign * STEP
-        return solve_truth(POINTS, {**INPUTS, name: moved}, side="right", digits=100, closure=closure)
+        return car.solve({**car.inputs, name: moved}, digits=100)
 
     ahead, behind = at(1), at(-1)
     per = mpf(STEP.denominator) / 2
@@ -44,20 +41,24 @@ def test_sensitivities_are_the_derivatives_of_every_quantity(closure: str, name:
             want = times(minus(*pair), per)
             assert all(abs(x) <= off + slope.error_bound[quantity] for x in minus(got, want))
         assert slope.error_bound[quantity] < mpf("1e-60")
-    assert set(slope.angles) == {"camber", "kingpin"}
-    for one, got in slope.angles.items():
-        assert abs(got - (ahead.angles[one] - behind.angles[one]) * per) <= off + slope.error_bound["angles"]
+    assert set(slope.effects) == set(EFFECTS)
+    for one, got in slope.effects.items():
+        assert (
+            abs(got - (ahead.effects[one] - behind.effects[one]) * per) <= off + slope.error_bound["effects"]
+        )
 
 
-def test_an_input_that_cannot_be_reached_has_no_sensitivities() -> None:
+def test_an_input_that_cannot_be_reached_has_no_sensitivities(car: ReferenceCar) -> None:
     with pytest.raises(InfeasibleError):
-        sensitivities(POINTS, {"arm_angle": (3, 0, 0), "rack": (230, 0, 0)}, closure="drawn")
+        replace(car, inputs={"arm_angle": (3, 0, 0)}).sensitivities()
 
 
-def test_an_angle_that_is_undefined_has_no_sensitivity() -> None:
-    inner = {**POINTS, "wheel_axis_inner": POINTS["wheel_centre"]}
-    slope = sensitivities(inner, INPUTS, closure="drawn")["rack", "value"]
-    assert set(slope.angles) == {"kingpin"}
+def test_an_effect_that_is_undefined_has_no_sensitivity(car: ReferenceCar) -> None:
+    inner, centre = car.linkage.wheel_axis
+    one = next(name for name in inner if name in car.points)
+    slope = replace(car, points={**car.points, centre: car.points[one]}).sensitivities()["rack", "value"]
+    assert "kingpin" in slope.effects
+    assert "camber" not in slope.effects
 
 
 def test_a_dual_differentiates_a_rational_function_exactly() -> None:

@@ -1,4 +1,4 @@
-"""Proven bounds against the truth on random cars, up to the poses where they lock."""
+"""Proven bounds against the reference on random cars, up to the poses where they lock."""
 
 import math
 from typing import Any
@@ -9,19 +9,24 @@ from hypothesis import strategies as st
 
 from validate.cars.input_limits import Linkage
 from validate.cars.near_singular import approach, near_pose
+from validate.cars.registry import VARIANTS
 from validate.cars.strategies import cars
-from validate.reference import InfeasibleError, solve_truth
-from validate.studies.bound_checks import Check, Refusal, held_pose, moving_instants
-from validate.studies.bounds import main, study
-from validate.studies.bounds_report import (
-    STRUTS,
+from validate.reference import InfeasibleError, solve_reference
+from validate.studies.bounds import (
+    BoundStudy,
+    Check,
+    Refusal,
     bounds_data,
     bounds_text,
     error_over_distance,
     error_over_rounding,
     fitted,
+    held_pose,
     looseness,
-    of_strut,
+    main,
+    moving_instants,
+    of_variant,
+    study,
 )
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
@@ -106,12 +111,13 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
 def test_report_as_text_and_as_plain_data_say_the_same(small: Any) -> None:
     text, data = bounds_text(small), bounds_data(small)
     assert "bounds below the error: 0" in text
-    for strut in STRUTS:
-        count = len(of_strut(small.held, strut))
-        assert f"{count} poses of struts {strut} held" in text
-        assert data["held"][strut]["count"] == count > 0
+    for variant in VARIANTS:
+        count = len(of_variant(small.held, variant))
+        assert f"{count} poses of a {variant.words}, held" in text
+        assert data["held"][variant.words]["count"] == count > 0
     assert sum(row["poses"] for row in data["refusals"]) == len(small.refusals)
-    assert f"slope {data['held']['drawn']['error_over_rounding']['slope']:.3f}" in text
+    slope = data["held"][VARIANTS[0].words]["error_over_rounding"]["slope"]
+    assert f"slope {slope:.3f}" in text
 
 
 def test_numbers_give_the_same_poses_again() -> None:
@@ -121,7 +127,7 @@ def test_numbers_give_the_same_poses_again() -> None:
 
 @pytest.mark.parametrize("number", range(12))
 def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int) -> None:
-    # The end is where the truth says so too, to 1e-12 of the range on either side.
+    # The end is where the reference says so too, to 1e-12 of the range on either side.
     pose = near_pose(number, seed=5, nearest=1e-12, farthest=1e-11)
     step = pose.distance * pose.reach
     linkage = Linkage.of(pose.car)
@@ -134,7 +140,15 @@ def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int) -> None:
     car = pose.car
     laws = {name: (value, 0, 0) for name, value in beyond.items()}
     with pytest.raises(InfeasibleError) as caught:
-        solve_truth(car.points, laws, up=car.up, right=car.right, side=car.side, closure=car.closure)
+        solve_reference(
+            car.points,
+            laws,
+            up=car.up,
+            right=car.right,
+            side=car.side,
+            closure=car.closure,
+            suspension=car.suspension,
+        )
     assert caught.value.closure == pose.lock
 
 
@@ -147,5 +161,5 @@ def test_power_laws_are_fitted() -> None:
 
 
 def test_refusals_carry_their_reason() -> None:
-    refusal = Refusal(3, "drawn", 1e-12, "pointcoord: AssemblyError; truth: answers")
-    assert refusal.reason in bounds_text(study(0, 0).__class__(0, (), (), (refusal,)))
+    refusal = Refusal(3, VARIANTS[0], 1e-12, "pointcoord: AssemblyError; reference: answers")
+    assert refusal.reason in bounds_text(BoundStudy(0, (), (), (refusal,)))

@@ -1,19 +1,20 @@
-"""What both models claim of every number holds against the truth, up to singular poses."""
+"""What both models claim of every number holds against the reference, up to singular poses."""
 
 import numpy as np
 import pytest
 
-from validate.cars.random_scenes import random_car
+from validate.cars.random_scenes import random_scene
+from validate.cars.registry import VARIANTS
 from validate.studies.claims import Held, main, study, study_text
 
 # Among the first two hundred scenes are some twenty that come close to a singular pose.
-SINGULAR = [n for n in range(120) if random_car(n).kind != "regular"][:12]
+SINGULAR = [n for n in range(120) if random_scene(n).kind != "regular"][:12]
 
 
 @pytest.fixture(scope="module", params=["pointcoord", "absolute"])
 def helds(request: pytest.FixtureRequest) -> tuple[str, list[Held]]:
-    cars = (random_car(number) for number in (*range(8), *SINGULAR))
-    return request.param, study(cars, request.param)
+    scenes = (random_scene(number) for number in (*range(8), *SINGULAR))
+    return request.param, study(scenes, request.param)
 
 
 def test_no_number_is_off_by_more_than_is_claimed(helds: tuple[str, list[Held]]) -> None:
@@ -42,6 +43,6 @@ def test_pointcoords_claims_are_its_errors_and_the_models_are_estimates(
 def test_a_study_prints_a_row_for_each_quantity(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--count", "2"]) == 0
     assert "angular acceleration" in capsys.readouterr().out
-    broken = Held(7, "regular", "velocity", np.array([2.0]), np.array([1.0]), 0)
+    broken = Held(7, "regular", VARIANTS[0], "velocity", np.array([2.0]), np.array([1.0]), 0)
     assert broken.share == 2.0
     assert "7 (regular)" in study_text([broken])

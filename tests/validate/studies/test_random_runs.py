@@ -13,15 +13,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import (
-    NO_OBSTACLE,
-    judged,
-    judged_alone,
-    obstacle,
-    true_solution,
-    unanswered,
-)
-from validate.cars.random_scenes import CLOSURES, KINDS, SEED, RandomCar, random_car
+from validate.adjudication.reference_solution import reference_solution
+from validate.adjudication.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
+from validate.cars.random_cars import KINDS
+from validate.cars.random_scenes import SEED, RandomScene, random_scene
+from validate.cars.registry import VARIANTS
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.studies import random_runs as deep
@@ -31,19 +27,22 @@ ROOT = Path(__file__).parents[3]
 
 
 def chunk(number: int, found: tuple[int, ...] = ()) -> Chunk:
-    return Chunk(number, {"drawn/regular/agreed": CHUNK}, {"position": (0.25, 7)}, found, 1.0)
+    return Chunk(number, {"double wishbone/regular/agreed": CHUNK}, {"position": (0.25, 7)}, found, 1.0)
 
 
 def test_a_number_names_one_scene() -> None:
     for number in range(40):
-        assert random_car(number).scene == random_car(number).scene
-    assert random_car(1).scene != random_car(2).scene
+        assert random_scene(number).scene == random_scene(number).scene
+    assert random_scene(1).scene != random_scene(2).scene
 
 
 def test_the_scenes_cover_every_kind_input_side_and_orientation() -> None:
-    cars = [random_car(number) for number in range(400)]
+    cars = [random_scene(number) for number in range(400)]
     assert {car.kind for car in cars} == set(KINDS)
-    assert {car.scene.mechanism.closure for car in cars} == set(CLOSURES)
+    assert {car.variant for car in cars} == set(VARIANTS)
+    for car in cars:
+        part = car.scene.mechanism
+        assert (part.type, part.closure) == (car.variant.suspension, car.variant.closure)
     assert {car.scene.mechanism.side for car in cars} == {"left", "right"}
     parts = [part for car in cars for part in car.scene.inputs.values()]
     given = {k for part in parts for k, v in part.model_dump().items() if v is not None}
@@ -58,8 +57,8 @@ def test_the_scenes_cover_every_kind_input_side_and_orientation() -> None:
 def test_a_scene_that_is_close_to_a_lock_is_close_to_singular() -> None:
     conditions = []
     for number in range(200):
-        car = random_car(number)
-        if car.kind in ("toggle", "dead arm", "slide out"):
+        car = random_scene(number)
+        if car.kind in ("toggle", "dead arm", "upper lock"):
             try:
                 conditions.append(formulation("pointcoord").solve(car.scene).accuracy.condition.max())
             except Exception:
@@ -96,32 +95,32 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
     assert judged(scene, solutions["pointcoord"], solutions["absolute"]) == f"{model} wrong"
 
 
-def test_a_fault_that_both_models_share_is_found_by_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     honest = deep._solved
 
-    def shared(name: str, car: RandomCar) -> Solution:
+    def shared(name: str, car: RandomScene) -> Solution:
         solution = honest(name, car)
         moved = solution.position["wheel_centre"] + 1e-3
         return replace(solution, position={**solution.position, "wheel_centre": moved})
 
-    cars = (random_car(number) for number in range(0, 200, deep.HELD))
-    car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the truth")
+    cars = (random_scene(number) for number in range(0, 200, deep.HELD))
+    car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the reference")
     monkeypatch.setattr(deep, "_solved", shared)
     found = deep.examine(car)
-    assert found.outcome == "agreed, the truth: pointcoord and absolute wrong"
+    assert found.outcome == "agreed, the reference: pointcoord and absolute wrong"
     assert found.kept
     assert any(word in found.outcome for word in deep.FAULTY)
 
 
-def test_an_answer_that_stands_alone_is_held_to_the_truth() -> None:
+def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
     scene = Scene.load("bounce").model_copy(update={"effects": ()})
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 3})})
     answer = formulation("absolute").solve(scene)
     assert judged_alone(scene, answer) == "answer right"
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
     assert judged_alone(scene, replace(answer, position=moved)) == "answer wrong"
-    truth: Solution = true_solution(scene)
-    assert truth.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
+    reference: Solution = reference_solution(scene)
+    assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
 
 
@@ -192,7 +191,7 @@ def test_the_status_says_whether_any_disagreed(tmp_path: Path, capsys: pytest.Ca
     assert f"agreed             {CHUNK}" in shown.replace("  mechanisms", "\n")
     assert "0.25" in shown
     Store(path, SEED).chunk(
-        replace(chunk(0), outcomes={"collinear/toggle/disagreed in wheel: absolute wrong": CHUNK})
+        replace(chunk(0), outcomes={"macpherson, collinear/toggle/disagreed in wheel: absolute wrong": CHUNK})
     )
     assert deep.main(command) == 1
     path.write_text("{}\n")

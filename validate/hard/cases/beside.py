@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.input_limits import Car, Linkage
-from validate.cars.random_struts import as_tuples
-from validate.hard.cars import BESIDE, BESIDE_CAR, WIDE_CAR, car_content
-from validate.hard.case import REFUSED, RIGHT, Case, Expected
+from validate.cars.car import Car, as_tuples
+from validate.cars.input_limits import Linkage
+from validate.cars.macpherson import BESIDE
+from validate.cars.scene_content import scene_content
+from validate.hard.cars import BESIDE_CAR, WIDE_CAR
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, decades
 from validate.hard.cases.dead_points import OUTSIDE, inside, near_end
-from validate.hard.content import decades
-from validate.hard.sides import try_on_side
-from validate.hard.trial import scene_case
+from validate.hard.trial import scene_case, try_scene
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -147,7 +147,7 @@ def motion(points: Points, arm: float, rack: float) -> dict[str, Any]:
     """From the drawing by `arm` rad and `rack` mm in a second, with accelerations as large."""
     car = Car(as_tuples(dict(points)), "left", BESIDE_CAR.up, BESIDE_CAR.right)
     angle = Linkage.of(car).drawn_angle
-    return car_content(car, (angle, 0.5 * arm, 0.5 * arm), (0.0, 0.5 * rack, 0.5 * rack), stop=1.0)
+    return scene_content(car, (angle, 0.5 * arm, 0.5 * arm), (0.0, 0.5 * rack, 0.5 * rack), stop=1.0)
 
 
 @cache
@@ -165,8 +165,8 @@ def slide_content(value: float, law: str) -> dict[str, Any]:
     near = low + (-value if law == "beyond" else value) * (high - low)
     middle = 0.5 * (low + high)
     if law == "moving":
-        return car_content(WIDE_CAR, [middle, near - middle], 0.0, stop=1.0)
-    return car_content(WIDE_CAR, near, 0.0)
+        return scene_content(WIDE_CAR, [middle, near - middle], 0.0, stop=1.0)
+    return scene_content(WIDE_CAR, near, 0.0)
 
 
 def _slide_case(law: str) -> Case:
@@ -197,7 +197,7 @@ def _case(
     def examine(value: float) -> Any:
         # A knuckle that is steered by a short arm follows no more than that arm's own length.
         share = value if shrinking else 1.0
-        return try_on_side(value, motion(points(value), 0.1 * share, 20.0 * share), SOLVERS)
+        return try_scene(value, motion(points(value), 0.1 * share, 20.0 * share), SOLVERS)
 
     right_from = expected.right_from
     return Case(

@@ -1,4 +1,4 @@
-"""Where the way from the drawing to a first instant is blocked, held to the truth on both sides of the block.
+"""Where the way from the drawing to a first instant is blocked, held to the reference on both sides.
 
 When both inputs differ from the drawing, a model takes them there together, and what it reaches lies on its
 own way: straight in ball joint height and rack travel for pointcoord, in arm angle and rack travel for the
@@ -14,8 +14,8 @@ from fractions import Fraction
 from pointcoord import Scene
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import RIGHT, Answer, Case, Trial
-from validate.hard.content import paper_car
 from validate.hard.last_values import home, last_value, reachable
 
 SHARE = 1e-9  # of the way: how exactly its end must be found

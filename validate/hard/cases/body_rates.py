@@ -15,11 +15,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from pointcoord.suspensions.macpherson import KNUCKLE
-from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
-from validate.hard.case import FAILS, RIGHT, Case
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.trial import Facts, Tried, decades, scene_case
-from validate.reference import solve_truth
+from validate.cars.scene_content import SQUARE, scene_content
+from validate.hard.cars import OTHER_CAR, PAPER_CAR, paper_car
+from validate.hard.case import FAILS, RIGHT, Case, decades
+from validate.hard.trial import Facts, Tried, scene_case
+from validate.reference import solve_reference
 
 GROUP = "4. Body rates"
 VALUES = (*decades(-12, -1), 0.0)
@@ -30,9 +30,9 @@ RACK_RATE = 150.0  # mm/s, the paper's steering scene
 
 def omega_errors(tried: Tried) -> Facts:
     """Largest error of any component of the knuckle's angular velocity, by formulation."""
-    if tried.truth is None:
+    if tried.reference is None:
         return {}
-    true = tried.truth.angular_velocity["knuckle"]
+    true = tried.reference.angular_velocity["knuckle"]
     facts: dict[str, float | str] = {"largest angular velocity [rad/s]": float(np.abs(true).max())}
     for name, solution in tried.solutions.items():
         found = solution.angular_velocity["knuckle"]
@@ -61,7 +61,7 @@ def _steered(value: float) -> dict[str, Any]:
 
 def across_the_plane(arm_angle: float) -> float:
     """Sine of the angle of the true omega with the plane of the knuckle's points; the rack is held."""
-    pose = solve_truth(
+    pose = solve_reference(
         PAPER_CAR.points, {"arm_angle": (arm_angle, 1, 0), "rack": (0, 0, 0)}, closure="collinear"
     )
     first, second, third = (np.array(pose.position_as_float(name)) for name in KNUCKLE)
@@ -82,7 +82,7 @@ def _in_the_plane(value: float) -> dict[str, Any]:
 
 
 def _resting(value: float) -> dict[str, Any]:
-    return car_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
+    return scene_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
 
 
 def _one_rate(name: str) -> Any:

@@ -1,9 +1,10 @@
 """Two assemblies close together, starts far from the drawing, large steps: the branch must be the drawing's.
 
-Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The truth
-is that assembly, so a solution that has jumped to another one is wrong however well its links close. What is
-measured besides: the oriented products themselves (see `oriented`), how far apart the two assemblies are, and
-how many there are (a polynomial of degree 64 bounds them; a search from a thousand starts lists them).
+Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The
+reference is that assembly, so a solution that has jumped to another one is wrong however well its links
+close. What is measured besides: the oriented products themselves (see `oriented`), how far apart the two
+assemblies are, and how many there are (a polynomial of degree 64 bounds them; a search from a thousand starts
+lists them).
 """
 
 from __future__ import annotations
@@ -17,15 +18,14 @@ import numpy as np
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.cars import car_content
-from validate.hard.case import REFUSED, RIGHT, Case, Expected
+from validate.cars.scene_content import SQUARE, Law, scene_content
+from validate.hard.cars import paper_car
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, decades
 from validate.hard.cases.counting import counting_cases, meeting
 from validate.hard.cases.near_points import assembled, drawn_angle
 from validate.hard.cases.oriented import followed
-from validate.hard.content import SQUARE, Law, decades, paper_car
 from validate.hard.last_values import car_called, last_value
-from validate.hard.sides import try_on_side
-from validate.hard.trial import Facts, Tried
+from validate.hard.trial import Facts, Tried, try_scene
 
 GROUP = "8. Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -44,7 +44,7 @@ def through_the_meeting(share: float, side: float, car: str = "paper") -> Mappin
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
     angle, rack = meeting(car)
     law = (angle + WIDE[car], -2.0 * WIDE[car])
-    return car_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
+    return scene_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
 
 
 def near_meeting(tried: Tried, car: str = "paper") -> Facts:
@@ -125,7 +125,7 @@ def _case(
         values=values,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour=behaviour,
-        examine=lambda value: try_on_side(value, scene(value), SOLVERS, measure),
+        examine=lambda value: try_scene(value, scene(value), SOLVERS, measure),
     )
 
 

@@ -1,7 +1,7 @@
 """Group 7, third part: laws whose terms all but cancel, so that the input is small beside what it is made of.
 
-The input itself is an ordinary one. The truth, and the absolute model, take each law in many digits and round
-it once; pointcoord sums in twice the working precision and counts what that may be off into its bound.
+The input itself is an ordinary one. The reference, and the absolute model, take each law in many digits and
+round it once; pointcoord sums in twice the working precision and counts what that may be off into its bound.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from validate.cars.scene_content import SQUARE, Law
+from validate.hard.cars import paper_car
 from validate.hard.case import RIGHT, Case, Expected
 from validate.hard.cases.laws import law_case
-from validate.hard.content import SQUARE, Law, paper_car
 
 PHASE = 0.5  # rad: neither the sine nor its slope is near zero
 AMPLITUDES = tuple(float(f"1e{k}") for k in range(10))

@@ -24,10 +24,9 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.paper_car import PAPER
-from validate.hard.case import REFUSED, Answer, Case, Expected, Trial
+from validate.hard.case import REFUSED, Answer, Case, Expected, Trial, decades
 from validate.hard.cases.links import AXES, GROUP, by_absolute, by_pointcoord, strut
 from validate.hard.cases.near_points import Array, assembled, drawn_angle
-from validate.hard.content import decades
 
 if TYPE_CHECKING:
     from absolute import Model

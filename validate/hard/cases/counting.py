@@ -7,6 +7,7 @@ exist. The literature reduces this strut to a polynomial of degree 64, which bou
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import astuple
 from functools import cache, partial
 
 import numpy as np
@@ -14,11 +15,12 @@ from scipy.optimize import brentq, minimize_scalar
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.case import RIGHT, Case, Expected, Trial
+from validate.cars.scene_content import SQUARE
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, Case, Expected, Trial, decades
 from validate.hard.cases.oriented import followed
-from validate.hard.content import SQUARE, decades, paper_car
 from validate.hard.last_values import car_called, home, last_value
-from validate.hard.sides import try_on_side
+from validate.hard.trial import try_scene
 from validate.reference import Choices, count_assemblies
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -72,7 +74,7 @@ def beside_drawing(share: float) -> tuple[float, float]:
 def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial:
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share)
-    trial = try_on_side(share, paper_car(angle, rack), SOLVERS, followed)
+    trial = try_scene(share, paper_car(angle, rack), SOLVERS, followed)
     listed = count_assemblies(
         PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, closure="collinear", starts=STARTS
     )
@@ -86,9 +88,8 @@ def counted(share: float, pose: Callable[[float], tuple[float, float]]) -> Trial
 
 
 def signs(choices: Choices) -> str:
-    """The name of an assembly: the signs of its four choices."""
-    each = (choices.arm, choices.strut, choices.rod, choices.tie)
-    return "".join("+" if sign > 0 else "-" for sign in each)
+    """The name of an assembly: the signs of its choices."""
+    return "".join("+" if sign > 0 else "-" for sign in astuple(choices))
 
 
 def counting_cases(group: str, expected: Expected) -> tuple[Case, ...]:

@@ -10,10 +10,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from validate.cars.input_limits import Car, Linkage
-from validate.hard.cars import OTHER_CAR, PAPER_CAR, car_content
-from validate.hard.case import REFUSED, Case, Expected
-from validate.hard.trial import decades, scene_case
+from validate.cars.car import Car
+from validate.cars.input_limits import Linkage
+from validate.cars.scene_content import scene_content
+from validate.hard.cars import OTHER_CAR, PAPER_CAR
+from validate.hard.case import REFUSED, Case, Expected, decades
+from validate.hard.trial import scene_case
 
 ARM_GROUP = "1. The arm at its dead points"
 TOGGLE_GROUP = "2. Tie rod and steering arm in line"
@@ -106,8 +108,8 @@ def _content(
 ) -> dict[str, Any]:
     if law == "moving":
         # From the middle of the range to the place near its end at a constant rate, in one second.
-        return car_content(car, *inputs([middle, near - middle]), stop=1.0)
-    return car_content(car, *inputs(near))
+        return scene_content(car, *inputs([middle, near - middle]), stop=1.0)
+    return scene_content(car, *inputs(near))
 
 
 def _case(

@@ -16,18 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import true_solution
-from validate.cars.closed_form import Closure
+from validate.adjudication.reference_solution import reference_solution
+from validate.cars.car import Closure, as_tuple
+from validate.cars.macpherson import BESIDE
 from validate.cars.paper_car import PAPER
-from validate.cars.random_struts import as_tuple
+from validate.cars.scene_content import scene_content
 from validate.formulations.protocol import Accuracy, Solution
-from validate.hard.cars import BESIDE, car_content
-from validate.hard.case import RIGHT, Answer, Case, Expected, Trial
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, decades
 from validate.hard.cases.near_points import assembled, drawn_angle, nearer
-from validate.hard.content import decades, paper_car
 from validate.hard.judged import judged_answer
 from validate.hard.last_values import car_called
-from validate.hard.sides import try_on_side
 from validate.hard.trial import Tried, solved, try_scene
 
 Array = NDArray[np.float64]
@@ -54,7 +53,7 @@ def moved_car(distance: float, car: str = "paper") -> dict[str, Any]:
     home = car_called(car)
     points = {n: as_tuple(np.array(p) + distance * np.array(AWAY)) for n, p in home.points.items()}
     there = replace(home, points=points)
-    return car_content(there, (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), stop=0.4)
+    return scene_content(there, (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), stop=0.4)
 
 
 @cache
@@ -63,14 +62,14 @@ def at_home(name: str, car: str = "paper") -> tuple[Solution, Mapping[str, float
     scene = Scene.from_mapping(moved_car(0.0, car))
     solution = solved(name, scene)
     assert isinstance(solution, Solution)  # nothing about it is hard
-    return solution, errors(solution, true_solution(scene))
+    return solution, errors(solution, reference_solution(scene))
 
 
-def errors(solution: Solution, truth: Solution) -> dict[str, float]:
+def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     """Largest error of each quantity that does not know where the origin is."""
     return {
         quantity: max(
-            float(np.abs(array - getattr(truth, quantity)[name]).max())
+            float(np.abs(array - getattr(reference, quantity)[name]).max())
             for name, array in getattr(solution, quantity).items()
         )
         for quantity in RATES
@@ -84,12 +83,12 @@ def far(value: float, car: str = "paper") -> Trial:
 
     def measure(tried: Tried) -> Mapping[str, float | str]:
         found.append(tried)
-        if tried.truth is None:
+        if tried.reference is None:
             return {}
         ratios: dict[str, float | str] = {}
         for name, solution in tried.solutions.items():
             home = at_home(name, car)[1]
-            for quantity, error in errors(solution, tried.truth).items():
+            for quantity, error in errors(solution, tried.reference).items():
                 text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
                 ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
         return ratios
@@ -97,7 +96,7 @@ def far(value: float, car: str = "paper") -> Trial:
     trial = try_scene(value, content, SOLVERS, measure)
     tried = found[0]
     answers = tuple(
-        _as_at_home(a, tried, car) if a.outcome == "right" and tried.truth is not None else a
+        _as_at_home(a, tried, car) if a.outcome == "right" and tried.reference is not None else a
         for a in trial.answers
     )
     return replace(trial, answers=answers)
@@ -109,13 +108,13 @@ def _as_at_home(answer: Answer, tried: Tried, car: str) -> Answer:
     Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
     angles are allowed nothing more than at home.
     """
-    assert tried.truth is not None
+    assert tried.reference is not None
     solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, car)[0]
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
-    for away, position in ((farthest, places), (nearest, tried.truth.position)):
+    for away, position in ((farthest, places), (nearest, tried.reference.position)):
         strict = replace(solution, position=position, accuracy=_held_to(home.accuracy, EPS * away))
-        judged = judged_answer(tried.scene, strict, tried.truth)
+        judged = judged_answer(tried.scene, strict, tried.reference)
         if judged.outcome != "right":
             return replace(
                 answer, outcome="wrong", reason=f"by the bounds of the car at home: {judged.reason}"
@@ -140,7 +139,7 @@ def scaled_car(scale: float, car: str = "paper") -> dict[str, Any]:
     home = car_called(car)
     there = replace(home, points={n: as_tuple(scale * np.array(p)) for n, p in home.points.items()})
     rack = (0.0, 30.0 * scale, 10.0 * scale)
-    return car_content(there, (1.5, 0.25, 0.125), rack, tolerance=1e-9 * scale, stop=0.4)
+    return scene_content(there, (1.5, 0.25, 0.125), rack, tolerance=1e-9 * scale, stop=0.4)
 
 
 def heaved_back(value: float) -> dict[str, Any]:
@@ -197,7 +196,7 @@ def _mixed_case(
         values=(*decades(-4), 1e-6, 1e-9, 1e-12),
         expected=dict.fromkeys(SOLVERS, MIXED),
         behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
-        examine=lambda value: try_on_side(value, mixed(value, points, shrinking, closure), SOLVERS),
+        examine=lambda value: try_scene(value, mixed(value, points, shrinking, closure), SOLVERS),
     )
 
 

@@ -22,20 +22,13 @@ from typing import Any
 
 import numpy as np
 
-from validate.cars.input_limits import Car, Linkage
+from validate.cars.car import Car, any_rotation, rotation, turned
+from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import EFFECTS
-from validate.hard.cars import (
-    PAPER_CAR,
-    UPRIGHT_CAR,
-    Array,
-    any_rotation,
-    car_content,
-    drawn_at,
-    rotation,
-    turned,
-)
-from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected
-from validate.hard.trial import Tried, decades, scene_case
+from validate.cars.scene_content import scene_content
+from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, drawn_at
+from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected, decades
+from validate.hard.trial import Tried, scene_case
 
 GROUP = "3. The strut flat"
 AXES = "xyz"
@@ -71,9 +64,9 @@ def flat_turn(value: float) -> Array:
 
 def strut_rise(tried: Tried) -> dict[str, float | str]:
     """How flat the strut stands: the z component of its direction."""
-    if tried.truth is None:
+    if tried.reference is None:
         return {}
-    along = tried.truth.position["strut_top"][0] - tried.truth.position["lower_ball_joint"][0]
+    along = tried.reference.position["strut_top"][0] - tried.reference.position["lower_ball_joint"][0]
     return {"z component of the strut's direction": float(abs(along[2]) / np.linalg.norm(along))}
 
 
@@ -83,7 +76,7 @@ def _held(car: Car, turn: Callable[[float], Array]) -> Callable[[float], dict[st
     def content(value: float) -> dict[str, Any]:
         linkage = Linkage.of(car)
         arm_angle, rack = [linkage.drawn_angle, SPIN], [linkage.drawn_rack, 0.0]
-        return car_content(turned(car, turn(value)), arm_angle, rack, effects=("velocity",))
+        return scene_content(turned(car, turn(value)), arm_angle, rack, effects=("velocity",))
 
     return content
 
@@ -96,7 +89,7 @@ def _moving(
 
     def content(value: float) -> dict[str, Any]:
         car_there = turned(car, turn(value))
-        return car_content(car_there, [ANGLE - 0.1, SPIN], [0.0, 40.0], stop=0.5, effects=asked)
+        return scene_content(car_there, [ANGLE - 0.1, SPIN], [0.0, 40.0], stop=0.5, effects=asked)
 
     return content
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from validate.cars.input_limits import Car
+from validate.cars.car import RIGHT, UP, Car
 from validate.cars.near_singular import approach
-from validate.hard.cars import PAPER_CAR, RIGHT, UP, car_content
-from validate.hard.case import RIGHT_OR_REFUSED, Case, Expected
+from validate.cars.scene_content import SQUARE, scene_content
+from validate.hard.cars import PAPER_CAR
+from validate.hard.case import RIGHT_OR_REFUSED, Case, Expected, decades
 from validate.hard.cases.dead_points import rack_ends
-from validate.hard.content import SQUARE, decades
 from validate.hard.trial import scene_case
 
 GROUP = "11. Found by searches"
@@ -40,7 +40,7 @@ def _searched(value: float) -> dict[str, Any]:
     pose = approach(SEARCHED, driven="arm_angle", forward=True, aside=ASIDE, distance=value)
     if pose is None:
         raise ValueError("the arm of the searched strut has no end that is open to reach")
-    return car_content(SEARCHED, pose.inputs["arm_angle"], pose.inputs["rack"])
+    return scene_content(SEARCHED, pose.inputs["arm_angle"], pose.inputs["rack"])
 
 
 def _touching(value: float) -> dict[str, Any]:
@@ -48,14 +48,14 @@ def _touching(value: float) -> dict[str, Any]:
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     swing = {"sine": {"amplitude": half * (1.0 - value), "angular_frequency": 1.0, "offset": middle}}
     # From the middle to near the greatest travel and back; instants on both sides of the turn.
-    return car_content(PAPER_CAR, SQUARE, swing, stop=3.0, samples=4, tolerance=COARSE)
+    return scene_content(PAPER_CAR, SQUARE, swing, stop=3.0, samples=4, tolerance=COARSE)
 
 
 def _folded(value: float) -> dict[str, Any]:
     top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
     x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
     points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}
-    return car_content(Car(points, "left", UP, RIGHT, "collinear"), [1.4, 0.2], stop=1.0)
+    return scene_content(Car(points, "left", UP, RIGHT, "collinear"), [1.4, 0.2], stop=1.0)
 
 
 CASES: tuple[Case, ...] = (

@@ -3,8 +3,8 @@
 Heave drives no coordinate: it is added to what was solved, so that nothing else meets its numbers and
 refuses them. What is too large to be added to anything must be refused with a reason.
 
-The truth gives up on a car that is displaced by 1e308 times its size. There it is the truth without heave,
-with the law's value, rate and acceleration added along up.
+The reference gives up on a car that is displaced by 1e308 times its size. There it is the reference without
+heave, with the law's value, rate and acceleration added along up.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution
+from validate.cars.scene_content import SQUARE
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
+from validate.hard.cars import paper_car
 from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
 from validate.hard.cases.links import GROUP
-from validate.hard.content import SQUARE, paper_car
 from validate.hard.judged import judged_answer
 from validate.hard.trial import solved, try_scene
 
@@ -70,17 +71,17 @@ def content(heave: dict[str, Any] | None) -> dict[str, Any]:
 
 
 def displaced(trial: Trial, heave: dict[str, Any]) -> Trial:
-    """The trial with what the truth could not judge held to the displaced truth of the car without heave."""
+    """The trial, with what the reference could not judge held to that of the car without heave, displaced."""
     if all(answer.outcome != "unjudged" for answer in trial.answers):
         return trial
     scene, plain = Scene.from_mapping(content(heave)), Scene.from_mapping(content(None))
     law = rates(scene.inputs["heave"], scene.instants)
-    truth = added(true_solution(plain), law, scene.mechanism.up)
+    reference = added(reference_solution(plain), law, scene.mechanism.up)
     answers = []
     for answer in trial.answers:
         one = solved(answer.formulation, scene) if answer.outcome == "unjudged" else answer
-        answers.append(one if isinstance(one, Answer) else judged_answer(scene, one, truth))
-    return Trial(trial.value, tuple(answers), {**trial.facts, "truth": "that without heave, displaced"})
+        answers.append(one if isinstance(one, Answer) else judged_answer(scene, one, reference))
+    return Trial(trial.value, tuple(answers), {**trial.facts, "reference": "that without heave, displaced"})
 
 
 def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from validate.cars.scene_content import SQUARE
 from validate.formulations.input_rates import rates
-from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.trial import Facts, Measure, Tried, decades, scene_case
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
+from validate.hard.trial import Facts, Measure, Tried, scene_case
 
 GROUP = "7. Laws of the inputs"
 OURS: Mapping[str, Expected] = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
@@ -63,7 +64,7 @@ def _stopping_scene(start: float, stop: float) -> dict[str, Any]:
 
 
 def rate_rounding(tried: Tried) -> Facts:
-    """What evaluating the rack's rate in double precision is off, where the truth takes it; 0 is no error."""
+    """What the rack's rate in double precision is off, where the reference takes it; 0 is no error."""
     part = tried.scene.inputs["rack"]
     exact = [Fraction(c) for c in part.polynomial or ()]
     worst = max(

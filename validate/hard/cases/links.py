@@ -23,9 +23,9 @@ from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.suspensions.macpherson import COLLINEAR, DRAWN
-from validate.cars.closed_form import Closure
-from validate.cars.paper_car import PAPER, Points
-from validate.hard.cars import BESIDE
+from validate.cars.car import Closure, Points
+from validate.cars.macpherson import BESIDE
+from validate.cars.paper_car import PAPER
 from validate.hard.case import REFUSED, Answer, Case, Trial
 from validate.hard.cases.near_points import drawn_angle
 

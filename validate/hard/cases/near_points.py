@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
-from validate.hard.cars import PAPER_CAR
-from validate.hard.case import Case, Expected
-from validate.hard.content import decades, paper_car
-from validate.hard.sides import try_on_side
-from validate.reference import solve_truth
+from validate.hard.cars import PAPER_CAR, paper_car
+from validate.hard.case import Case, Expected, decades
+from validate.hard.trial import try_scene
+from validate.reference import solve_reference
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -40,7 +39,7 @@ def drawn_angle() -> float:
 @cache
 def assembled() -> dict[str, Array]:
     """The paper's car at its own inputs, each coordinate the nearest number to the true one, mm."""
-    instant = solve_truth(PAPER, {"arm_angle": (drawn_angle(), 0, 0)}, closure="collinear")
+    instant = solve_reference(PAPER, {"arm_angle": (drawn_angle(), 0, 0)}, closure="collinear")
     return {name: np.array(instant.position_as_float(name)) for name in PAPER}
 
 
@@ -99,7 +98,7 @@ def _case(
         values=values,
         expected=dict.fromkeys(SOLVERS, SOLVED),
         behaviour=f"right within the bound, or refused with a reason; right from {RIGHT_FROM:g} up",
-        examine=lambda value: try_on_side(value, scene(value), SOLVERS),
+        examine=lambda value: try_scene(value, scene(value), SOLVERS),
     )
 
 

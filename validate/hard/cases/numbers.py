@@ -12,13 +12,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from validate.cars.input_limits import Car
+from validate.cars.car import Car
+from validate.cars.macpherson import BESIDE
 from validate.cars.paper_car import PAPER
-from validate.hard.cars import BESIDE, BESIDE_CAR, PAPER_CAR, car_content
+from validate.cars.scene_content import SQUARE, scene_content
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR, paper_car
 from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
 from validate.hard.cases.links import GROUP
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.sides import try_on_side
+from validate.hard.trial import try_scene
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 LEAST = math.ulp(0.0)  # 5e-324
@@ -66,14 +67,14 @@ def everywhere(number: object) -> Callable[[float], Trial]:
 
     def examine(value: float) -> Trial:
         place = PLACES[int(value) - 1]
-        trial = try_on_side(value, with_number(place, number), SOLVERS)
+        trial = try_scene(value, with_number(place, number), SOLVERS)
         return Trial(value, trial.answers, {**trial.facts, "place": told(place)})
 
     return examine
 
 
 PAIRS = tuple(itertools.combinations(PAPER, 2))
-# A rod without length has no truth: which way its end lies is not drawn.
+# A rod without length has no answer in the reference: which way its end lies is not drawn.
 PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != ("strut_top", "strut_rod_end"))
 # Pairs that hold each other at a distance, or make a line together: they cannot be in one place.
 APART = frozenset(
@@ -102,7 +103,7 @@ def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Call
     def examine(value: float) -> Trial:
         onto, moved = pairs[int(value) - 1]
         there = replace(car, points={**car.points, moved: car.points[onto]})
-        trial = try_on_side(value, car_content(there, 1.65), SOLVERS)
+        trial = try_scene(value, scene_content(there, 1.65), SOLVERS)
         return Trial(value, trial.answers, {**trial.facts, "place": f"{moved} on {onto}"})
 
     return examine

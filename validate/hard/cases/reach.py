@@ -14,18 +14,18 @@ from fractions import Fraction
 import numpy as np
 
 from pointcoord import AssemblyError, Scene
-from validate.adjudication.verdicts import inputs_at, true_instant
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.cars.scene_content import Law, scene_content
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import car_content
-from validate.hard.case import RIGHT, Answer, Case, Trial
+from validate.hard.cars import paper_car
+from validate.hard.case import RIGHT, Answer, Case, Trial, decades
 from validate.hard.cases.blocked_ways import blocked_way
-from validate.hard.content import Law, decades, paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import LastValue, car_called, home, last_value
 from validate.hard.trial import scene_case
-from validate.reference import InfeasibleError, TruthError
+from validate.reference import InfeasibleError, NoReferenceError
 
 GROUP = "9. Reachable range"
 SHARE = 1e-9  # of the range: how exactly the last value must be found
@@ -81,7 +81,7 @@ class Drive:
         laws[self.driven] = (start, goal - start) if self.moving else goal
         car = car_called(self.car)
         return Scene.from_mapping(
-            car_content(
+            scene_content(
                 car,
                 laws["arm_angle"],
                 laws["rack"],
@@ -122,10 +122,10 @@ def _asked(scene: Scene, drive: Drive) -> float:
 def _answered(name: str, scene: Scene) -> Answer:
     """A solver that answers a scene whose last instant should have no pose."""
     try:
-        true_instant(scene, inputs_at(scene, scene.time.stop))
+        reference_instant(scene, inputs_at(scene, scene.time.stop))
     except InfeasibleError as error:
         return Answer(name, "wrong", f"answers beyond the end: {error}")
-    except TruthError as error:
+    except NoReferenceError as error:
         return Answer(name, "unjudged", f"{type(error).__name__}: {error}")
     return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from validate.hard.case import Case
+from validate.cars.scene_content import SQUARE
+from validate.hard.cars import paper_car
+from validate.hard.case import Case, decades
 from validate.hard.cases.dead_points import inside, near_end, rack_ends
 from validate.hard.cases.laws import law_case
-from validate.hard.content import SQUARE, paper_car
-from validate.hard.trial import decades
 
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
 

@@ -8,14 +8,15 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cars.input_limits import STRUT, Linkage
+from validate.cars.input_limits import Linkage
+from validate.cars.macpherson import BESIDE, STRUT
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE, BESIDE_CAR, WIDE_CAR
+from validate.hard.cars import BESIDE_CAR, WIDE_CAR
 from validate.hard.case import Case
 from validate.hard.cases import beside
 from validate.hard.catalogue import CASES, FEW_VALUES
 from validate.hard.run import as_expected, examine
-from validate.reference import InfeasibleError, solve_truth
+from validate.reference import InfeasibleError, solve_reference
 
 Array = NDArray[np.float64]
 BY_NAME = {case.name: case for case in beside.CASES}
@@ -75,7 +76,7 @@ def test_what_a_case_draws_closes(points: Callable[[float], beside.Points], valu
         assert np.abs(solution.position[name][0] - place).max() < 2e-9, name
 
 
-def test_the_wide_car_ends_where_its_slide_runs_out_and_the_truth_agrees_on_both_sides() -> None:
+def test_the_wide_car_ends_where_its_slide_runs_out_and_the_reference_agrees_on_both_sides() -> None:
     low, high = beside.run_out()
     assert Linkage.of(WIDE_CAR).end({"arm_angle": 1.65, "rack": 0.0}, "arm_angle", False) == (low, STRUT)
     step = 1e-12 * (high - low)
@@ -83,7 +84,7 @@ def test_the_wide_car_ends_where_its_slide_runs_out_and_the_truth_agrees_on_both
 
     def pose(angle: float) -> None:
         inputs = {"arm_angle": (angle, 0, 0), "rack": (0, 0, 0)}
-        solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
+        solve_reference(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
 
     pose(low + step)
     with pytest.raises(InfeasibleError) as refusal:

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.paper_car import PAPER
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import unexpected
 from validate.hard.cases.branches import (
     CASES,
@@ -29,24 +31,24 @@ from validate.hard.cases.counting import (
     near_greatest_rack,
     near_lowest_arm,
 )
-from validate.hard.cases.oriented import followed, sides
-from validate.hard.content import paper_car
-from validate.hard.sides import drawn_choices, try_on_side
-from validate.hard.trial import Tried
-from validate.reference import InfeasibleError, count_assemblies, solve_truth
+from validate.hard.cases.oriented import drawn_signs, followed, sides
+from validate.hard.trial import Tried, try_scene
+from validate.reference import InfeasibleError, count_assemblies, solve_reference
 
 BY_NAME = {case.name: case for case in CASES}
 
 
 def feasible(angle: float, rack: float) -> bool:
     try:
-        solve_truth(PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15, closure="collinear")
+        solve_reference(
+            PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, digits=15, closure="collinear"
+        )
     except InfeasibleError:
         return False
     return True
 
 
-def test_branches_meet_where_the_truth_loses_its_pose() -> None:
+def test_branches_meet_where_the_reference_loses_its_pose() -> None:
     angle, rack = meeting()
     assert round(math.degrees(angle), 1) == 35.1
     # Known to some 1e-12 mm: the rounding of `spare`, 1e-15, over its slope of 0.015 per mm, and more.
@@ -65,7 +67,8 @@ def test_assemblies_near_the_meeting_are_as_far_apart_as_the_report_says(share: 
     listed = count_assemblies(
         PAPER, {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)}, starts=1000, closure="collinear"
     )
-    drawn = next(i for i in listed.found if i.choices == drawn_choices(scene))
+    meant = reference_instant(scene, inputs_at(scene, 0.5), exact_sides=True).choices
+    drawn = next(i for i in listed.found if i.choices == meant)
     other = next(i for i in listed.found if i.choices == replace(drawn.choices, tie=-drawn.choices.tie))
     gap = math.dist(*(map(float, i.position["tie_rod_outer"]) for i in (drawn, other)))
     # `spare`, good to some 1e-15, is 1.5e-9 at the nearer place, and the gap is as its root.
@@ -84,10 +87,8 @@ def test_the_flat_drawing_stands_at_its_height_and_on_its_side(share: float, mir
     )
     # Coordinates below 600 mm are rounded to 1e-13 mm.
     assert abs(height - expected) < 1e-12
-    signs = [
-        drawn_choices(Scene.from_mapping(from_a_flat_drawing(share, side))) for side in (mirrored, False)
-    ]
-    assert (signs[0].tie != signs[1].tie) == mirrored
+    signs = [drawn_signs(Scene.from_mapping(from_a_flat_drawing(share, side))) for side in (mirrored, False)]
+    assert (signs[0]["tie"] != signs[1]["tie"]) == mirrored
 
 
 @pytest.mark.parametrize(
@@ -139,7 +140,7 @@ def test_a_jump_to_the_mirror_image_is_wrong_and_its_side_is_negative(
             return other
 
     monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Jumping())
-    trial = try_on_side(1.0, content, ("absolute",), followed)
+    trial = try_scene(1.0, content, ("absolute",), followed)
     assert trial.answers[0].outcome == "wrong"
     assert float(trial.facts["tie side of absolute, least share"]) < 0.0
     assert float(trial.facts["arm side of absolute, least share"]) > 0.0

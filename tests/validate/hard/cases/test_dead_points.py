@@ -9,7 +9,7 @@ import pytest
 from validate.hard.case import Case
 from validate.hard.cases.dead_points import ARM_ANGLES, CARS, CASES, arm_ends, rack_ends
 from validate.hard.run import as_expected, examine
-from validate.reference import InfeasibleError, Instant, solve_truth
+from validate.reference import InfeasibleError, Instant, solve_reference
 
 BY_NAME = {case.name: case for case in CASES}
 
@@ -22,7 +22,7 @@ def at(case: str, *values: float) -> Case:
 def pose(key: str, arm_angle: float, rack: float, rate: float = 0.0) -> Instant:
     car = CARS[key]
     inputs: dict[str, Any] = {"arm_angle": (arm_angle, 0, 0), "rack": (rack, rate, 0)}
-    return solve_truth(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
+    return solve_reference(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
 
 
 @pytest.mark.parametrize("key", CARS)
@@ -82,7 +82,7 @@ def test_a_pose_beyond_an_end_is_never_made_up(name: str) -> None:
     result = examine(at(name, 1e-1, 1e-12))
     for formulation in ("pointcoord", "absolute"):
         assert [answer.outcome for _, answer in result.answers(formulation)] == ["refused", "refused"]
-    assert all("InfeasibleError" in str(trial.facts["truth"]) for trial in result.trials)
+    assert all("InfeasibleError" in str(trial.facts["reference"]) for trial in result.trials)
 
 
 @pytest.mark.parametrize("name", [name for name in BY_NAME if "-arm-" in name])

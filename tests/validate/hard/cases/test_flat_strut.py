@@ -8,10 +8,13 @@ import pytest
 from pointcoord import Scene, SceneError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
-from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, any_rotation, car_content, rotation, turned
+from validate.cars.car import any_rotation, rotation, turned
+from validate.cars.scene_content import scene_content
+from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array
 from validate.hard.case import Case
 from validate.hard.cases.flat_strut import CASES, quarter_turn_less
 from validate.hard.run import as_expected, examine
+from validate.paper.printed import PRINTED
 
 BY_NAME = {case.name: case for case in CASES}
 RISE = "z component of the strut's direction"
@@ -34,11 +37,11 @@ def test_turns_turn(axis: int) -> None:
 
 def test_each_pair_of_printed_rows_loses_one_exactly_where_the_strut_is_flat() -> None:
     aside = rotation(2, np.cos(0.3), np.sin(0.3))  # about z, so that the flat strut lies along no axis
-    upright = Scene.from_mapping(car_content(UPRIGHT_CAR, 1.5))
+    upright = Scene.from_mapping(scene_content(UPRIGHT_CAR, 1.5))
     flat = quarter_turn_less(0, 0.0)
     nearly = quarter_turn_less(0, 1e-3)
     for turn, rank in ((np.eye(3), 15), (nearly, 15), (aside @ nearly, 15), (flat, 13), (aside @ flat, 13)):
-        assert np.linalg.matrix_rank(turned_jacobian(scene_mechanism(upright, printed=True), turn)) == rank
+        assert np.linalg.matrix_rank(turned_jacobian(scene_mechanism(upright, PRINTED), turn)) == rank
         ours = scene_mechanism(upright)
         assert np.linalg.matrix_rank(turned_jacobian(ours, turn)) == ours.map.unknowns
 
@@ -58,12 +61,12 @@ def test_the_printed_formulas_are_refused_for_the_row_that_they_lose(value: floa
     (printed,) = [answer for answer in answers if answer.formulation == "printed"]
     assert printed.outcome == outcome
     assert ("parallel" in printed.reason) == (outcome == "refused")
-    flat = Scene.from_mapping(car_content(turned(UPRIGHT_CAR, quarter_turn_less(0, value)), 1.5))
+    flat = Scene.from_mapping(scene_content(turned(UPRIGHT_CAR, quarter_turn_less(0, value)), 1.5))
     if outcome == "refused":
         with pytest.raises(SceneError, match="parallel"):
-            scene_mechanism(flat, printed=True)
+            scene_mechanism(flat, PRINTED)
     else:
-        scene_mechanism(flat, printed=True)
+        scene_mechanism(flat, PRINTED)
 
 
 def test_a_quarter_turn_as_such_does_not_lay_the_papers_strut_flat() -> None:

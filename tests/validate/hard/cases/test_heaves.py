@@ -1,4 +1,4 @@
-"""Heave of any size and law: right, or refused with a reason; and the displaced truth is the truth."""
+"""Heave of any size and law: right, or refused with a reason; the displaced reference is one too."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import true_solution
+from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.hard.case import Answer, Trial, unexpected
 from validate.hard.cases import heaves
@@ -31,14 +31,14 @@ def test_every_number_of_every_law_is_tried() -> None:
     assert tried == {(place, f"{number:g}") for place in places for number in heaves.NOT_FINITE}
 
 
-def test_the_displaced_truth_is_the_truth_where_that_can_be_proven() -> None:
+def test_the_displaced_reference_is_the_reference_where_that_can_be_proven() -> None:
     law = heaves.law("polynomial", 0, 1e6)
     scene, plain = (Scene.from_mapping(heaves.content(heave)) for heave in (law, None))
-    truth, home = true_solution(scene), true_solution(plain)
+    reference, home = reference_solution(scene), reference_solution(plain)
     found = heaves.added(home, rates(scene.inputs["heave"], scene.instants), scene.mechanism.up)
     for quantity in ("position", "velocity", "acceleration"):
-        for name, array in getattr(truth, quantity).items():
-            # Rounded once more than the truth.
+        for name, array in getattr(reference, quantity).items():
+            # Rounded once more than the reference.
             assert np.abs(getattr(found, quantity)[name] - array).max() <= np.spacing(np.abs(array).max())
 
 

@@ -12,10 +12,10 @@ from pointcoord import MechanismError, Scene
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.paper_car import PAPER
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import REFUSED, unexpected
 from validate.hard.cases import links, numbers
-from validate.hard.content import paper_car
-from validate.hard.sides import try_on_side
+from validate.hard.trial import try_scene
 
 LINK_CASES = {case.name: case for case in links.CASES}
 NUMBER_CASES = {case.name: case for case in numbers.CASES}
@@ -137,7 +137,7 @@ def test_a_model_that_answers_a_number_that_is_none_is_found_out(monkeypatch: py
             return type(solution)(**{**vars(solution), "position": bad})
 
     monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Blind())
-    trial = try_on_side(1.0, paper_car(), ("absolute",))
+    trial = try_scene(1.0, paper_car(), ("absolute",))
     assert trial.answers[0].outcome == "wrong"
 
 

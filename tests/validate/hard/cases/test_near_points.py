@@ -8,25 +8,29 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.verdicts import inputs_at, true_instant, true_solution
+from validate.adjudication.reference_solution import (
+    inputs_at,
+    reference_instant,
+    reference_solution,
+)
 from validate.cars.paper_car import PAPER
+from validate.hard.cars import paper_car
 from validate.hard.case import Case, wrong_without_warning
 from validate.hard.cases.near_points import CASES, assembled, nearer, short_tie_rod, thin_knuckle
-from validate.hard.content import paper_car
-from validate.hard.sides import drawn_choices, instant_on_side, solution_on_side, try_on_side
-from validate.reference import AmbiguousAssemblyError, Choices
-from validate.reference.equations import LINKS, NUMBER_OF
+from validate.hard.cases.oriented import drawn_signs
+from validate.hard.trial import try_scene
+from validate.reference import AmbiguousAssemblyError
+from validate.reference.macpherson import COLLINEAR
 
 EPS = float(np.finfo(float).eps)
-NAMES = {number: name for name, number in NUMBER_OF.items()}
 
 
 def test_the_assembled_car_has_the_links_of_the_paper_and_its_strut_on_a_line() -> None:
     p = assembled()
-    for i, j in LINKS:
-        drawn = np.linalg.norm(np.subtract(PAPER[NAMES[i]], PAPER[NAMES[j]]))
+    for a, b in COLLINEAR.links:
+        drawn = np.linalg.norm(np.subtract(PAPER[a], PAPER[b]))
         # Six coordinates below 600 mm are rounded, and the norms.
-        assert abs(np.linalg.norm(p[NAMES[i]] - p[NAMES[j]]) - drawn) < 8 * EPS * 600
+        assert abs(np.linalg.norm(p[a] - p[b]) - drawn) < 8 * EPS * 600
     axis = p["strut_top"] - p["lower_ball_joint"]
     for name in ("strut_lower", "strut_rod_end"):
         beside = np.cross(p[name] - p["lower_ball_joint"], axis / np.linalg.norm(axis))
@@ -69,17 +73,12 @@ def test_at_the_nearest_no_number_is_wrong_without_a_warning(case: Case) -> None
     assert not any(answer.outcome == "unjudged" for answer in trial.answers)
 
 
-def test_exact_signs_are_those_of_the_truth_where_the_truth_can_tell() -> None:
+def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
     for rack in (-40.0, 0.0, 60.0):
         scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
-        expected = true_instant(scene, inputs_at(scene, 0.0))
-        assert drawn_choices(scene) == expected.choices
-        assert instant_on_side(scene, 0.0).position == expected.position
-    mine, theirs = solution_on_side(scene), true_solution(scene)
-    for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
-        for name, array in getattr(theirs, quantity).items():
-            assert np.array_equal(getattr(mine, quantity)[name], array)
-    assert np.array_equal(mine.wheel["camber"], theirs.wheel["camber"])
+        inputs = inputs_at(scene, 0.0)
+        expected = reference_instant(scene, inputs)
+        assert reference_instant(scene, inputs, exact_sides=True).position == expected.position
 
 
 @pytest.mark.parametrize("lift", [1e-13, -1e-13])
@@ -98,28 +97,16 @@ def test_a_drawn_side_is_told_however_near_the_plane(lift: float) -> None:
         "wheel_centre": (0.0, -80.0, 60.0),
     }
     scene = Scene.from_mapping(paper_car(points=points))
-    assert drawn_choices(scene).tie == (1 if Fraction(lift) > 0 else -1)
-    flat = Scene.from_mapping(paper_car(points={**points, "tie_rod_outer": (110.0, 0.0, 100.0)}))
+    assert drawn_signs(scene)["tie"] == (1 if Fraction(lift) > 0 else -1)
     with pytest.raises(AmbiguousAssemblyError, match="tie choice"):
-        drawn_choices(flat)
+        reference_solution(scene)
+    flat = Scene.from_mapping(paper_car(points={**points, "tie_rod_outer": (110.0, 0.0, 100.0)}))
+    assert drawn_signs(flat)["tie"] == 0
+    with pytest.raises(AmbiguousAssemblyError, match="tie choice"):
+        reference_solution(flat, exact_sides=True)
 
 
-def test_a_jump_to_the_other_side_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    # A tie rod of 1e-10 of its length: the truth cannot tell its side, the exact sign can. Told the
-    # opposite sign, what was right lies on the wrong side.
-    case = next(case for case in CASES if case.name == "tie-rod-short")
-    assert {a.outcome for a in case.examine(1e-10).answers if a.formulation != "absolute"} == {"right"}
-
-    def opposite(scene: Scene) -> Choices:
-        signs = drawn_choices(scene)
-        return Choices(signs.arm, signs.strut, signs.rod, -signs.tie)
-
-    monkeypatch.setattr("validate.hard.sides.drawn_choices", opposite)
-    trial = case.examine(1e-10)
-    assert {a.outcome for a in trial.answers if a.formulation != "absolute"} == {"wrong"}
-
-
-def test_a_scene_that_the_truth_can_judge_is_left_to_it() -> None:
-    trial = try_on_side(1.0, paper_car(), ("pointcoord-newton",))
-    assert trial.facts["truth"] == "answers"
+def test_a_scene_that_the_reference_can_judge_is_left_to_it() -> None:
+    trial = try_scene(1.0, paper_car(), ("pointcoord-newton",))
+    assert trial.facts["reference"] == "answers"
     assert trial.answers[0].outcome == "right"

@@ -15,10 +15,10 @@ import pytest
 from pointcoord import AssemblyError, Scene, simulate
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
+from validate.hard.cars import paper_car
 from validate.hard.case import unexpected, wrong_without_warning
 from validate.hard.cases import blocked_ways
 from validate.hard.cases.reach import CASES, Drive, _refusal
-from validate.hard.content import paper_car
 from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import car_called, home, last_value, reachable
 
@@ -142,7 +142,7 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
         (lambda r, end: {}, "does not say how far"),
     ],
 )
-def test_a_way_is_blocked_where_the_truth_loses_its_pose(
+def test_a_way_is_blocked_where_the_reference_loses_its_pose(
     change: Callable[[dict[str, float], dict[str, float]], dict[str, Any]], says: str
 ) -> None:
     end = blocked_ways.goal(0.1)

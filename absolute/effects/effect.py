@@ -1,0 +1,50 @@
+"""What an effect is: a number that a solved motion has at each instant, and how far it may be off."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from absolute.description import Corner
+from absolute.solution import Array
+
+
+class Lines(Protocol):
+    """A solved motion, as effects see it: lines between points, in the axes of the frame of the points.
+
+    Attributes:
+        corner: what of the linkage is the wheel, and which way the car points.
+    """
+
+    @property
+    def corner(self) -> Corner: ...
+
+    def line(self, ends: tuple[str, str]) -> Array:
+        """(N, 3) from one point to another, mm."""
+        ...
+
+    def error(self, ends: tuple[str, str]) -> Array:
+        """(N, 3) how far each component of that line may be off, mm."""
+        ...
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A number at each instant.
+
+    Attributes:
+        name: what a caller asks for.
+        unit: of the value and of its error.
+        gives: what it is, in words.
+        sign: what a positive value means, in words.
+        derivative: the derivative over time of the poses that it needs; 0 where poses are enough.
+        value: (N,) at the instants of a solved motion.
+        error: (N,) how far each value may be off.
+    """
+
+    name: str
+    unit: str
+    gives: str
+    sign: str
+    derivative: int
+    value: Callable[[Lines], Array]
+    error: Callable[[Lines], Array]

@@ -1,0 +1,119 @@
+"""Many configurations at once: Newton to rounding, then velocities and accelerations."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from absolute.backend import eigenpy
+from absolute.mechanism import Mechanism
+from absolute.newton import MOST_CORRECTIONS, rounding_of
+from absolute.precision import EPS
+from absolute.solution import Array, Counts
+from absolute.tracking import Found
+
+# Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
+BATCH = 32
+
+# Corrections below this are rounding of the 30 or so unknowns themselves.
+ROUNDING = 32 * EPS
+
+
+class Refined(NamedTuple):
+    """Exact poses of N instants in units of size, with their rates.
+
+    Attributes:
+        rotation: (N, bodies, 3, 3). origin: (N, bodies, 3).
+        velocity, acceleration: (N, 6 * moving bodies) [o', w] and [o'', w'], empty without rates.
+        corrections: (N,) Newton corrections in all.
+        residual: (N,) largest violation of a row.
+        step: (N,) the last correction, not made.
+        closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
+        kept: (N,) whether the pose is on the branch of the drawing.
+        world: (N, features, 3) points and directions that tell it.
+    """
+
+    rotation: Array
+    origin: Array
+    velocity: Array
+    acceleration: Array
+    corrections: Counts
+    residual: Array
+    step: Array
+    closed: NDArray[np.bool_]
+    kept: NDArray[np.bool_]
+    world: Array
+
+
+def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool) -> Refined:
+    """Newton with a fresh Jacobian each time until corrections and rows are rounding, for all together.
+
+    The Jacobian of the last, negligible correction is that of the pose itself: its factors serve
+    velocity and acceleration,  J v = rate,  J a = second - drift(v).
+
+    Args:
+        found: configurations close to their poses.
+        targets: (3, N, rows) targets, their first and second rates.
+        rates: False leaves velocity and acceleration empty.
+    """
+    stack = mechanism.stack
+    q = [each.q for each in found]
+    corrections = np.array([each.corrections for each in found], dtype=np.int64)
+    rotation, origin = poses_of(mechanism, q)
+    placed = stack.place(rotation, origin)
+    factors = [eigenpy.PartialPivLU(jacobian) for jacobian in stack.jacobian(placed)]
+    steps = solved(factors, targets[0] - placed.values)
+    previous = np.linalg.norm(steps, axis=1)
+    pending = np.arange(len(q))
+    for _ in range(MOST_CORRECTIONS):
+        order = pending.tolist()
+        for instant, step in zip(order, steps, strict=True):
+            q[instant] = mechanism.moved(q[instant], rotation[instant], step)
+        corrections[pending] += 1
+        poses = poses_of(mechanism, [q[instant] for instant in order])
+        fresh = stack.place(*poses)
+        if len(order) == len(q):
+            (rotation, origin), placed = poses, fresh
+        else:
+            rotation[pending], origin[pending] = poses
+            for whole, part in zip(placed, fresh, strict=True):
+                whole[pending] = part
+        for instant, jacobian in zip(order, stack.jacobian(fresh), strict=True):
+            factors[instant] = eigenpy.PartialPivLU(jacobian)
+        steps = solved([factors[instant] for instant in order], targets[0, pending] - fresh.values)
+        size = np.linalg.norm(steps, axis=1)
+        # Negated, so that what is not a number counts as more to do.
+        more = ~(size <= ROUNDING)
+        for place in np.flatnonzero(more & (size > 0.5 * previous[pending])).tolist():
+            more[place] = not size[place] <= rounding_of(factors[order[place]].rcond())
+        # Near a fold corrections become as small as rounding before the rows close.
+        more |= ~stack.closed(fresh, targets[0, pending])
+        previous[pending] = size
+        pending, steps = pending[more], steps[more]
+        if not pending.size:
+            break
+    closed = np.ones(len(q), dtype=np.bool_)
+    closed[pending] = False
+    velocity = acceleration = np.empty((0, stack.count))
+    if rates:
+        velocity = solved(factors, targets[1])
+        moving = np.zeros((*origin.shape[:2], 2, 3))
+        moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
+        drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
+        acceleration = solved(factors, targets[2] - drift)
+    residual = np.abs(targets[0] - placed.values).max(axis=1)
+    kept = mechanism.branch_signs.kept(placed.world)
+    return Refined(
+        rotation, origin, velocity, acceleration, corrections, residual, previous, closed, kept, placed.world
+    )
+
+
+def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
+    """Solutions (N, rows) of N factorised systems for their right-hand sides (N, rows)."""
+    return np.array([lu.solve(column) for lu, column in zip(factors, right_hand, strict=True)])
+
+
+def poses_of(mechanism: Mechanism, q: list[Array]) -> tuple[Array, Array]:
+    """Rotations (N, bodies, 3, 3) and origins (N, bodies, 3) of many configurations."""
+    poses = [mechanism.poses(each) for each in q]
+    return np.array([pose.rotation for pose in poses]), np.array([pose.origin for pose in poses])

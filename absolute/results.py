@@ -1,0 +1,174 @@
+"""The record of a motion while it is solved, and the points and bodies read from it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from absolute.effects.effect import Effect
+from absolute.estimate import BodyMotion, Errors, estimate
+from absolute.lines import SolvedLines
+from absolute.mapping import ReadOnly
+from absolute.mechanism import Mechanism
+from absolute.refine import Refined
+from absolute.solution import Array, Solution
+from absolute.vectors import cross
+
+# Jacobians at once when condition numbers or errors are asked for: a few megabytes.
+BATCH = 256
+ERROR_BATCH = 32
+
+
+class Asked(NamedTuple):
+    """What shall be told of each instant beside the poses.
+
+    Attributes:
+        rates: velocities and accelerations. conditions: condition numbers.
+        doubts: (N, 3, inputs) how far the inputs may be off, or None: no errors.
+        effects: those whose values are told.
+    """
+
+    rates: bool
+    conditions: bool
+    doubts: Array | None
+    effects: tuple[Effect, ...]
+
+
+class Record:
+    """Body poses and rates of the instants solved so far, in units of size."""
+
+    def __init__(self, mechanism: Mechanism, series: Array, chassis: Array, asked: Asked) -> None:
+        count, rates = len(series), asked.rates
+        bodies = len(mechanism.drawing.bodies)
+        self._mechanism = mechanism
+        self._series, self._chassis = series, chassis
+        self._asked = asked
+        self._rates = rates
+        self._rotation = np.zeros((count, bodies, 3, 3))
+        self._origin = np.zeros((count, bodies, 3))
+        # [origin, angular] of each body; the chassis stays at zero.
+        self._velocity = np.zeros((count if rates else 0, bodies, 2, 3))
+        self._acceleration = np.zeros((count if rates else 0, bodies, 2, 3))
+        self._iterations = np.zeros(count, dtype=np.int64)
+        self._residual = np.zeros(count)
+        self.written = 0
+
+    def store(self, refined: Refined, count: int) -> None:
+        """Keep the first `count` of some refined instants, after those kept before."""
+        part = slice(self.written, self.written + count)
+        self._rotation[part] = refined.rotation[:count]
+        self._origin[part] = refined.origin[:count]
+        if self._rates:
+            self._velocity[part, 1:] = refined.velocity[:count].reshape(self._velocity[part, 1:].shape)
+            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(
+                self._velocity[part, 1:].shape
+            )
+        self._iterations[part] = refined.corrections[:count]
+        self._residual[part] = refined.residual[:count]
+        self.written += count
+
+    def solution(self) -> Solution:
+        """The instants solved so far in mm, carried by the chassis motion."""
+        count, chassis = self.written, self._chassis
+        drawing, model = self._mechanism.drawing, self._mechanism.model
+        position: dict[str, Array] = {}
+        velocity: dict[str, Array] = {}
+        acceleration: dict[str, Array] = {}
+        for body, index in drawing.bodies.items():
+            for point in model.bodies[body]:
+                if point in position:
+                    continue
+                if index == 0:
+                    position[point] = np.array(model.points[point]) + chassis[:count, 0]
+                    if self._rates:
+                        velocity[point] = chassis[:count, 1].copy()
+                        acceleration[point] = chassis[:count, 2].copy()
+                    continue
+                arm = self._rotation[:count, index] @ drawing.arm(body, point)
+                position[point] = (
+                    (self._origin[:count, index] + arm) * drawing.size + drawing.middle + chassis[:count, 0]
+                )
+                if self._rates:
+                    # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
+                    speed, spin = self._velocity[:count, index, 0], self._velocity[:count, index, 1]
+                    second, spin1 = self._acceleration[:count, index, 0], self._acceleration[:count, index, 1]
+                    turning = cross(spin, arm)
+                    velocity[point] = (speed + turning) * drawing.size + chassis[:count, 1]
+                    acceleration[point] = (
+                        second + cross(spin1, arm) + cross(spin, turning)
+                    ) * drawing.size + chassis[:count, 2]
+        turns = drawing.bodies if self._rates else {}
+        spins = {body: self._velocity[:count, i, 1].copy() for body, i in turns.items() if i}
+        spins1 = {body: self._acceleration[:count, i, 1].copy() for body, i in turns.items() if i}
+        iterations = self._iterations[:count].copy()
+        iterations.setflags(write=False)
+        errors = self._errors(count)
+        effects = self._asked.effects
+        told = effects if self._asked.doubts is not None else ()
+        lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors)
+        in_order = {name: position[name] for name in model.points}
+        return Solution(
+            position=_fixed(in_order),
+            velocity=_fixed({name: velocity[name] for name in model.points} if self._rates else {}),
+            acceleration=_fixed({name: acceleration[name] for name in model.points} if self._rates else {}),
+            angular_velocity=_fixed(spins),
+            angular_acceleration=_fixed(spins1),
+            iterations=iterations,
+            residual=_locked(self._residual[:count] * drawing.size),
+            condition=_locked(self._condition_numbers(count)) if self._asked.conditions else None,
+            position_error=_fixed(
+                {name: errors.position[name] for name in (model.points if errors.position else ())}
+            ),
+            velocity_error=_fixed(
+                {name: errors.velocity[name] for name in (model.points if errors.velocity else ())}
+            ),
+            acceleration_error=_fixed(errors.acceleration),
+            rotation_error=_fixed(errors.rotation),
+            angular_velocity_error=_fixed(errors.angular_velocity),
+            angular_acceleration_error=_fixed(errors.angular_acceleration),
+            effects=_fixed({effect.name: effect.value(lines) for effect in effects}),
+            effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
+        )
+
+    def _errors(self, count: int) -> Errors:
+        """Errors of the first `count` instants; nothing where none were asked for."""
+        doubts, whole = self._asked.doubts, Errors({}, {}, {}, {}, {}, {})
+        model = self._mechanism.model
+        if doubts is None:
+            return whole
+        if not count:
+            points, bodies = (
+                {name: np.zeros((0, 3)) for name in names} for names in (model.points, model.moving)
+            )
+            return Errors(points, points, points, bodies, bodies, bodies)
+        for start in range(0, max(count, 1), ERROR_BATCH):
+            part = slice(start, min(start + ERROR_BATCH, count))
+            origin = self._origin[part]
+            still = np.zeros((*origin.shape[:2], 2, 3))
+            rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)
+            motion = BodyMotion(self._rotation[part], origin, *rates)
+            found = estimate(self._mechanism, motion, self._series[part], doubts[part], self._chassis[part])
+            for kept, added in zip(whole, found, strict=True):
+                for name, values in added.items():
+                    kept[name] = np.concatenate((kept[name], values)) if name in kept else values
+        if not self._rates:
+            return Errors(whole.position, {}, {}, whole.rotation, {}, {})
+        return whole
+
+    def _condition_numbers(self, count: int) -> Array:
+        stack = self._mechanism.stack
+        numbers = np.zeros(count)
+        for start in range(0, count, BATCH):
+            part = slice(start, min(start + BATCH, count))
+            numbers[part] = np.linalg.cond(
+                stack.jacobian(stack.place(self._rotation[part], self._origin[part]))
+            )
+        return numbers
+
+
+def _locked(array: Array) -> Array:
+    array.setflags(write=False)
+    return array
+
+
+def _fixed(arrays: dict[str, Array]) -> ReadOnly[Array]:
+    return ReadOnly({name: _locked(array) for name, array in arrays.items()})

@@ -1,0 +1,25 @@
+"""What a proof needs of a solution, whichever way it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.enclosed_rates import Summed
+
+Array = NDArray[np.float64]
+
+
+class SolvedCoordinates(Protocol):
+    """The coordinates of a linkage and their time derivatives, as they were solved for."""
+
+    def coordinates(self, instants: Array) -> list[Array]:
+        """y and as many of its derivatives as were solved for, each (N, size), units per s^d."""
+        ...
+
+    def summed(self, instants: Array) -> Sequence[Summed]:
+        """How each of these was summed from a series; empty if they were solved for at the instants."""
+        ...

@@ -1,0 +1,61 @@
+"""What the effects of a scene make the solver do, and what they leave out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from pointcoord.effects.effect import Effect
+from pointcoord.effects.registry import ALWAYS, EFFECTS
+from pointcoord.errors import UnknownName
+from pointcoord.linkage.topology import Topology
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The effects that are computed.
+
+    Attributes:
+        computed: what is always computed, then what the scene asks for, in the order of the registry.
+    """
+
+    computed: tuple[Effect, ...]
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The names of those that the scene asks for."""
+        return tuple(effect.name for effect in self.computed if effect.name in EFFECTS)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Effects that are not computed."""
+        return tuple(name for name in EFFECTS if name not in self.effects)
+
+    @property
+    def derivative(self) -> int:
+        """Highest time derivative that is solved for, of any point."""
+        return max(effect.derivative for effect in self.computed)
+
+    def derivatives(self, topology: Topology) -> dict[str, int]:
+        """Highest time derivative that is evaluated of each point."""
+        highest = dict.fromkeys(topology.points, 0)
+        for effect in self.computed:
+            for point in effect.needs(topology):
+                highest[point] = max(highest[point], effect.derivative)
+        return highest
+
+
+def plan_effects(effects: Iterable[str], instead: Mapping[str, Effect] | None = None) -> Plan:
+    """The plan for a list of effects.
+
+    Args:
+        instead: by name, effects that are computed in another way than the registry's.
+    Raises:
+        UnknownName: an effect that does not exist.
+    """
+    asked = tuple(effects)
+    for name in asked:
+        if name not in EFFECTS:
+            raise UnknownName("effect", name, EFFECTS)
+    known = {**EFFECTS, **(instead or {})}
+    return Plan((*ALWAYS, *(known[name] for name in EFFECTS if name in asked)))

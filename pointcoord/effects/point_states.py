@@ -1,0 +1,46 @@
+"""Effects that report a state of every point: its position or a time derivative of that."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.enclosed_points import EnclosedPoses
+from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.effects.effect import Effect, Poses
+from pointcoord.linkage.topology import Topology
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PointStates(Effect):
+    """The time derivative of every point's position, of the order `derivative`."""
+
+    def needs(self, topology: Topology) -> Collection[str]:
+        """Every point."""
+        return topology.points
+
+    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
+        """The states with what the user's origin and the chassis' motion add to them, each (..., N, 3)."""
+        states, added = poses.states[self.derivative], poses.added[self.derivative]
+        reported = {name: state if added is None else state + added for name, state in states.items()}
+        return {self._quantity: reported}
+
+    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
+        """Distance of what is reported from where the point is, and what a sum in doubles loses."""
+        d = self.derivative
+        unit = (float(poses.mechanism.unit) / poses.powers[d])[:, None]
+        errors = {}
+        for name, reported in numbers[self._quantity].items():
+            exact = poses.points[d][name].scaled(unit) + poses.added[d]
+            errors[name] = np.stack([exact.apart(reported), exact.radius[1]])
+        return {self._quantity: errors}
+
+    @property
+    def _quantity(self) -> str:
+        (quantity,) = self.quantities
+        return quantity.name

@@ -1,0 +1,57 @@
+"""The axes of a car as directions that have names: up, outboard and rearward, and their opposites."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.numerics.enclosure import Enclosed, cross, dot
+
+Array = NDArray[np.float64]
+
+Direction = Literal["up", "down", "outboard", "inboard", "rearward", "forward"]
+OPPOSITE: Mapping[Direction, Direction] = {"down": "up", "inboard": "outboard", "forward": "rearward"}
+
+
+@dataclass(frozen=True)
+class CarAxes:
+    """Unit vectors of one wheel's car, each of shape (..., 3).
+
+    Attributes:
+        up, right: as the car's axes are given; rearward is right x up.
+        outboard: away from the car's middle, on the side of the wheel.
+    """
+
+    up: Array
+    right: Array
+    outboard: Array
+
+    @classmethod
+    def of(cls, drawing: Drawing, outboard: Array) -> CarAxes:
+        """Those of a drawing whose wheel lies on the side to which `outboard` points."""
+        return cls(drawing.vectors["up"], drawing.vectors["right"], outboard)
+
+    def component(self, vector: Array, direction: Direction) -> Array:
+        """Component of vectors (..., 3) along a direction, shape (...,)."""
+        if direction in OPPOSITE:
+            return -self.component(vector, OPPOSITE[direction])
+        return np.asarray(vector @ self._vectors[direction])
+
+    def enclosed(self, vector: Enclosed, direction: Direction) -> Enclosed:
+        """Where that component exactly is; a direction of the car's axes is exactly as it is given."""
+        if direction in OPPOSITE:
+            return -self.enclosed(vector, OPPOSITE[direction])
+        if direction == "rearward":
+            return dot(vector, cross(Enclosed.of(self.right), Enclosed.of(self.up)))
+        return dot(vector, Enclosed.of(self._vectors[direction]))
+
+    @cached_property
+    def _vectors(self) -> Mapping[Direction, Array]:
+        rearward = np.cross(self.right, self.up)
+        return {"up": self.up, "outboard": self.outboard, "rearward": rearward}

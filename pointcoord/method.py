@@ -1,0 +1,59 @@
+"""Methods: the ways to solve a scene, each as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pointcoord.effects.effect import Effect
+from pointcoord.errors import UnknownName
+from pointcoord.solve.pointwise import SquareVelocityTerm, square_velocity_term
+from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.suspensions.suspension import Suspension
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to solve a scene.
+
+    Attributes:
+        name: in results and messages.
+        by_series: a chain of power series, dense in time; or Newton's method at each of the scene's instants.
+        suspensions: those that it can solve, by type, with the closures that it can.
+        only: why there are no others, in words.
+        square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
+            series have it in themselves.
+        effects: by name, the effects that it computes in another way than others.
+    """
+
+    name: str
+    by_series: bool = False
+    suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
+    only: str = ""
+    square_velocity_term: SquareVelocityTerm = square_velocity_term
+    effects: Mapping[str, Effect] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+SERIES = Method("series", by_series=True)
+"""A chain of power series, dense in time."""
+
+NEWTON = Method("newton")
+"""The paper's algorithm, at the scene's instants only."""
+
+METHODS: Mapping[str, Method] = {method.name: method for method in (SERIES, NEWTON)}
+
+
+def method_of(name: Method | str) -> Method:
+    """A method by its name, or itself.
+
+    Raises:
+        UnknownName: there is no such method.
+    """
+    if isinstance(name, Method):
+        return name
+    if name not in METHODS:
+        raise UnknownName("method", name, METHODS)
+    return METHODS[name]

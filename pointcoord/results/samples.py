@@ -1,0 +1,134 @@
+"""What a scene asked for, at some instants, read by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.effect import Quantity
+from pointcoord.errors import NotComputed, UnknownName
+
+Array = NDArray[np.float64]
+
+
+class Channel(Mapping[str, Array]):
+    """The numbers of one quantity by name, read-only.
+
+    It knows which effects give what is missing, because the scene did not ask for them.
+    """
+
+    def __init__(
+        self,
+        quantity: Quantity,
+        arrays: Mapping[str, Array],
+        left_out: Mapping[str, tuple[str, ...] | None],
+    ) -> None:
+        """The numbers that were computed.
+
+        Args:
+            left_out: by name, the effects that were not computed and what of this quantity each would give;
+                None for every point or body.
+        """
+        self.quantity = quantity
+        self.left_out = dict(left_out)
+        self._arrays = dict(arrays)
+        for array in self._arrays.values():
+            array.setflags(write=False)
+
+    @property
+    def computed(self) -> bool:
+        """Whether the scene asked for any of it."""
+        return bool(self._arrays)
+
+    def with_arrays(self, arrays: Mapping[str, Array]) -> Channel:
+        """The same quantity with other numbers."""
+        return Channel(self.quantity, arrays, self.left_out)
+
+    def __getitem__(self, name: str) -> Array:
+        if name in self._arrays:
+            return self._arrays[name]
+        for effect, names in self.left_out.items():
+            if names is None or name in names:
+                raise NotComputed(f"{self.quantity.words} of {name}", effect)
+        others = (name for names in self.left_out.values() for name in names or ())
+        raise UnknownName(self.quantity.words, name, (*self._arrays, *others))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._arrays
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __repr__(self) -> str:
+        return f"<{self.quantity.words}: {', '.join(self) if self.computed else 'not computed'}>"
+
+    def __reduce__(self) -> tuple[type[Channel], tuple[object, ...]]:
+        # Arrays come back from a pickle as arrays that can be written.
+        return type(self), (self.quantity, self._arrays, self.left_out)
+
+
+@dataclass(frozen=True, repr=False)
+class Samples:
+    """What a scene asked for, at some instants; every quantity is an attribute too, such as `position`.
+
+    Attributes:
+        times: shape (N,), s.
+        numbers: by quantity and name, of points and bodies (N, 3), of the car (N,); see
+            `effects.registry.QUANTITIES` for what there is and its units.
+    """
+
+    times: Array
+    numbers: Mapping[str, Channel]
+
+    def __post_init__(self) -> None:
+        self.times.setflags(write=False)
+        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
+
+    def __getattr__(self, name: str) -> Channel:
+        numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
+        if name in numbers:
+            return numbers[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}; its quantities: {', '.join(numbers)}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.numbers})
+
+    def __reduce__(self) -> tuple[type[Samples], tuple[object, ...]]:
+        # A read-only view of a dictionary does not pickle.
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return type(self), tuple((values | {"numbers": dict(self.numbers)}).values())
+
+    def __repr__(self) -> str:
+        return f"<Samples: {self._span}; {self._quantities}>"
+
+    @property
+    def _span(self) -> str:
+        if not self.times.size:
+            return "no instants"
+        if self.times.ndim == 0:
+            return f"at {self.times:.6g} s"
+        count = "1 instant" if self.times.size == 1 else f"{self.times.size} instants"
+        return f"{count} from {self.times.min():.6g} to {self.times.max():.6g} s"
+
+    @property
+    def _quantities(self) -> str:
+        return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
+
+    def shaped(self, shape: tuple[int, ...]) -> Samples:
+        """The same samples with instants of another shape."""
+        numbers = {}
+        for name, channel in self.numbers.items():
+            vector = () if channel.quantity.of == "car" else (3,)
+            arrays = {}
+            for part, array in channel.items():
+                batch = array.shape[: array.ndim - 1 - len(vector)]
+                arrays[part] = array.reshape((*batch, *shape, *vector))
+            numbers[name] = channel.with_arrays(arrays)
+        return Samples(self.times.reshape(shape), numbers)

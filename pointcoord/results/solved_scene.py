@@ -1,0 +1,78 @@
+"""A scene whose linkage is solved: read at instants, and proven."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.proof import Proof, prove
+from pointcoord.bounds.reported_bounds import Reported
+from pointcoord.results.readout import Readout
+from pointcoord.results.samples import Samples
+from pointcoord.results.states import SolvedStates
+from pointcoord.time_functions import TimeFunction
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SolvedScene:
+    """What a motion is read from.
+
+    Attributes:
+        functions: the laws of the inputs that drive the linkage.
+        states: of its points, and its coordinates, as they were solved for.
+    """
+
+    readout: Readout
+    functions: Mapping[str, TimeFunction]
+    states: SolvedStates
+
+    def samples(self, times: Array) -> Samples:
+        """What the scene asks for at instants of shape (N,).
+
+        Raises:
+            OutsideMotion: an instant that was not solved for, or not a number.
+        """
+        return self.readout.samples(times, self.states.states(times))
+
+    def doubts(self, times: Array) -> dict[str, Array]:
+        """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
+        return {name: function.rounding(times) for name, function in self.functions.items()}
+
+    def proof(
+        self, samples: Samples, *, rates: bool = False, doubts: Mapping[str, Array] | None = None
+    ) -> Proof:
+        """What is proven at each of the samples' times.
+
+        Args:
+            rates: every number by itself.
+            doubts: how far the laws' values may be off, where another answer than that of `doubts` is wanted.
+        """
+        mechanism, chassis, times = self.readout.mechanism, self.readout.chassis, samples.times
+        added = self.readout.offset(times)
+        return prove(
+            mechanism,
+            times,
+            self.states,
+            samples.position,
+            np.broadcast_to(0.0 if added is None else added, (len(times), 3)),
+            chassis.rounding(times, mechanism.origin),
+            self.doubts(times) if doubts is None else doubts,
+            self._reported(samples) if rates else None,
+        )
+
+    def _reported(self, samples: Samples) -> Reported:
+        """All numbers of samples, and what went into them beside the coordinates."""
+        readout = self.readout
+        return Reported(
+            numbers=samples.numbers,
+            effects=readout.plan.computed,
+            axes=readout.axes,
+            chassis=readout.chassis,
+            laws=self.functions,
+            solved=self.states,
+        )

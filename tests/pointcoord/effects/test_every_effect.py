@@ -1,0 +1,282 @@
+"""What holds for every effect of the registry: its value, its bounds, and the laws of turned cars."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from effects_by_hand import BY_HAND, DIGITS, Car, Vector, by_hand, cross, plus
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mpf, workdps
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from pointcoord import Scene
+from pointcoord.bounds.enclosed_points import EnclosedPoses
+from pointcoord.bounds.reported_bounds import ROUNDINGS
+from pointcoord.effects.angle import WheelAngles
+from pointcoord.effects.effect import Effect, Poses
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.simulation import scene_mechanism
+
+Array = NDArray[np.float64]
+Numbers = Mapping[str, Mapping[str, Array]]
+U = 2.0**-53
+TIME = 2.0**-3  # s, a unit of time other than a second
+EVERY = {effect.name: effect for effect in (*ALWAYS, *EFFECTS.values())}
+each_effect = pytest.mark.parametrize("name", EVERY)
+seeds = st.integers(0, 2**32 - 1)
+cars = st.sampled_from(["off-axis-strut", "double-wishbone"])
+some = settings(deadline=None, max_examples=40)
+
+
+@cache
+def mechanism_of(scene: str) -> Mechanism:
+    return scene_mechanism(Scene.load(scene))
+
+
+def exactly(values: Array) -> Vector:
+    x, y, z = (mpf(float(v)) for v in values)
+    return x, y, z
+
+
+def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
+    """A car of a drawing's shape, turned anyhow against axes of its own, in a rigid motion at an instant."""
+    topology, unit = mechanism.topology, float(mechanism.unit)
+    axes = Rotation.random(random_state=rng).as_matrix()  # columns: rearward, right, up
+    tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
+    with workdps(DIGITS):
+        omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
+        points = {}
+        for name in topology.points:
+            turned = axes @ tilt @ mechanism.drawing.vectors[name]
+            # More digits than a double has, so that its rounding counts.
+            p = plus(exactly(unit * turned), exactly(unit * U * rng.normal(size=3)))
+            velocity = plus(cross(omega, p), speed)
+            acceleration = plus(plus(cross(alpha, p), cross(omega, cross(omega, p))), hard)
+            points[name] = (plus(p, place), velocity, acceleration)
+        return Car(
+            points=points,
+            added=[exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))],
+            turn=(omega, alpha),
+            bodies=tuple(topology.bodies),
+            wheel_axis=topology.wheel_axis,
+            steering_axis=topology.steering_axis,
+            up=exactly(axes[:, 2]),
+            right=exactly(axes[:, 1]),
+            outboard=exactly(rng.choice([-1.0, 1.0]) * axes[:, 1]),
+        )
+
+
+def rounded(vector: Vector) -> Array:
+    return np.array([float(c) for c in vector])
+
+
+def axes_of(car: Car) -> CarAxes:
+    return CarAxes(rounded(car.up), rounded(car.right), rounded(car.outboard))
+
+
+def poses_of(car: Car, mechanism: Mechanism) -> Poses:
+    """The car as a solver would report it, at one instant."""
+    states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in range(3)]
+    return Poses(mechanism, axes_of(car), states, [rounded(v)[None] for v in car.added])
+
+
+def enclosed(vector: Vector, factor: float) -> Enclosed:
+    """Where a vector is, to twice the working precision; a double's rounding is expected of it."""
+    with workdps(DIGITS):
+        parts = [(float(c), float(c - mpf(float(c)))) for c in vector]
+    high, low = (factor * np.array([part]) for part in zip(*parts, strict=True))
+    return Enclosed.of(high, low, 8 * U**2 * np.abs(high), U * np.abs(high))
+
+
+def exact_poses_of(car: Car, mechanism: Mechanism) -> EnclosedPoses:
+    """The car where it exactly is."""
+    unit = float(mechanism.unit)
+    points = [{n: enclosed(p[d], TIME**d / unit) for n, p in car.points.items()} for d in range(3)]
+    added = [enclosed(v, 1.0) for v in car.added]
+    return EnclosedPoses(mechanism, axes_of(car), points, added, [np.array([TIME**d]) for d in range(3)])
+
+
+def parts(numbers: Numbers) -> Iterator[tuple[str, str, Array]]:
+    for quantity, arrays in numbers.items():
+        for name, array in arrays.items():
+            yield quantity, name, array
+
+
+def check(effect: Effect, car: Car, mechanism: Mechanism) -> None:
+    """Its value is what the definition says to within its bounds, and these are some roundings."""
+    poses = poses_of(car, mechanism)
+    found = effect.evaluate(poses)
+    true = by_hand(effect.name, car)
+    bounds = effect.errors(exact_poses_of(car, mechanism), found)
+    assert found.keys() == bounds.keys() == true.keys() == effect.gives_numbers.keys()
+    for quantity, name, array in parts(found):
+        with workdps(DIGITS):
+            pairs = zip(array.ravel(), true[quantity][name], strict=True)
+            off = np.array([float(abs(mpf(float(value)) - exact)) for value, exact in pairs])
+        proven, expected = bounds[quantity][name].reshape(2, -1)
+        largest = max(1.0, *(float(abs(c)) for c in true[quantity][name]))
+        assert (off <= proven).all(), (quantity, name, off, proven)
+        assert (off <= ROUNDINGS * expected).all(), (quantity, name, off, expected)
+        assert (proven <= 1e-11 * largest).all(), (quantity, name)
+        assert (expected <= 1e-11 * largest).all(), (quantity, name)
+
+
+def test_every_effect_is_defined_by_hand_too() -> None:
+    assert BY_HAND.keys() == EVERY.keys()
+
+
+@each_effect
+@some
+@given(seed=seeds, scene=cars)
+def test_an_effect_is_what_its_definition_says_to_within_its_bounds(name: str, seed: int, scene: str) -> None:
+    mechanism = mechanism_of(scene)
+    check(EVERY[name], moving_car(np.random.default_rng(seed), mechanism), mechanism)
+
+
+@each_effect
+@some
+@given(seed=seeds, scene=cars, far=st.sampled_from([1e-13, 1e-6, 1.0]))
+def test_its_proof_covers_a_wrong_number_and_what_is_expected_does_not(
+    name: str, seed: int, scene: str, far: float
+) -> None:
+    mechanism, rng = mechanism_of(scene), np.random.default_rng(seed)
+    car = moving_car(rng, mechanism)
+    effect, exact = EVERY[name], exact_poses_of(car, mechanism)
+    found = effect.evaluate(poses_of(car, mechanism))
+    wrong = {
+        quantity: {n: a * (1.0 + far * rng.uniform(0.5, 1.0, a.shape)) for n, a in arrays.items()}
+        for quantity, arrays in found.items()
+    }
+    right, bounds, true = effect.errors(exact, found), effect.errors(exact, wrong), by_hand(name, car)
+    for quantity, part, array in parts(wrong):
+        with workdps(DIGITS):
+            pairs = zip(array.ravel(), true[quantity][part], strict=True)
+            off = np.array([float(abs(mpf(float(value)) - exact)) for value, exact in pairs])
+        proven, expected = bounds[quantity][part].reshape(2, -1)
+        assert (off <= proven).all(), (quantity, part)
+        assert (proven <= 2.0 * off + 1e-11 * np.abs(array).max()).all(), (quantity, part)
+        if far < 1e-3:
+            # What the method loses does not depend on what it found.
+            before = right[quantity][part].reshape(2, -1)[1]
+            assert expected == pytest.approx(before, rel=1e-3)
+
+
+@each_effect
+@some
+@given(seed=seeds, scene=cars, mirrored=st.booleans())
+def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
+    name: str, seed: int, scene: str, mirrored: bool
+) -> None:
+    """Of points it turns along, of bodies as an axial vector does, and of the car it is the same."""
+    mechanism, rng = mechanism_of(scene), np.random.default_rng(seed)
+    effect, plain = EVERY[name], moving_car(rng, mechanism)
+    turn = Rotation.random(random_state=rng).as_matrix() @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0])
+    sense = np.sign(np.linalg.det(turn))
+    poses = poses_of(plain, mechanism)
+    axes = CarAxes(turn @ poses.axes.up, sense * (turn @ poses.axes.right), turn @ poses.axes.outboard)
+    other = Poses(
+        mechanism,
+        axes,
+        [{n: state @ turn.T for n, state in states.items()} for states in poses.states],
+        [None if added is None else added @ turn.T for added in poses.added],
+    )
+    found = effect.evaluate(poses)
+    for quantity, part, array in parts(effect.evaluate(other)):
+        of, before = QUANTITIES[quantity].of, found[quantity][part]
+        expected = before if of == "car" else before @ turn.T * (sense if of == "body" else 1.0)
+        # Turning rounds every coordinate a few times; bodies and lines are up to a thousand times shorter.
+        assert np.abs(array - expected).max() <= 1e5 * U * max(1.0, np.abs(before).max())
+
+
+@each_effect
+@some
+@given(seed=seeds, scene=cars, power=st.integers(-30, 30))
+def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
+    name: str, seed: int, scene: str, power: int
+) -> None:
+    mechanism = mechanism_of(scene)
+    poses = poses_of(moving_car(np.random.default_rng(seed), mechanism), mechanism)
+    scale = 2.0**power
+    states = [{n: state * scale for n, state in states.items()} for states in poses.states]
+    added = [None if a is None else a * scale for a in poses.added]
+    found = EVERY[name].evaluate(poses)
+    for quantity, part, array in parts(EVERY[name].evaluate(replace(poses, states=states, added=added))):
+        factor = scale if QUANTITIES[quantity].unit.startswith("mm") else 1.0
+        assert np.array_equal(array, factor * found[quantity][part])
+
+
+@each_effect
+@some
+@given(seed=seeds, scene=cars)
+def test_an_effect_needs_the_points_that_it_names_and_no_others(name: str, seed: int, scene: str) -> None:
+    mechanism, effect = mechanism_of(scene), EVERY[name]
+    poses = poses_of(moving_car(np.random.default_rng(seed), mechanism), mechanism)
+    needed = effect.needs(mechanism.topology)
+    states = [{n: s for n, s in states.items() if n in needed} for states in poses.states]
+    alone = effect.evaluate(replace(poses, states=states[: effect.derivative + 1]))
+    found = effect.evaluate(poses)
+    for quantity, part, array in parts(alone):
+        assert np.array_equal(array, found[quantity][part])
+        assert QUANTITIES[quantity] in effect.quantities
+        assert effect.names is None or part in effect.names
+
+
+FAULTS = {
+    "its sign": lambda numbers: {n: -a for n, a in numbers.items()},
+    "its digits": lambda numbers: {n: a * (1.0 + 1e-10) for n, a in numbers.items()},
+    "swapped axes": lambda numbers: {
+        n: a[..., [1, 0, 2]] if a.ndim > 1 else np.pi / 2 - a for n, a in numbers.items()
+    },
+}
+
+
+@each_effect
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_in_an_effect_is_found(name: str, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism, effect = mechanism_of("off-axis-strut"), EVERY[name]
+    car = moving_car(np.random.default_rng(1), mechanism)
+    check(effect, car, mechanism)
+    right, errors = (
+        effect.evaluate(poses_of(car, mechanism)),
+        effect.errors(exact_poses_of(car, mechanism), effect.evaluate(poses_of(car, mechanism))),
+    )
+    for quantity in right:
+        wrong = {**right, quantity: FAULTS[fault](right[quantity])}
+        with monkeypatch.context() as patch:
+            patch.setattr(type(effect), "evaluate", lambda self, poses, wrong=wrong: wrong)
+            patch.setattr(type(effect), "errors", lambda self, poses, numbers: errors)
+            with pytest.raises(AssertionError):
+                check(effect, car, mechanism)
+
+
+ANGLES = {
+    name: (effect, place)
+    for effect in EFFECTS.values()
+    if isinstance(effect, WheelAngles)
+    for place, name in enumerate(effect.names)
+}
+
+
+@pytest.mark.parametrize("name", ANGLES)
+@pytest.mark.parametrize("direction", ["up", "down", "inboard", "outboard", "forward", "rearward"])
+@pytest.mark.parametrize("part", ["sine", "cosine"])
+def test_an_angle_along_any_other_direction_is_found(name: str, direction: str, part: str) -> None:
+    """A wrong sign or a swapped axis in the data of an angle, which its own bound goes along with."""
+    mechanism, (effect, place) = mechanism_of("double-wishbone"), ANGLES[name]
+    car = moving_car(np.random.default_rng(2), mechanism)
+    angles = list(effect.angles)
+    same = getattr(angles[place], part) == direction
+    angles[place] = replace(angles[place], **{part: direction})
+    changed = replace(effect, angles=tuple(angles))
+    if same:
+        check(changed, car, mechanism)
+        return
+    with pytest.raises(AssertionError):
+        check(changed, car, mechanism)

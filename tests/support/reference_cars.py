@@ -1,0 +1,159 @@
+"""One car for each linkage that the reference knows, and random numbers for its equations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from hypothesis import strategies as st
+from lotus_front import POINTS as LOTUS
+from off_axis_cars import BASE, closing
+
+from validate.reference import Instant, closed_drawing, count_assemblies, sensitivities, solve_reference
+from validate.reference.design import Design, values_only
+from validate.reference.linkage import Known, Linkage
+from validate.reference.suspensions import linkage_for
+from validate.reference.vectors import Vector
+
+Points = Mapping[str, Vector]
+Inputs = Mapping[str, tuple[Any, ...]]
+
+# The paper's Table 1, mm, left wheel. It does not close, and the paper has no point wheel_axis_inner.
+TABLE_1 = {
+    "lower_arm_front": (270, -5, -10),
+    "lower_arm_rear": (540, -10, -20),
+    "rack_centre": (570, 60, 90),
+    "strut_top": (460, -180, 470),
+    "lower_ball_joint": (450, -330, -40),
+    "tie_rod_outer": (560, -300, 60),
+    "strut_lower": (452, -320, 20),
+    "strut_rod_end": (456, -250, 246),
+    "tie_rod_inner": (570, 60, 90),
+    "wheel_centre": (452, -410, 20),
+}
+OFF_AXIS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
+
+
+@dataclass(frozen=True)
+class ReferenceCar:
+    """Points of a car, mm, and inputs near its drawing at which it moves in a regular way.
+
+    Attributes:
+        last_rack: rack travel beyond which there is no pose at the arm angle of `inputs`, mm.
+    """
+
+    suspension: str
+    closure: str
+    points: Points
+    inputs: Inputs
+    last_rack: Fraction
+    side: str = "left"
+    frame: Mapping[str, Vector] = field(default_factory=dict)
+
+    @property
+    def linkage(self) -> Linkage:
+        return linkage_for(self.suspension, self.closure)
+
+    @property
+    def kind(self) -> dict[str, Any]:
+        """What every function of the reference is told beside points and inputs."""
+        return {"suspension": self.suspension, "closure": self.closure, "side": self.side, **self.frame}
+
+    @property
+    def still(self) -> dict[str, tuple[Any, ...]]:
+        """The inputs without motion."""
+        return {name: (triple[0], 0, 0) for name, triple in self.inputs.items()}
+
+    @property
+    def design(self) -> Design:
+        up, right = self.frame.get("up", (0, 0, 1)), self.frame.get("right", (0, 1, 0))
+        return Design.from_points(self.points, up, right, self.side, self.closure, self.suspension)
+
+    def known(self, **changed: object) -> Known:
+        """What the equations take as given, without motion; some inputs changed."""
+        design = self.design
+        inputs = {**self.still, **{name: (value, 0, 0) for name, value in changed.items()}}
+        return values_only(design.known(design.driven(inputs)))
+
+    def solve(self, inputs: Inputs, **settings: Any) -> Instant:
+        return solve_reference(self.points, inputs, **{**self.kind, **settings})
+
+    def count(self, inputs: Inputs, **settings: Any) -> Any:
+        return count_assemblies(self.points, inputs, **self.kind, **settings)
+
+    def close(self, **settings: Any) -> Any:
+        return closed_drawing(self.points, **self.kind, **settings)
+
+    def sensitivities(self) -> Any:
+        return sensitivities(self.points, self.inputs, **self.kind)
+
+
+CARS = {
+    "strut as drawn": ReferenceCar(
+        "macpherson",
+        "drawn",
+        OFF_AXIS,
+        {
+            "arm_angle": (Fraction(3, 2), Fraction(2), Fraction(-3)),
+            "rack": (Fraction(240), Fraction(150), Fraction(-400)),
+            "heave": (Fraction(5), Fraction(-60), Fraction(700)),
+        },
+        Fraction(600),
+    ),
+    "collinear strut": ReferenceCar(
+        "macpherson",
+        "collinear",
+        TABLE_1,
+        {
+            "arm_angle": (Fraction(3, 2), Fraction(1, 4), Fraction(1, 8)),
+            "rack": (Fraction(20), Fraction(150), Fraction(50)),
+            "heave": (Fraction(3), Fraction(100), Fraction(10)),
+        },
+        Fraction(200),
+    ),
+    "double wishbone": ReferenceCar(
+        "double_wishbone",
+        "drawn",
+        LOTUS,
+        {
+            "arm_angle": (Fraction(3, 2), Fraction(1, 2), Fraction(-1, 4)),
+            "rack": (Fraction(10), Fraction(-150), Fraction(50)),
+            "heave": (Fraction(-4), Fraction(80), Fraction(20)),
+        },
+        Fraction(300),
+        "right",
+    ),
+}
+
+fractions = st.integers(-1000, 1000).map(lambda n: Fraction(n, 16))
+
+
+@st.composite
+def equations_data(draw: st.DrawFn, linkage: Linkage, unknowns: int) -> tuple[Known, list[list[Fraction]]]:
+    """What the equations of a linkage take as given, and some sets of unknowns: any numbers, exact."""
+    shape = next(car.design.knuckle for car in CARS.values() if car.linkage is linkage)
+    count = 3 * (len(linkage.chassis) + 2 + len(shape)) + len(linkage.links) + len(linkage.inputs)
+    numbers = iter(draw(st.lists(fractions, min_size=count, max_size=count)))
+    known = Known(
+        linkage,
+        {name: _vector(numbers) for name in linkage.chassis},
+        _vector(numbers),
+        _vector(numbers),
+        {link: next(numbers) for link in linkage.links},
+        {name: next(numbers) for name in linkage.inputs},
+        {name: _vector(numbers) for name in shape},
+    )
+    sets = draw(
+        st.lists(
+            st.lists(fractions, min_size=linkage.size, max_size=linkage.size),
+            min_size=unknowns,
+            max_size=unknowns,
+        )
+    )
+    return known, sets
+
+
+def _vector(numbers: Iterator[Fraction]) -> Vector:
+    return next(numbers), next(numbers), next(numbers)

@@ -1,0 +1,93 @@
+"""The equations of the collinear strut are the paper's, and better where the printed ones lose their rank."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from mpmath import mpf
+
+from validate.reference import Instant, solve_reference
+from validate.reference.macpherson.points import POINTS
+
+Table = dict[str, tuple[int, int, int]]
+NUMBER_OF = {name: number for number, name in enumerate(POINTS, start=1)}
+LINKS = ((5, 1), (5, 2), (6, 5), (7, 5), (7, 6), (8, 4), (9, 6))  # eqs. (1)-(7)
+
+
+def exact(number: mpf) -> Fraction:
+    return Fraction(*(int(part) for part in number.as_integer_ratio()))
+
+
+def printed_residual(
+    reference: Instant, table: Table, theta: float, rack: float
+) -> list[tuple[Fraction, int]]:
+    """The printed equations (1)-(15) in exact arithmetic at the answer, each with its degree."""
+    x, y, z = ({NUMBER_OF[k]: exact(p[i]) for k, p in reference.position.items()} for i in range(3))
+    given = {NUMBER_OF[k]: p for k, p in table.items()}
+    rows = []
+    for i, j in LINKS:
+        squared = sum((a - b) ** 2 for a, b in zip(given[i], given[j], strict=True))
+        rows.append(((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2 - squared, 2))
+    for c, (i, j) in ((y, (7, 5)), (x, (7, 5)), (y, (7, 4)), (x, (7, 4))):
+        rows.append(((c[i] - c[j]) * (z[8] - z[4]) - (z[i] - z[j]) * (c[8] - c[4]), 2))
+    d51 = mpmath.sqrt(sum((a - b) ** 2 for a, b in zip(given[5], given[1], strict=True)))
+    rows.append((z[5] - z[1] - exact(d51 * mpmath.cos(mpf(theta))), 1))
+    rows += [(x[9] - x[3], 1), (y[9] - y[3] + Fraction(rack), 1), (z[9] - z[3], 1)]
+    return rows
+
+
+@pytest.mark.parametrize(("theta", "rack"), [(0.8, 0.0), (1.5, 0.0), (1.5707963, 64.0), (2.4, -50.0)])
+def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
+    table: Table, theta: float, rack: float
+) -> None:
+    reference = solve_reference(
+        table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear"
+    )
+    bound = reference.error_bound["position"]
+    for value, degree in printed_residual(reference, table, theta, rack):
+        # A row changes by at most 12 coordinates' errors times differences below 700 mm.
+        assert abs(value) <= exact(bound) * (12 * 700 if degree == 2 else 3) + Fraction(1, 10**140)
+
+
+def test_the_printed_equations_expose_a_shifted_answer(table: Table) -> None:
+    reference = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    shifted = dict(reference.position)
+    x, y, z = shifted["tie_rod_outer"]
+    shifted["tie_rod_outer"] = (x + mpf("1e-50"), y, z)
+    wrong = Instant(**{**vars(reference), "position": shifted})
+    assert max(abs(value) for value, _ in printed_residual(wrong, table, 1.5, 0.0)) > Fraction(1, 10**50)
+
+
+def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equations_nothing(
+    table: Table,
+) -> None:
+    inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
+    upright = solve_reference(table, inputs, closure="collinear")
+    # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
+    turned_table = {name: (x, -z, y) for name, (x, y, z) in table.items()}
+    turned = solve_reference(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
+    bound = upright.radius + turned.radius
+    for name in table:
+        x, y, z = upright.position[name]
+        assert max(abs(a - b) for a, b in zip((x, -z, y), turned.position[name], strict=True)) <= bound
+    assert turned.condition < 1.5 * upright.condition
+    assert abs(turned.effects["camber"] - upright.effects["camber"]) < mpf("1e-60")
+
+    def printed_rank(reference: Instant, flat: bool) -> int:
+        p = {NUMBER_OF[k]: np.array([float(c) for c in v]) for k, v in reference.position.items()}
+        if flat:  # lay the strut's line level, whatever it costs the other links: only its rows are asked
+            p[8], p[7], p[5] = (p[4] + np.array([s, 2 * s, 0.0]) for s in (100.0, 200.0, 300.0))
+        rows = np.zeros((4, 9))  # by the coordinates of 5, 7 and 8, eqs. (8)-(11)
+        for row, (axis, far) in enumerate(((1, 5), (0, 5), (1, 4), (0, 4))):
+            rod, along = p[8] - p[4], p[7] - p[far]
+            rows[row, 3 + axis], rows[row, 5] = rod[2], -rod[axis]
+            rows[row, 6 + axis], rows[row, 8] = -along[2], along[axis]
+            if far == 5:
+                rows[row, axis], rows[row, 2] = -rod[2], rod[axis]
+        return int(np.linalg.matrix_rank(rows))
+
+    assert printed_rank(upright, flat=False) == 4
+    assert printed_rank(upright, flat=True) < 4

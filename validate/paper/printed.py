@@ -1,0 +1,111 @@
+r"""The paper's formulas exactly as printed, so that a reader can see which of them fail.
+
+Three formulas differ from ours:
+
+- the rows (8)-(11) that hold the strut's points on one line: see `PrintedParallel`.
+- eq. (23): the rows (8)-(11) lack the factor 2 of a product's second derivative, and row (11) repeats
+  row (9), with the points 7, 5 where 7, 4 belong.
+- omega = v65 x v75 / (v65 . r75) and alpha = a^65 x a^75 / (a^65 . r75), a^ = a - omega x (omega x r),
+  which are 0/0 whenever omega (or alpha) lies in the plane of the points 5, 6, 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, Edges, States
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.method import Method
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.pointwise import square_velocity_term
+from pointcoord.suspensions.macpherson import COLLINEAR, MACPHERSON
+from pointcoord.suspensions.suspension import Suspension
+from validate.paper.printed_parallel import PrintedParallel
+
+Array = NDArray[np.float64]
+
+# A quotient that loses more than two digits is at fault itself, and not its rounding.
+MOST_LOST = 100.0
+
+_ROWS = (
+    PrintedParallel("lower_ball_joint", "strut_lower", "strut_top", "strut_rod_end"),  # (8), (9)
+    PrintedParallel("strut_top", "strut_lower", "strut_top", "strut_rod_end"),  # (10), (11)
+)
+_FIRST = [isinstance(constraint, OnLine) for constraint in COLLINEAR.constraints].index(True)
+_OTHERS = tuple(constraint for constraint in COLLINEAR.constraints if not isinstance(constraint, OnLine))
+
+TOPOLOGY = replace(
+    COLLINEAR,
+    name="macpherson, as printed",
+    constraints=(*_OTHERS[:_FIRST], *_ROWS, *_OTHERS[_FIRST:]),
+)
+"""The paper's strut with its cross-product rows (8)-(11)."""
+
+_PARALLEL = [i for i, label in enumerate(TOPOLOGY.labels) if "parallel" in label]
+
+
+def printed_square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:
+    """Eq. (23) as printed, shape (..., rows)."""
+    term = square_velocity_term(system, velocity)
+    row_8, row_9, row_10, row_11 = _PARALLEL
+    term[..., [row_8, row_9, row_10]] *= 0.5
+    term[..., row_11] = term[..., row_9]
+    return term
+
+
+@dataclass(frozen=True)
+class PrintedQuotients:
+    """The printed quotients for omega and alpha."""
+
+    no_number: str = "the printed quotient divides by zero there"
+
+    def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
+        """Omega and alpha; not finite where their denominator is zero.
+
+        Args:
+            position, velocity, acceleration: of the points 5, 6, 7 in this order, shape (..., 3).
+        """
+        r_65, r_75 = _from_first(position)
+        v_65, v_75 = _from_first(velocity)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            omega = _quotient(v_65, v_75, r_75)
+            hat_65, hat_75 = (
+                a - np.cross(omega, np.cross(omega, r))
+                for a, r in zip(_from_first(acceleration), (r_65, r_75), strict=True)
+            )
+            return omega, _quotient(hat_65, hat_75, r_75)
+
+    def loss(self, edges: Edges, rates: Edges) -> Array:
+        """How many times what least squares loses the quotient may lose, shape (..., 1), at most MOST_LOST.
+
+        A product of vectors a x b or a . r is off by about |a| |b| times their relative error, so the
+        quotient loses |a| |b| / |a x b| and |a| |r| / |a . r| times as much as its factors are off.
+        """
+        a, b, r = *rates, edges[1]
+        length = np.linalg.norm(a, axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            above = length * np.linalg.norm(b, axis=-1) / np.linalg.norm(np.cross(a, b), axis=-1)
+            below = length * np.linalg.norm(r, axis=-1) / np.abs(np.sum(a * r, axis=-1))
+            return np.asarray(np.fmin(above + 2.0 * below, MOST_LOST)[..., None])
+
+
+def _from_first(states: States) -> tuple[Array, Array]:
+    first, second, third = states.values()
+    return second - first, third - first
+
+
+def _quotient(a: Array, b: Array, r: Array) -> Array:
+    return np.asarray(np.cross(a, b) / np.sum(a * r, axis=-1, keepdims=True))
+
+
+PRINTED = Method(
+    name="printed",
+    suspensions={MACPHERSON.type: Suspension(MACPHERSON.type, {"collinear": TOPOLOGY})},
+    only="the paper prints the strut with its ball joint on the strut axis",
+    square_velocity_term=printed_square_velocity_term,
+    effects={KNUCKLE_RATES.name: replace(KNUCKLE_RATES, formula=PrintedQuotients())},
+)
+"""The paper's algorithm with its formulas as printed."""

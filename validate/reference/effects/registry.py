@@ -1,0 +1,15 @@
+"""The effects that the reference knows, one line each."""
+
+from __future__ import annotations
+
+from validate.reference.effects.camber import CAMBER
+from validate.reference.effects.effect import Effect
+from validate.reference.effects.kingpin import KINGPIN
+
+EFFECTS: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        CAMBER,
+        KINGPIN,
+    )
+}
