@@ -17,7 +17,7 @@ from absolute.errors import (
 )
 from absolute.solution import Solution
 from absolute.solve import solve
-from absolute.suspensions import SUSPENSIONS, suspension
+from absolute.suspensions import SUSPENSIONS, suspension_of
 from absolute.suspensions.macpherson import macpherson
 from absolute.suspensions.suspension import Suspension
 
@@ -47,5 +47,5 @@ __all__ = [
     "close_drawing",
     "macpherson",
     "solve",
-    "suspension",
+    "suspension_of",
 ]

@@ -4,13 +4,19 @@ from collections.abc import Mapping
 
 from absolute.errors import DescriptionError
 from absolute.mapping import ReadOnly
+from absolute.suspensions.double_wishbone import double_wishbone
 from absolute.suspensions.macpherson import macpherson
 from absolute.suspensions.suspension import Suspension
 
-SUSPENSIONS: Mapping[str, Suspension] = ReadOnly({"macpherson": macpherson})
+SUSPENSIONS: Mapping[str, Suspension] = ReadOnly(
+    {
+        "macpherson": macpherson,
+        "double_wishbone": double_wishbone,
+    }
+)
 
 
-def suspension(name: str) -> Suspension:
+def suspension_of(name: str) -> Suspension:
     """The type of a name.
 
     Raises:

@@ -26,7 +26,7 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class Proof:
-    """What is proven of each pose, and how its rates depend on it.
+    """What is proven of each pose.
 
     Attributes:
         times: shape (N,), s.
@@ -38,9 +38,6 @@ class Proof:
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
         condition: condition number of the Jacobian, (N,).
-        velocity_sensitivity: change of a velocity per displacement of the pose, at most, (N,), 1/s;
-            zero where no velocity was solved for.
-        acceleration_sensitivity: the same of an acceleration, at given velocities, (N,), 1/s^2.
         residual: largest row of C(y), (N,), in the mechanism's units.
         proven: by quantity and name, the error of every reported number, rates and angles too, at most; empty
             unless asked for.
@@ -53,8 +50,6 @@ class Proof:
     carried_bound: Array
     carried_gain: Array
     condition: Array
-    velocity_sensitivity: Array
-    acceleration_sensitivity: Array
     residual: Array
     proven: Numbers = field(default_factory=dict)
     expected: Numbers = field(default_factory=dict)
@@ -91,10 +86,6 @@ def prove(
         y, *rates = solved.coordinates(here)
         factors = factorise(mechanism.map.jacobian(y))
         residual = np.abs(mechanism.map.residual(y)).max(axis=-1)
-        first, second = (
-            _sensitivity(mechanism, factors, rates[order]) if order < len(rates) else np.zeros(len(y))
-            for order in (0, 1)
-        )
         off = {name: doubt[low : low + BLOCK] for name, doubt in laws.items()}
         lacking, uncertainty = mechanism.known_data(y, off)
         expected = uncertainty + np.abs(lacking)
@@ -114,11 +105,11 @@ def prove(
         if everything is not None:
             pose = Proven(factors, certificate, here, (y, *rates), (lacking, uncertainty, expected), driven)
             bounds.append(reported_bounds(mechanism, pose, everything.part(low, low + BLOCK)))
-        parts.append((own, bound, mechanism.unit * carried, gain, factors.condition, first, second, residual))
+        parts.append((own, bound, mechanism.unit * carried, gain, factors.condition, residual))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    own, bound, carried, gain, condition, first, second, residual = columns
+    own, bound, carried, gain, condition, residual = columns
     each = (joined([part[place] for part in bounds]) for place in (0, 1))
-    return Proof(times, own, bound, carried, gain, condition, first, second, residual, *each)
+    return Proof(times, own, bound, carried, gain, condition, residual, *each)
 
 
 def _sharpened(
@@ -149,12 +140,6 @@ def _reported_bound(
     places = {name: list(layout.vector(name)) for name in (*topology.moving, *topology.chassis)}
     each = [own[..., place] + apart(local[name], y[..., place]) + doubt for name, place in places.items()]
     return np.asarray(INFLATION * np.concatenate(each, axis=-1).max(axis=-1))
-
-
-def _sensitivity(mechanism: Mechanism, factors: Factors, rate: Array) -> Array:
-    """max_i (|C_u^-1| |2 B(., rate)|)_i: how a displaced pose changes what solves C_u rate = ..."""
-    effect = mechanism.map.displacement_effect(rate)[..., None]
-    return np.asarray((np.abs(factors.preconditioner) @ effect)[..., 0].max(axis=-1))
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:

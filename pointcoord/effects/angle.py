@@ -88,7 +88,7 @@ class WheelAngles(Effect):
         return tuple(angle.name for angle in self.angles)
 
     @property
-    def axes(self) -> tuple[str, ...]:
+    def lines(self) -> tuple[str, ...]:
         """The axes whose angles they are."""
         return tuple(dict.fromkeys(angle.line for angle in self.angles))
 

@@ -84,8 +84,8 @@ class Effect(ABC):
         return {quantity.name: self.names for quantity in self.quantities}
 
     @property
-    def axes(self) -> tuple[str, ...]:
-        """The axes of the topology that it looks at: wheel_axis, steering_axis."""
+    def lines(self) -> tuple[str, ...]:
+        """The axes of the topology that it is seen on: wheel_axis, steering_axis."""
         return ()
 
     @property

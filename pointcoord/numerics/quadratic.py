@@ -163,17 +163,6 @@ class QuadraticMap:
         spread = gamma * left * right + left * right_error + left_error * (right + right_error)
         return np.add.reduceat(spread * np.abs(coefficients), starts, axis=-1)
 
-    def displacement_effect(self, v: Array) -> Array:
-        r"""At most |2 B(d, v)| for every displacement d of the unknowns, |d_i| <= 1, shape (..., rows).
-
-        A difference of two unknowns changes by 2 at most, of an unknown and a known one by 1.
-        """
-        coefficients, a, b, c, d, starts = self._terms
-        n = self.unknowns
-        left, right = (np.abs(factor) for factor in self.factors(v))
-        effect = right * ((a < n).astype(float) + (b < n)) + left * ((c < n).astype(float) + (d < n))
-        return np.add.reduceat(effect * np.abs(coefficients), starts, axis=-1)
-
     def lipschitz(self, preconditioner: Array, weights: Array) -> Array:
         r"""The Lipschitz constant of X C_u in a weighted maximum norm, shape (...,).
 

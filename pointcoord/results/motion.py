@@ -56,7 +56,7 @@ class Motion(Samples):
         return float(self.solved.readout.mechanism.unit)
 
     def proof(self, rates: bool = False) -> Proof:
-        """Proven error bound, condition number and sensitivity of the pose at each of the times.
+        """Proven error bound and condition number of the pose at each of the times.
 
         Args:
             rates: prove every reported number by itself, rates and angles too (`Proof.proven`), and say what

@@ -1,9 +1,11 @@
-"""The strut of the paper's table 1 and motions of it, for all tests here."""
+"""Every suspension, and the strut of the paper's table 1 with motions of it, for all tests here."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+import struts
+from kinds import KINDS, Kind
 from numpy.typing import NDArray
 
 import absolute
@@ -11,21 +13,23 @@ import absolute
 Array = NDArray[np.float64]
 
 
+@pytest.fixture(scope="session", params=KINDS.values(), ids=KINDS)
+def kind(request: pytest.FixtureRequest) -> Kind:
+    """Every suspension in turn."""
+    found: Kind = request.param
+    return found
+
+
+@pytest.fixture(scope="session")
+def model(kind: Kind) -> absolute.Model:
+    """Its car of whole numbers."""
+    return kind.build(kind.car)
+
+
 @pytest.fixture(scope="session")
 def table() -> dict[str, tuple[float, float, float]]:
     """Table 1 of the paper, mm."""
-    return {
-        "lower_arm_front": (270.0, -5.0, -10.0),
-        "lower_arm_rear": (540.0, -10.0, -20.0),
-        "rack_centre": (570.0, 60.0, 90.0),
-        "strut_top": (460.0, -180.0, 470.0),
-        "lower_ball_joint": (450.0, -330.0, -40.0),
-        "tie_rod_outer": (560.0, -300.0, 60.0),
-        "strut_lower": (452.0, -320.0, 20.0),
-        "strut_rod_end": (456.0, -250.0, 246.0),
-        "tie_rod_inner": (570.0, 60.0, 90.0),
-        "wheel_centre": (452.0, -410.0, 20.0),
-    }
+    return struts.TABLE
 
 
 @pytest.fixture(scope="session")

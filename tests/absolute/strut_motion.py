@@ -37,9 +37,10 @@ def strut_motion(p: Drawing, angle: Sequence[float], rack: Sequence[float], clos
 UP, RIGHT = fixed((0, 0, 1)), fixed((0, 1, 0))
 
 
-def arm_end(drawn: Mapping[str, Vector], angle: Jet) -> tuple[Vector, Vector, Any] | None:
+def arm_end(drawn: Mapping[str, Vector], angle: Jet, as_drawn: int = 1) -> tuple[Vector, Vector, Any] | None:
     """The lower ball joint on its circle about the arm's axis, at the height of the arm angle; the axis; how
-    far it is from the top or bottom of the circle, 0 to 1. None beyond these."""
+    far it is from the top or bottom of the circle, 0 to 1. None beyond these. At each height there are two
+    places: that on the drawn side, or on the other for as_drawn = -1."""
     front, ball = drawn["lower_arm_front"], drawn["lower_ball_joint"]
     axis, arm = unit(less(drawn["lower_arm_rear"], front)), less(ball, front)
     sideways = unit(cross(axis, UP))
@@ -48,7 +49,7 @@ def arm_end(drawn: Mapping[str, Vector], angle: Jet) -> tuple[Vector, Vector, An
     rise = (length(arm) * angle.cosine() - along * dot(axis, UP)) * (radius * dot(upward, UP)).inverse()
     if abs(rise.x) >= 1:
         return None
-    beside = side(dot(arm, sideways)) * (number(1) - rise * rise).root()
+    beside = number(as_drawn) * side(dot(arm, sideways)) * (number(1) - rise * rise).root()
     new_ball = plus(front, (along, axis), (radius * rise, upward), (radius * beside, sideways))
     return new_ball, axis, 1 - abs(rise.x)
 

@@ -6,6 +6,20 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 RIGHT = np.array([0.0, 1.0, 0.0])
 
+# Table 1 of the paper, mm.
+TABLE = {
+    "lower_arm_front": (270.0, -5.0, -10.0),
+    "lower_arm_rear": (540.0, -10.0, -20.0),
+    "rack_centre": (570.0, 60.0, 90.0),
+    "strut_top": (460.0, -180.0, 470.0),
+    "lower_ball_joint": (450.0, -330.0, -40.0),
+    "tie_rod_outer": (560.0, -300.0, 60.0),
+    "strut_lower": (452.0, -320.0, 20.0),
+    "strut_rod_end": (456.0, -250.0, 246.0),
+    "tie_rod_inner": (570.0, 60.0, 90.0),
+    "wheel_centre": (452.0, -410.0, 20.0),
+}
+
 
 def off_axis_strut(seed: int, closing: bool = True) -> dict[str, Array]:
     """A left strut; its ball joint 20 to 90 mm beside the axis through strut_lower and strut_top.
@@ -44,9 +58,10 @@ def off_axis_strut(seed: int, closing: bool = True) -> dict[str, Array]:
     return p
 
 
-def collinear_strut(seed: int) -> dict[str, Array]:
+def collinear_strut(seed: int, closing: bool = True) -> dict[str, Array]:
     """The same with its ball joint on the axis."""
-    p = off_axis_strut(seed)
-    p["strut_rod_end"] = p["strut_top"] - 0.4 * (p["strut_top"] - p["strut_lower"])
+    p = off_axis_strut(seed, closing)
+    if closing:
+        p["strut_rod_end"] = p["strut_top"] - 0.4 * (p["strut_top"] - p["strut_lower"])
     p["lower_ball_joint"] = p["strut_lower"] - 0.2 * (p["strut_top"] - p["strut_lower"])
     return p

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kinds import Kind
 from numpy.typing import NDArray
 
 import absolute
@@ -67,22 +68,21 @@ def test_random_cars_stand_where_circles_and_spheres_meet_or_are_refused(
 
 
 @settings(max_examples=20, deadline=None)
-@given(angle=st.floats(45.0, 145.0), rack=st.floats(-60.0, 90.0))
+@given(data=st.data())
 def test_drawing_an_assembled_pose_instead_gives_the_same_motion(
-    table: Table, strut: absolute.Model, held: Held, angle: float, rack: float
+    kind: Kind, model: absolute.Model, held: Held, data: st.DataObject
 ) -> None:
-    pose = absolute.solve(strut, held(np.radians(angle), rack), conditions=True)
-    redrawn = absolute.macpherson(
-        {name: point[0] for name, point in pose.position.items()}, closure="collinear"
-    )
+    angle, rack = (data.draw(st.floats(*ends)) for ends in kind.span)
+    pose = absolute.solve(model, held(np.radians(angle), rack), conditions=True)
+    redrawn = kind.build({name: point[0] for name, point in pose.position.items()})
     goal = held(1.4, 10.0)
     again = absolute.solve(redrawn, goal, conditions=True)
-    direct = absolute.solve(strut, goal)
+    direct = absolute.solve(model, goal)
     assert pose.condition is not None
     assert again.condition is not None
     # The drawn lengths carry the rounding of the pose that was drawn.
     tolerance = 4 * EPS * 500 * pose.condition[0] * again.condition[0]
-    for name in table:
+    for name in kind.car:
         assert np.allclose(again.position[name], direct.position[name], rtol=0, atol=tolerance)
 
 

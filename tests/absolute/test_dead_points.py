@@ -1,12 +1,11 @@
-"""The three ends of a strut's motion: found where the closed form has them, and told by their links."""
+"""The ends of a motion: found where the closed form has them, and told by their links."""
 
 from collections.abc import Callable
 
 import jets
 import numpy as np
 import pytest
-import strut_motion as form
-from dead_points import ENDS, LINKS, End, low_mount
+from dead_points import ENDS, End, low_mount
 from numpy.typing import NDArray
 
 import absolute
@@ -17,7 +16,10 @@ EPS = float(np.finfo(float).eps)
 
 
 def test_the_ends_here_are_all_there_are() -> None:
-    assert {end.links for end in ENDS} == set(LINKS)
+    kinds = {id(end.kind): end.kind for end in ENDS}.values()
+    assert len(kinds) == 2
+    for kind in kinds:
+        assert {end.links for end in ENDS if end.kind is kind} == set(kind.links)
 
 
 @pytest.mark.parametrize("end", ENDS)
@@ -25,7 +27,7 @@ def test_the_ends_here_are_all_there_are() -> None:
 def test_beyond_an_end_the_refusal_names_links_input_and_limit(end: End, held: Held, beyond: float) -> None:
     goal = end.inside[0] + beyond * end.out[0], end.inside[1] + beyond * end.out[1]
     with pytest.raises(absolute.PoseError) as caught:
-        absolute.solve(absolute.macpherson(end.car), held(*goal))
+        absolute.solve(end.kind.build(end.car), held(*goal))
     error = caught.value
     assert error.instant == 0
     assert error.limits == end.links
@@ -43,9 +45,9 @@ def test_beyond_an_end_the_refusal_names_links_input_and_limit(end: End, held: H
 @pytest.mark.parametrize("before", [1e-12, 1e-10, 1e-8, 1e-5, 1e-2])
 def test_just_before_an_end_the_pose_is_the_exact_one(end: End, held: Held, before: float) -> None:
     goal = end.inside[0] - before * end.out[0], end.inside[1] - before * end.out[1]
-    exact = form.strut_motion(end.car, *((x, 0, 0) for x in goal), "drawn")
+    exact = end.kind.exact(end.car, *((x, 0, 0) for x in goal))
     assert exact is not None
-    motion = absolute.solve(absolute.macpherson(end.car), held(*goal), rates=False, conditions=True)
+    motion = absolute.solve(end.kind.build(end.car), held(*goal), rates=False, conditions=True)
     assert motion.condition is not None
     tolerance = 8 * EPS * 400 * motion.condition[0]
     for name, place in exact.points.items():
@@ -77,7 +79,7 @@ def test_a_strut_without_length_is_refused(held: Held) -> None:
             absolute.solve(absolute.macpherson({**car, name: near}), held(1.6, 0.0))
 
 
-def test_a_linkage_without_sides_has_no_links_to_name(held: Held) -> None:
+def test_a_linkage_without_branch_signs_has_no_links_to_name(held: Held) -> None:
     strut = absolute.macpherson(low_mount())
     bare = absolute.Model(strut.points, strut.chassis, strut.bodies, strut.joints, strut.inputs)
     with pytest.raises(absolute.UnreachableError) as caught:
@@ -87,12 +89,15 @@ def test_a_linkage_without_sides_has_no_links_to_name(held: Held) -> None:
     assert caught.value.limit == "arm_angle"
 
 
-def test_a_drawing_that_locks_before_it_closes_names_its_links(held: Held) -> None:
+@pytest.mark.parametrize("end", [ENDS[0], ENDS[4]])
+def test_a_drawing_that_locks_before_it_closes_names_its_links(end: End, held: Held) -> None:
     # The rack's line further away than the tie rod is long.
-    car = {**low_mount(), "rack_centre": np.array([570.0, 60.0, 1500.0])}
+    car = {**end.car, "rack_centre": end.car["rack_centre"] + np.array([0.0, 0.0, 1500.0])}
     with pytest.raises(
         absolute.AssemblyError, match="limited by link tie_rod_inner - tie_rod_outer"
     ) as caught:
-        absolute.solve(absolute.macpherson(car), held(1.6, 0.0))
+        absolute.solve(end.kind.build(car), held(1.6, 0.0))
     assert caught.value.limits == ("link tie_rod_inner - tie_rod_outer",)
     assert caught.value.instant is None
+    assert caught.value.partial is None
+    assert caught.value.residual > 0

@@ -37,7 +37,7 @@ def test_angles_are_those_of_the_exact_points_within_their_claims(kind: Kind, si
     share = dict.fromkeys(absolute.EFFECTS, 0.0)
     width: dict[str, list[float]] = {name: [] for name in absolute.EFFECTS}
     for seed in range(60):
-        car = kind.random_car(seed)
+        car = kind.random_car(seed, True)
         if side == "right":
             car = mirrored(car)
         random = np.random.default_rng(seed)
@@ -71,7 +71,7 @@ def test_angles_are_those_of_the_exact_points_within_their_claims(kind: Kind, si
 def test_a_mirrored_car_has_the_same_angles_on_its_other_side(kind: Kind) -> None:
     names = tuple(absolute.EFFECTS)
     for seed in range(8):
-        left, inputs = kind.random_car(seed), drawn_pose(kind, kind.random_car(seed))
+        left, inputs = kind.random_car(seed, True), drawn_pose(kind, kind.random_car(seed, True))
         rack = float(left["rack_centre"][1] - left["tie_rod_inner"][1])
         inputs["rack"][0, 0] = -rack
         right = absolute.solve(kind.build(mirrored(left), side="right"), inputs, errors=True, effects=names)
@@ -89,7 +89,7 @@ def test_angles_turn_with_the_car(kind: Kind) -> None:
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
     for seed in range(8):
-        car = kind.random_car(seed)
+        car = kind.random_car(seed, True)
         inputs = drawn_pose(kind, car)
         plain = absolute.solve(kind.build(car), inputs, effects=names)
         turned = absolute.solve(
@@ -104,7 +104,7 @@ def test_angles_turn_with_the_car(kind: Kind) -> None:
 
 @every_kind
 def test_a_spin_axis_far_from_the_origin_keeps_its_digits(kind: Kind) -> None:
-    car = kind.random_car(2)
+    car = kind.random_car(2, True)
     # On a grid of 2^-13 mm the shift is exact.
     car = {name: np.round(point * 8192.0) / 8192.0 for name, point in car.items()}
     far = {name: point + 2.0**30 for name, point in car.items()}
@@ -117,10 +117,28 @@ def test_a_spin_axis_far_from_the_origin_keeps_its_digits(kind: Kind) -> None:
     assert (np.abs(near.effects["camber"] - away.effects["camber"]) <= claim).all()
 
 
+@every_kind
+@pytest.mark.parametrize("length", [1.0, 1e-3])
+def test_a_short_spin_axis_turns_as_well_as_a_long_one(kind: Kind, length: float) -> None:
+    # Its ends are places hundreds of mm away, whose difference would have lost that many digits.
+    for seed in range(4):
+        car = kind.random_car(seed, True)
+        car["wheel_axis_inner"] = car["wheel_centre"] + np.array([0.1, 1.0, 0.2]) * length
+        angle, rack = strut_motion.drawn_inputs(car)
+        goal = (angle + 0.1, 0, 0), (rack + 5.0, 0, 0)
+        exact = kind.exact(car, *goal)
+        assert exact is not None
+        motion = absolute.solve(kind.build(car), inputs_at(*goal), errors=True, effects=["camber"])
+        wanted = exact_angles(kind, car, exact, -1)["camber"]
+        with mp.workdps(DIGITS):
+            error = float(abs(wanted - mpf(float(motion.effects["camber"][0]))))
+        assert error <= motion.effect_errors["camber"][0] < 1e-13
+
+
 @pytest.mark.parametrize("lean", [-2.5, -0.4, 0.0, 0.2, 1.5, 3.0])
 @both_sides
 def test_a_wheel_that_is_leant_out_by_hand_has_that_camber(lean: float, side: str, out: int) -> None:
-    car = KINDS["strut"].random_car(1)
+    car = KINDS["strut"].random_car(1, True)
     car = mirrored(car) if side == "right" else car
     outboard, up, forward = np.array([0.0, out, 0.0]), np.array([0.0, 0.0, 1.0]), np.array([-1.0, 0.0, 0.0])
     # The way from the wheel's centre to its top leans out; the axis is at a right angle to it and to the
@@ -139,7 +157,7 @@ def test_a_wheel_that_is_leant_out_by_hand_has_that_camber(lean: float, side: st
 @pytest.mark.parametrize("lean", [-0.3, 0.0, 0.2])
 @both_sides
 def test_a_top_mount_moved_inboard_by_hand_is_kingpin(lean: float, side: str, out: int) -> None:
-    car = KINDS["strut"].random_car(1)
+    car = KINDS["strut"].random_car(1, True)
     car = mirrored(car) if side == "right" else car
     inboard = np.array([0.0, -out, 0.0])
     top = car["lower_ball_joint"] + 500.0 * (
@@ -155,7 +173,7 @@ def test_a_top_mount_moved_inboard_by_hand_is_kingpin(lean: float, side: str, ou
 
 def test_what_input_errors_do_to_an_angle_is_in_its_claim() -> None:
     kind = KINDS["strut"]
-    car = kind.random_car(4)
+    car = kind.random_car(4, True)
     inputs = drawn_pose(kind, car)
     off = {"arm_angle": np.array([[1e-5, 0.0, 0.0]])}
     names = tuple(absolute.EFFECTS)
@@ -173,7 +191,7 @@ def test_what_input_errors_do_to_an_angle_is_in_its_claim() -> None:
 
 def test_a_line_without_length_has_any_angle() -> None:
     kind = KINDS["strut"]
-    car = kind.random_car(1)
+    car = kind.random_car(1, True)
     car["wheel_axis_inner"] = car["wheel_centre"]
     motion = absolute.solve(kind.build(car), drawn_pose(kind, car), errors=True, effects=["camber"])
     assert motion.effect_errors["camber"][0] >= np.pi

@@ -6,16 +6,18 @@ from typing import Any
 import jets
 import numpy as np
 import pytest
-import strut_motion as form
-import struts
 from dead_points import ENDS
+from kinds import KINDS, Car, Kind
 from mpmath import mp, mpf
 from numpy.typing import NDArray
+from strut_motion import drawn_inputs
 
 import absolute
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
+from absolute.refine import refine
 from absolute.rounding import pose_doubt
+from absolute.tracking import Found
 
 Array = NDArray[np.float64]
 Held = Callable[[float, float], dict[str, Array]]
@@ -44,25 +46,23 @@ def at(angle: float, rack: float, rates: Array) -> dict[str, Array]:
     }
 
 
-def car_of(seed: int) -> tuple[dict[str, Array], str]:
-    closure = "drawn" if seed % 3 else "collinear"
-    car = struts.off_axis_strut(seed, seed % 2 == 0) if seed % 3 else struts.collinear_strut(seed)
-    return {"rack_centre": car["tie_rod_inner"], **car}, closure
+def car_of(kind: Kind, seed: int) -> Car:
+    return kind.random_car(seed, seed % 2 == 0 or kind is KINDS["collinear strut"])
 
 
-def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -> None:
+def test_errors_of_random_cars_are_below_their_estimates_and_not_far_below(kind: Kind) -> None:
     largest = dict.fromkeys((*PARTS, *SPINS), 0.0)
     relative: dict[str, list[float]] = {quantity: [] for quantity in largest}
     solved = 0
-    for seed in range(300):
-        car, closure = car_of(seed)
+    for seed in range(200):
+        car = car_of(kind, seed)
         random = np.random.default_rng(seed)
-        angle, rack = form.drawn_inputs(car)
+        angle, rack = drawn_inputs(car)
         goal = angle + random.uniform(-0.4, 0.4), rack + random.uniform(-50.0, 50.0)
         inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
-        exact = form.strut_motion(car, *(series[0] for series in inputs.values()), closure)
+        exact = kind.exact(car, *(series[0] for series in inputs.values()))
         try:
-            motion = absolute.solve(absolute.macpherson(car, closure=closure), inputs, errors=True)
+            motion = absolute.solve(kind.build(car), inputs, errors=True)
         except absolute.PoseError:
             continue
         solved += 1
@@ -73,7 +73,7 @@ def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -
             value = np.linalg.norm(getattr(motion, quantity)[name][0])
             if value > 0:
                 relative[quantity].append(float(estimate.max() / value))
-    assert solved > 250
+    assert solved > 165
     for quantity, share in largest.items():
         # Roundings are counted one by one: of thousands, some come near a tenth of the worst.
         assert share > 0.05, quantity
@@ -85,13 +85,13 @@ def test_errors_of_random_struts_are_below_their_estimates_and_not_far_below() -
 @pytest.mark.parametrize("before", [1e-14, 1e-13, 1e-12, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3])
 def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: float) -> None:
     random = np.random.default_rng(int(-np.log10(before)))
-    strut = absolute.macpherson(end.car)
+    model = end.kind.build(end.car)
     for share in random.uniform(1.0, 10.0, 4):
         goal = [inside - share * before * out for inside, out in zip(end.inside, end.out, strict=True)]
         inputs = at(*goal, random.uniform(-1.0, 1.0, 4))
-        exact = form.strut_motion(end.car, *(series[0] for series in inputs.values()), "drawn")
+        exact = end.kind.exact(end.car, *(series[0] for series in inputs.values()))
         assert exact is not None
-        motion = absolute.solve(strut, inputs, errors=True)
+        motion = absolute.solve(model, inputs, errors=True)
         for quantity, name, error, estimate in shares(exact, motion):
             assert (error <= estimate).all(), (quantity, name)
             # Only within some hundred roundings of the end may rates be anything.
@@ -134,19 +134,20 @@ def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> No
     assert min(share.values()) > 0.02, share
 
 
-def test_rows_close_to_what_they_are_rounded_from() -> None:
+def test_rows_close_to_what_they_are_rounded_from(kind: Kind) -> None:
     # At a pose that corrections have settled, what is left of a row is rounding, and not much less.
     largest: dict[str, float] = {}
     for seed in range(40):
-        car, closure = car_of(seed)
-        mechanism = Mechanism(absolute.macpherson(car, closure=closure))
+        mechanism = Mechanism(kind.build(car_of(kind, seed)))
         try:
             pose, _ = assemble(mechanism)
         except absolute.PoseError:
             continue
-        poses = mechanism.stack.place(pose.poses.rotation[None], pose.poses.origin[None])
-        inputs = mechanism.drawn_inputs.tolist()
-        target = mechanism.targets(inputs, [0.0, 0.0], [0.0, 0.0])[:1]
+        inputs = mechanism.drawn_inputs[None, None] * np.array([1.0, 0.0, 0.0])[:, None]
+        targets = mechanism.target_series(inputs)
+        # Corrections stop where they are expected to leave eps; refined, what is left is rounding.
+        refined = refine(mechanism, [Found(pose.q, 0)], targets, False)
+        poses, target = mechanism.stack.place(refined.rotation, refined.origin), targets[0]
         doubt = pose_doubt(mechanism, poses, target)
         assert (doubt.known == np.abs(target - poses.values)).all()
         for owner, left, rounded in zip(
@@ -172,17 +173,17 @@ def test_a_point_does_not_take_the_sensitivity_of_another() -> None:
 
 @pytest.mark.parametrize("name", ["arm_angle", "rack"])
 @pytest.mark.parametrize("order", [0, 1, 2])
-def test_what_an_input_may_be_off_shows_as_the_motion_of_the_other_input(name: str, order: int) -> None:
-    car, closure = car_of(4)
-    strut = absolute.macpherson(car, closure=closure)
-    angle, rack = form.drawn_inputs(car)
+def test_what_an_input_may_be_off_shows_as_its_motion(kind: Kind, name: str, order: int) -> None:
+    car = car_of(kind, 4)
+    model = kind.build(car)
+    angle, rack = drawn_inputs(car)
     inputs = at(angle + 0.1, rack - 5.0, np.array([0.7, -0.3, 0.4, 0.6]))
     off = 1e-5 if name == "arm_angle" else 1e-3
     doubt = np.zeros((1, 3))
     doubt[0, order] = off
-    bare = absolute.solve(strut, inputs, errors=True)
-    told = absolute.solve(strut, inputs, errors=True, input_errors={name: doubt})
-    up, down = (absolute.solve(strut, {**inputs, name: inputs[name] + sign * doubt}) for sign in (1.0, -1.0))
+    bare = absolute.solve(model, inputs, errors=True)
+    told = absolute.solve(model, inputs, errors=True, input_errors={name: doubt})
+    up, down = (absolute.solve(model, {**inputs, name: inputs[name] + sign * doubt}) for sign in (1.0, -1.0))
     for quantity in (*PARTS, *SPINS):
         for point, series in getattr(told, f"{quantity}_error").items():
             change = 0.5 * np.abs(getattr(up, quantity)[point] - getattr(down, quantity)[point])
@@ -195,7 +196,7 @@ def test_what_an_input_may_be_off_shows_as_the_motion_of_the_other_input(name: s
     if order == 0:
         rate = {key: np.array([[*series[0, :1], 0.0, 0.0]]) for key, series in inputs.items()}
         rate[name][0, 1] = off
-        turning = absolute.solve(strut, rate).angular_velocity
+        turning = absolute.solve(model, rate).angular_velocity
         for body, turn in told.rotation_error.items():
             assert np.allclose(turn, np.abs(turning[body]), rtol=1e-4, atol=1e-4 * turn.max() + 1e-13), body
 

@@ -1,9 +1,6 @@
 """Other linkages from data alone: nothing in the solver knows a strut."""
 
-import dataclasses
-
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 import absolute
@@ -55,93 +52,3 @@ def test_slider_crank_follows_its_closed_form() -> None:
     assert (np.abs(motion.acceleration["piston"][:, 0] - acceleration) < tolerance * motion.condition).all()
     # The crank turns at the input's own rate.
     assert np.allclose(motion.angular_velocity["crank"][:, 2], da, rtol=0, atol=tolerance.max() / rod)
-
-
-@pytest.fixture
-def wishbones() -> Model:
-    points = {
-        "lower_front": (-150.0, 0.0, 0.0),
-        "lower_rear": (150.0, 5.0, 8.0),
-        "lower_ball": (0.0, -400.0, -20.0),
-        "upper_front": (-120.0, -90.0, 260.0),
-        "upper_rear": (130.0, -85.0, 250.0),
-        "upper_ball": (15.0, -370.0, 250.0),
-        "tie_outer": (110.0, -390.0, 60.0),
-        "tie_inner": (120.0, -40.0, 70.0),
-        "rack": (120.0, -40.0, 70.0),
-        "wheel": (0.0, -460.0, 90.0),
-    }
-    right = (0.0, 1.0, 0.0)
-    ball = {name: Axis(name) for name in points}
-    lower, upper = Axis("lower_front", "lower_rear"), Axis("upper_front", "upper_rear")
-    arm = float(np.linalg.norm(np.subtract(points["lower_ball"], points["lower_front"])))
-    return Model(
-        points,
-        "body",
-        {
-            "body": ("lower_front", "lower_rear", "upper_front", "upper_rear", "rack"),
-            "lower": ("lower_front", "lower_rear", "lower_ball"),
-            "upper": ("upper_front", "upper_rear", "upper_ball"),
-            "upright": ("lower_ball", "upper_ball", "tie_outer", "wheel"),
-            "rod": ("tie_outer", "tie_inner"),
-            "bar": ("tie_inner",),
-        },
-        {
-            "lower_pivot": Joint("revolute", "body", "lower", lower, lower),
-            "upper_pivot": Joint("revolute", "body", "upper", upper, upper),
-            "lower_ball": Joint("spherical", "lower", "upright", ball["lower_ball"], ball["lower_ball"]),
-            "upper_ball": Joint("spherical", "upper", "upright", ball["upper_ball"], ball["upper_ball"]),
-            "outer": Joint("spherical", "upright", "rod", ball["tie_outer"], ball["tie_outer"]),
-            "inner": Joint(
-                "universal",
-                "bar",
-                "rod",
-                Axis("tie_inner", (1.0, 0.0, 0.0)),
-                Axis("tie_inner", (0.0, 0.0, 1.0)),
-            ),
-            "slide": Joint("prismatic", "body", "bar", Axis("rack", right), Axis("tie_inner", right)),
-        },
-        {
-            "arm": Input("body", Axis("lower_front", (0.0, 0.0, 1.0)), "lower", "lower_ball", "cosine", arm),
-            "steer": Input("body", Axis("rack", right), "bar", "tie_inner", "linear", -1.0),
-        },
-    )
-
-
-def test_double_wishbone_keeps_its_link_lengths_and_its_rates(wishbones: Model) -> None:
-    step = 1e-4
-    t = step * np.arange(-1, 2)
-    inputs = {
-        "arm": np.stack([1.55 + 0.5 * t, np.full_like(t, 0.5), 0 * t], -1),
-        "steer": np.stack([10 + 80 * t, np.full_like(t, 80.0), 0 * t], -1),
-    }
-    motion = absolute.solve(wishbones, inputs, conditions=True)
-    assert motion.condition is not None
-    rounding = EPS * 500 * float(motion.condition.max())
-    p = motion.position
-    for a, b in (
-        ("lower_ball", "upper_ball"),
-        ("tie_outer", "tie_inner"),
-        ("upper_ball", "upper_front"),
-        ("lower_ball", "tie_outer"),
-        ("upper_ball", "tie_outer"),
-    ):
-        drawn = np.linalg.norm(np.subtract(wishbones.points[a], wishbones.points[b]))
-        assert np.allclose(np.linalg.norm(p[a] - p[b], axis=-1), drawn, rtol=0, atol=rounding)
-    for name in wishbones.points:
-        # Truncation step^2 / 6 times a third derivative below 1e4 mm/s^3; rounding over the step.
-        tolerance = step**2 / 6 * 1e4 + rounding / step
-        assert np.abs((p[name][2] - p[name][0]) / (2 * step) - motion.velocity[name][1]).max() < tolerance
-        slope = (motion.velocity[name][2] - motion.velocity[name][0]) / (2 * step)
-        assert np.abs(slope - motion.acceleration[name][1]).max() < 10 * tolerance
-
-
-def test_wishbones_too_short_to_meet_are_refused_as_unassembled(wishbones: Model) -> None:
-    # The line of the rack, further away than the tie rod is long.
-    points = {**wishbones.points, "rack": (120.0, -40.0, 2000.0)}
-    broken = dataclasses.replace(wishbones, points=points)
-    still = {"arm": np.array([[1.6, 0.0, 0.0]]), "steer": np.zeros((1, 3))}
-    with pytest.raises(absolute.AssemblyError, match="cannot be assembled") as caught:
-        absolute.solve(broken, still)
-    assert caught.value.partial is None
-    assert caught.value.residual > 0

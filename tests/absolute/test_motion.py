@@ -1,9 +1,8 @@
 """What the solved motion must satisfy, whatever solved it."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
+from kinds import Kind
 from numpy.typing import NDArray
 
 import absolute
@@ -18,8 +17,8 @@ TIMES = np.linspace(0.0, 2.6, 14)
 
 
 @pytest.fixture(scope="module")
-def motion(strut: absolute.Model, both: Callable[[Array], dict[str, Array]]) -> absolute.Solution:
-    return absolute.solve(strut, both(TIMES), conditions=True)
+def motion(kind: Kind, model: absolute.Model) -> absolute.Solution:
+    return absolute.solve(model, kind.inputs(TIMES), conditions=True)
 
 
 def along(a: Array, b: Array) -> Array:
@@ -31,11 +30,11 @@ def test_condition_number_is_what_the_tolerances_assume(motion: absolute.Solutio
     assert motion.condition.max() < CONDITION
 
 
-def test_bodies_keep_the_distances_of_the_drawing(strut: absolute.Model, motion: absolute.Solution) -> None:
-    for body in strut.moving:
-        for a in strut.bodies[body]:
-            for b in strut.bodies[body]:
-                drawn = np.linalg.norm(np.subtract(strut.points[a], strut.points[b]))
+def test_bodies_keep_the_distances_of_the_drawing(model: absolute.Model, motion: absolute.Solution) -> None:
+    for body in model.moving:
+        for a in model.bodies[body]:
+            for b in model.bodies[body]:
+                drawn = np.linalg.norm(np.subtract(model.points[a], model.points[b]))
                 # Two points of one pose: rounding of rotation and sum, no solver error.
                 assert np.allclose(
                     along(motion.position[a], motion.position[b]), drawn, rtol=0, atol=16 * EPS * SIZE
@@ -43,40 +42,17 @@ def test_bodies_keep_the_distances_of_the_drawing(strut: absolute.Model, motion:
 
 
 def test_shared_points_are_where_every_body_holds_them(
-    strut: absolute.Model, motion: absolute.Solution
+    kind: Kind, model: absolute.Model, motion: absolute.Solution
 ) -> None:
     # Distances across joints: each point is read from one body, its joints tie it to the others.
-    pairs = [
-        ("lower_ball_joint", "lower_arm_front"),
-        ("lower_ball_joint", "lower_arm_rear"),
-        ("tie_rod_outer", "tie_rod_inner"),
-        ("strut_rod_end", "strut_top"),
-        ("lower_ball_joint", "tie_rod_outer"),
-        ("strut_lower", "tie_rod_outer"),
-    ]
-    for a, b in pairs:
-        drawn = np.linalg.norm(np.subtract(strut.points[a], strut.points[b]))
+    for a, b in kind.held:
+        drawn = np.linalg.norm(np.subtract(model.points[a], model.points[b]))
         assert np.allclose(along(motion.position[a], motion.position[b]), drawn, rtol=0, atol=ROUNDING)
 
 
-def test_strut_points_lie_on_one_line_with_one_sense(motion: absolute.Solution) -> None:
-    p = motion.position
-    knuckle = p["strut_lower"] - p["lower_ball_joint"]
-    line = knuckle / np.linalg.norm(knuckle, axis=-1)[:, None]
-    # The knuckle's part is 60 mm long: its direction carries the rounding of its ends over that
-    # length, out to the top mount more than 500 mm away.
-    lever = 10.0
-    for name in ("strut_rod_end", "strut_top"):
-        out = p[name] - p["lower_ball_joint"]
-        assert np.allclose(np.cross(line, out), 0.0, atol=lever * ROUNDING)
-    assert (np.sum((p["strut_top"] - p["strut_rod_end"]) * line, axis=-1) > 0).all()
-
-
-def test_inputs_are_met(
-    strut: absolute.Model, motion: absolute.Solution, both: Callable[[Array], dict[str, Array]]
-) -> None:
-    p, inputs = motion.position, both(TIMES)
-    d51 = np.linalg.norm(np.subtract(strut.points["lower_ball_joint"], strut.points["lower_arm_front"]))
+def test_inputs_are_met(kind: Kind, model: absolute.Model, motion: absolute.Solution) -> None:
+    p, inputs = motion.position, kind.inputs(TIMES)
+    d51 = np.linalg.norm(np.subtract(model.points["lower_ball_joint"], model.points["lower_arm_front"]))
     rise = (p["lower_ball_joint"] - p["lower_arm_front"])[:, 2]
     assert np.allclose(rise, d51 * np.cos(inputs["arm_angle"][:, 0]), rtol=0, atol=ROUNDING)
     slide = p["rack_centre"] - np.outer(inputs["rack"][:, 0], [0.0, 1.0, 0.0])
@@ -104,11 +80,9 @@ def differences(values: Array, step: float) -> tuple[Array, float]:
 
 
 @pytest.mark.parametrize("middle", [0.3, 1.1, 2.2])
-def test_rates_are_derivatives_over_time(
-    strut: absolute.Model, both: Callable[[Array], dict[str, Array]], middle: float
-) -> None:
+def test_rates_are_derivatives_over_time(kind: Kind, model: absolute.Model, middle: float) -> None:
     step = 4e-3
-    motion = absolute.solve(strut, both(middle + step * np.arange(-4, 5)))
+    motion = absolute.solve(model, kind.inputs(middle + step * np.arange(-4, 5)))
     # The rule sums 18 / 12 of the samples' rounding over the step.
     for values, rates, rounding in (
         (motion.position, motion.velocity, ROUNDING),
@@ -123,11 +97,11 @@ def test_rates_are_derivatives_over_time(
 
 
 def test_points_of_a_body_turn_with_its_angular_velocity(
-    strut: absolute.Model, motion: absolute.Solution
+    model: absolute.Model, motion: absolute.Solution
 ) -> None:
-    for body in strut.moving:
+    for body in model.moving:
         spin, spin1 = motion.angular_velocity[body], motion.angular_acceleration[body]
-        first, *others = strut.bodies[body]
+        first, *others = model.bodies[body]
         for other in others:
             arm = motion.position[other] - motion.position[first]
             turning = np.cross(spin, arm)
@@ -139,33 +113,11 @@ def test_points_of_a_body_turn_with_its_angular_velocity(
             assert np.allclose(acceleration, bent, rtol=0, atol=ROUNDING)
 
 
-def test_rod_turns_with_the_knuckle_and_rack_does_not_turn(motion: absolute.Solution) -> None:
-    spin = motion.angular_velocity
-    assert np.allclose(spin["strut_rod"], spin["knuckle"], rtol=0, atol=EPS * CONDITION)
-    assert np.allclose(spin["rack"], 0.0, rtol=0, atol=EPS * CONDITION)
-
-
-def test_steering_turns_the_knuckle_about_the_line_from_ball_joint_to_top_mount(
-    strut: absolute.Model, steering: Callable[[Array], dict[str, Array]]
-) -> None:
-    motion = absolute.solve(strut, steering(np.linspace(0.0, 0.4, 9)))
-    spin = motion.angular_velocity["knuckle"]
-    rate = np.linalg.norm(spin, axis=-1)
-    axis = motion.position["strut_top"] - motion.position["lower_ball_joint"]
-    axis /= np.linalg.norm(axis, axis=-1)[:, None]
-    # 1.46 rad/s is stated to two decimals.
-    assert abs(rate[0] - 1.46) < 0.005
-    assert (np.diff(rate) > 0).all()
-    assert np.allclose(np.cross(axis, spin / rate[:, None]), 0.0, atol=EPS * CONDITION)
-
-
-def test_chassis_motion_is_added_to_every_point(
-    strut: absolute.Model, both: Callable[[Array], dict[str, Array]]
-) -> None:
+def test_chassis_motion_is_added_to_every_point(kind: Kind, model: absolute.Model) -> None:
     chassis = np.random.default_rng(1).normal(size=(len(TIMES), 3, 3)) * 50.0
-    still = absolute.solve(strut, both(TIMES))
-    heaving = absolute.solve(strut, both(TIMES), chassis=chassis)
-    for name in strut.points:
+    still = absolute.solve(model, kind.inputs(TIMES))
+    heaving = absolute.solve(model, kind.inputs(TIMES), chassis=chassis)
+    for name in model.points:
         # One addition to numbers of order 1000.
         for k, (a, b) in enumerate(
             (
@@ -175,32 +127,31 @@ def test_chassis_motion_is_added_to_every_point(
             )
         ):
             assert np.allclose(b[name], a[name] + chassis[:, k], rtol=0, atol=4 * EPS * 1000)
-    for body in strut.moving:
+    for body in model.moving:
         assert (heaving.angular_velocity[body] == still.angular_velocity[body]).all()
 
 
-def test_an_instant_does_not_depend_on_the_instants_before_it(
-    strut: absolute.Model, both: Callable[[Array], dict[str, Array]]
-) -> None:
-    sweep = absolute.solve(strut, both(TIMES))
-    backwards = absolute.solve(strut, both(TIMES[::-1].copy()))
-    for name in strut.points:
+def test_an_instant_does_not_depend_on_the_instants_before_it(kind: Kind, model: absolute.Model) -> None:
+    sweep = absolute.solve(model, kind.inputs(TIMES))
+    backwards = absolute.solve(model, kind.inputs(TIMES[::-1].copy()))
+    for name in model.points:
         assert np.allclose(sweep.position[name], backwards.position[name][::-1], rtol=0, atol=2 * ROUNDING)
 
 
-def test_positions_alone_leave_the_rates_out(
-    strut: absolute.Model, both: Callable[[Array], dict[str, Array]]
-) -> None:
-    full, bare = absolute.solve(strut, both(TIMES)), absolute.solve(strut, both(TIMES), rates=False)
+def test_positions_alone_leave_the_rates_out(kind: Kind, model: absolute.Model) -> None:
+    full, bare = (
+        absolute.solve(model, kind.inputs(TIMES)),
+        absolute.solve(model, kind.inputs(TIMES), rates=False),
+    )
     assert not bare.velocity
     assert not bare.acceleration
     assert not bare.angular_velocity
     assert not bare.angular_acceleration
     assert bare.condition is None
-    for name in strut.points:
+    for name in model.points:
         assert (bare.position[name] == full.position[name]).all()
 
 
-def test_no_instants_give_an_empty_motion(strut: absolute.Model) -> None:
-    motion = absolute.solve(strut, {"arm_angle": np.zeros((0, 3)), "rack": np.zeros((0, 3))})
+def test_no_instants_give_an_empty_motion(model: absolute.Model) -> None:
+    motion = absolute.solve(model, {"arm_angle": np.zeros((0, 3)), "rack": np.zeros((0, 3))})
     assert motion.position["wheel_centre"].shape == (0, 3)

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
+from kinds import Car, Kind
 from numpy.typing import NDArray
 
 import absolute
 from absolute import Axis, DescriptionError
 
 Array = NDArray[np.float64]
-Table = dict[str, tuple[float, float, float]]
 Held = Callable[[float, float], dict[str, Array]]
 HUGE = [1.1e100, 1e154, 1.4e154, 1e155, 1e200, 1e300, 1.7976931348623157e308]
 TINY = [5e-324, 1e-310, 2.3e-308, 1e-200, 1e-110]
@@ -25,32 +25,32 @@ def _warnings_are_errors() -> Iterator[None]:
         yield
 
 
-def with_coordinate(table: Table, name: str, place: int, value: float) -> Table:
-    point = list(table[name])
+def with_coordinate(car: Car, name: str, place: int, value: float) -> Car:
+    point = car[name].copy()
     point[place] = value
-    return {**table, name: (point[0], point[1], point[2])}
+    return {**car, name: point}
 
 
 @pytest.mark.parametrize("value", [sign * huge for huge in HUGE for sign in (1, -1)])
-def test_a_huge_coordinate_is_refused_with_its_point_and_the_limit(table: Table, value: float) -> None:
-    for name in table:
+def test_a_huge_coordinate_is_refused_with_its_point_and_the_limit(kind: Kind, value: float) -> None:
+    for name in kind.car:
         for place in range(3):
             with pytest.raises(DescriptionError, match=r"products .* overflow.*1e\+100 mm") as caught:
-                absolute.macpherson(with_coordinate(table, name, place, value), closure="collinear")
+                kind.build(with_coordinate(kind.car, name, place, value))
             assert caught.value.name == name
     with pytest.raises(DescriptionError, match=r"1e\+100"):
-        absolute.macpherson(dict.fromkeys(table, (value, value, value)), closure="collinear")
+        kind.build(dict.fromkeys(kind.car, (value, value, value)))
 
 
 @pytest.mark.parametrize(
     "value", [sign * large for large in (1e10, 1e15, 1e30, 1e60, 1e100) for sign in (1, -1)]
 )
 def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warning(
-    table: Table, held: Held, value: float
+    kind: Kind, held: Held, value: float
 ) -> None:
-    for name in table:
+    for name in kind.car:
         for place in range(3):
-            model = absolute.macpherson(with_coordinate(table, name, place, value), closure="collinear")
+            model = kind.build(with_coordinate(kind.car, name, place, value))
             try:
                 motion = absolute.solve(model, held(1.6, 0.0))
             except (DescriptionError, absolute.PoseError):
@@ -60,16 +60,16 @@ def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warni
 
 @pytest.mark.parametrize("factor", [1e-90, 1e-30, 1e30, 1e97, -1e97])
 def test_a_car_drawn_in_another_unit_moves_the_same_up_to_the_ends_of_the_range(
-    table: Table, held: Held, factor: float
+    kind: Kind, held: Held, factor: float
 ) -> None:
-    scaled = {name: tuple(factor * x for x in point) for name, point in table.items()}
+    scaled = {name: tuple(factor * x for x in point) for name, point in kind.car.items()}
     # A negative factor turns every vector round: the car's own axes as well.
     sense = float(np.sign(factor))
-    model = absolute.macpherson(scaled, up=(0, 0, sense), right=(0, sense, 0), closure="collinear")
+    model = kind.build(scaled, up=(0, 0, sense), right=(0, sense, 0))
     goal = {"arm_angle": np.array([[1.5, 0.3, 0.2]]), "rack": np.array([[10.0, 4.0, 3.0]])}
-    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), goal)
+    plain = absolute.solve(kind.build(kind.car), goal)
     motion = absolute.solve(model, {**goal, "rack": goal["rack"] * abs(factor)})
-    for name in table:
+    for name in kind.car:
         for a, b in (
             (motion.position, plain.position),
             (motion.velocity, plain.velocity),
@@ -81,20 +81,20 @@ def test_a_car_drawn_in_another_unit_moves_the_same_up_to_the_ends_of_the_range(
 
 @pytest.mark.parametrize("factor", TINY)
 def test_a_car_too_small_for_products_of_its_lengths_is_refused(
-    table: Table, held: Held, factor: float
+    kind: Kind, held: Held, factor: float
 ) -> None:
-    small = {name: tuple(factor * x for x in point) for name, point in table.items()}
+    small = {name: tuple(factor * x for x in point) for name, point in kind.car.items()}
     with pytest.raises(DescriptionError, match="at least 1e-100 mm"):
-        absolute.solve(absolute.macpherson(small, closure="collinear"), held(1.6, 0.0))
+        absolute.solve(kind.build(small), held(1.6, 0.0))
 
 
 @pytest.mark.parametrize("value", [-0.0, 5e-324, -1e-110])
-def test_a_coordinate_that_is_almost_zero_is_as_good_as_zero(table: Table, held: Held, value: float) -> None:
-    for name in table:
+def test_a_coordinate_that_is_almost_zero_is_as_good_as_zero(kind: Kind, held: Held, value: float) -> None:
+    for name in kind.car:
         for place in range(3):
             outcomes = []
             for number in (0.0, value):
-                model = absolute.macpherson(with_coordinate(table, name, place, number), closure="collinear")
+                model = kind.build(with_coordinate(kind.car, name, place, number))
                 try:
                     outcomes.append(absolute.solve(model, held(1.6, 0.0)).position["wheel_centre"].tolist())
                 except (DescriptionError, absolute.PoseError) as error:
@@ -103,27 +103,27 @@ def test_a_coordinate_that_is_almost_zero_is_as_good_as_zero(table: Table, held:
 
 
 @pytest.mark.parametrize("value", [0.0, 5e-324, 1.0, 1e90])
-def test_a_drawing_without_size_is_refused(table: Table, strut: absolute.Model, value: float) -> None:
-    point = dict.fromkeys(table, (value, value, value))
+def test_a_drawing_without_size_is_refused(kind: Kind, model: absolute.Model, value: float) -> None:
+    point = dict.fromkeys(kind.car, (value, value, value))
     with pytest.raises(DescriptionError, match="coincide"):
-        absolute.macpherson(point, closure="collinear")
+        kind.build(point)
     with pytest.raises(DescriptionError, match="at least 1e-100 mm"):
         absolute.solve(
-            dataclasses.replace(strut, points=point),
+            dataclasses.replace(model, points=point),
             {"arm_angle": np.zeros((1, 3)), "rack": np.zeros((1, 3))},
         )
 
 
 @pytest.mark.parametrize("scale", [5e-324, 1e-200, 1e155, 1.7e308])
-def test_the_length_of_a_direction_does_not_matter(strut: absolute.Model, held: Held, scale: float) -> None:
+def test_the_length_of_a_direction_does_not_matter(model: absolute.Model, held: Held, scale: float) -> None:
     slide = Axis("rack_centre", (0.0, scale, 0.0)), Axis("tie_rod_inner", (0.0, scale, 0.0))
-    joint = dataclasses.replace(strut.joints["rack_slide"], on_first=slide[0], on_second=slide[1])
-    drive = dataclasses.replace(strut.inputs["rack"], axis=slide[0])
-    model = dataclasses.replace(
-        strut,
-        joints={**strut.joints, "rack_slide": joint},
-        inputs={**strut.inputs, "rack": drive},
+    joint = dataclasses.replace(model.joints["rack_slide"], on_first=slide[0], on_second=slide[1])
+    drive = dataclasses.replace(model.inputs["rack"], axis=slide[0])
+    other = dataclasses.replace(
+        model,
+        joints={**model.joints, "rack_slide": joint},
+        inputs={**model.inputs, "rack": drive},
     )
-    plain, motion = absolute.solve(strut, held(1.6, 10.0)), absolute.solve(model, held(1.6, 10.0))
-    for name in strut.points:
+    plain, motion = absolute.solve(model, held(1.6, 10.0)), absolute.solve(other, held(1.6, 10.0))
+    for name in model.points:
         assert (motion.position[name] == plain.position[name]).all()

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from kinds import Kind
 from numpy.typing import NDArray
 
 import absolute
@@ -28,9 +29,9 @@ def test_missing_and_unknown_points_are_named(table: Table) -> None:
 @pytest.mark.parametrize(
     "bad", [(1.0, 2.0), (1.0, np.nan, 2.0), (np.inf, 0.0, 0.0), "abc", None, ((1, 2, 3),)]
 )
-def test_a_point_needs_three_finite_numbers(table: Table, bad: Any) -> None:
+def test_a_point_needs_three_finite_numbers(kind: Kind, bad: Any) -> None:
     with pytest.raises(DescriptionError, match="wheel_centre") as caught:
-        absolute.macpherson({**table, "wheel_centre": bad}, closure="collinear")
+        kind.build({**kind.car, "wheel_centre": bad})
     assert caught.value.name == "wheel_centre"
 
 
@@ -64,13 +65,13 @@ def test_nearly_coincident_points_of_an_axis_are_refused(
         )
 
 
-def test_directions_are_checked(table: Table) -> None:
+def test_directions_are_checked(kind: Kind) -> None:
     with pytest.raises(DescriptionError, match="right angle"):
-        absolute.macpherson(table, up=(0, 0, 1), right=(0, 1, 0.1), closure="collinear")
+        kind.build(kind.car, up=(0, 0, 1), right=(0, 1, 0.1))
     with pytest.raises(DescriptionError, match="up is"):
-        absolute.macpherson(table, up=(0, 0, 0), closure="collinear")
+        kind.build(kind.car, up=(0, 0, 0))
     with pytest.raises(DescriptionError, match="right is"):
-        absolute.macpherson(table, right=(0, np.nan, 0), closure="collinear")
+        kind.build(kind.car, right=(0, np.nan, 0))
 
 
 def test_reversed_strut_is_refused(table: Table, held: Callable[[float, float], dict[str, Array]]) -> None:

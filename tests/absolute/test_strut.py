@@ -2,13 +2,10 @@
 
 from collections.abc import Callable
 
-import jets
 import numpy as np
 import pytest
 import strut_motion as form
 import struts
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import absolute
@@ -23,66 +20,6 @@ SIZE = 500.0
 def with_rack(car: dict[str, Array]) -> dict[str, Array]:
     """The default of the rack's line, written out."""
     return {"rack_centre": car["tie_rod_inner"], **car}
-
-
-@settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 10**6))
-def test_a_closing_drawing_of_any_ball_joint_comes_back_to_rounding(seed: int) -> None:
-    car = struts.off_axis_strut(seed)
-    # A drawing at its own dead point, or within rounding of it, is refused.
-    exact = form.strut_motion(
-        with_rack(car), *((x, 0, 0) for x in form.drawn_inputs(with_rack(car))), "drawn"
-    )
-    if exact is None or min(exact.margins) < 1e-4:
-        return
-    closed = absolute.close_drawing(absolute.macpherson(car))
-    # Rounding of the rows and of the drawn inputs, magnified by the condition number.
-    condition = 60.0 / float(min(exact.margins)) ** 0.5
-    assert max(closed.movement.values()) <= EPS * SIZE * condition
-    for name, place in car.items():
-        assert np.abs(closed.position[name] - place).max() <= closed.movement[name]
-    for value, wanted in zip(closed.inputs.values(), form.drawn_inputs(with_rack(car)), strict=True):
-        assert abs(value - wanted) <= 4 * EPS * max(1.0, abs(wanted))
-
-
-@settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 10**6), closing=st.booleans())
-def test_motion_of_random_struts_is_that_of_circle_quadratic_and_angle(seed: int, closing: bool) -> None:
-    car = struts.off_axis_strut(seed, closing)
-    random = np.random.default_rng(seed)
-    angle, rack = form.drawn_inputs(with_rack(car))
-    goal = {
-        "arm_angle": [angle + random.uniform(-0.3, 0.3), *random.uniform(-1, 1, 2)],
-        "rack": [rack + random.uniform(-40, 40), *random.uniform(-200, 200, 2)],
-    }
-    exact = form.strut_motion(with_rack(car), goal["arm_angle"], goal["rack"], "drawn")
-    inputs = {name: np.array([series]) for name, series in goal.items()}
-    try:
-        motion = absolute.solve(absolute.macpherson(car), inputs, conditions=True)
-    except absolute.PoseError:
-        # Beyond a limit, behind one on the way there, or the drawing itself is (not closing) beyond it.
-        drawn = form.strut_motion(with_rack(car), (angle, 0, 0), (rack, 0, 0), "drawn")
-        assert exact is None or drawn is None or min(*exact.margins, *drawn.margins) < 0.05
-        return
-    assert exact is not None
-    assert motion.condition is not None
-    condition = motion.condition[0]
-    speed = max(np.abs(series).max() for series in motion.velocity.values())
-    for power, (part, found, spins) in enumerate(
-        (
-            ("x", motion.position, {}),
-            ("v", motion.velocity, motion.angular_velocity),
-            ("a", motion.acceleration, motion.angular_acceleration),
-        ),
-        1,
-    ):
-        # The rates pass through the inverse once more than the pose they stand on.
-        tolerance = 4 * EPS * condition**power * (SIZE if power == 1 else max(speed, speed**2 / SIZE, 200.0))
-        for name, place in exact.points.items():
-            error = jets.errors_of([getattr(x, part) for x in place], found[name][0])
-            assert error.max() <= tolerance, (name, part)
-        for body, series in spins.items():
-            assert jets.errors_of(exact.spins[body][power - 2], series[0]).max() <= tolerance / SIZE, body
 
 
 @pytest.mark.parametrize("seed", range(12))

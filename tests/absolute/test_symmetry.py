@@ -1,12 +1,11 @@
 """Turn, mirror, scale or move the whole car: the solution does the same."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kinds import Car, Kind
 from numpy.typing import NDArray
 
 import absolute
@@ -18,25 +17,23 @@ TIMES = np.linspace(0.2, 2.4, 4)
 ROUNDING = 2 * EPS * 500.0 * 60.0
 
 
-def changed(table: dict[str, tuple[float, float, float]], matrix: Array, shift: Array) -> dict[str, Array]:
-    return {name: matrix @ np.array(point) + shift for name, point in table.items()}
+def changed(car: Car, matrix: Array, shift: Array) -> dict[str, Array]:
+    return {name: matrix @ np.array(point) + shift for name, point in car.items()}
 
 
 def compare(
-    table: dict[str, tuple[float, float, float]],
+    kind: Kind,
     inputs: dict[str, Array],
     matrix: Array,
     shift: Array,
     tolerance: float,
 ) -> None:
     """Solve the car changed by p -> matrix p + shift and hold it against the plain car."""
-    turned = absolute.macpherson(
-        changed(table, matrix, shift), up=matrix[:, 2], right=matrix[:, 1], closure="collinear"
-    )
-    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), inputs)
+    turned = kind.build(changed(kind.car, matrix, shift), up=matrix[:, 2], right=matrix[:, 1])
+    plain = absolute.solve(kind.build(kind.car), inputs)
     other = absolute.solve(turned, inputs)
     sense = np.sign(np.linalg.det(matrix))
-    for name in table:
+    for name in kind.car:
         assert np.allclose(
             other.position[name], plain.position[name] @ matrix.T + shift, rtol=0, atol=tolerance
         )
@@ -56,8 +53,7 @@ def compare(
 @settings(max_examples=15, deadline=None)
 @given(seed=st.integers(0, 10**6), mirrored=st.booleans())
 def test_turned_or_mirrored_car_moves_turned_or_mirrored(
-    table: dict[str, tuple[float, float, float]],
-    both: Callable[[Array], dict[str, Array]],
+    kind: Kind,
     seed: int,
     mirrored: bool,
 ) -> None:
@@ -65,37 +61,32 @@ def test_turned_or_mirrored_car_moves_turned_or_mirrored(
     if mirrored:
         matrix = matrix @ np.diag([1.0, -1.0, 1.0])
     # Turning rounds the drawing as well: once more the same error.
-    compare(table, both(TIMES), matrix, np.zeros(3), 2 * ROUNDING)
+    compare(kind, kind.inputs(TIMES), matrix, np.zeros(3), 2 * ROUNDING)
 
 
 @pytest.mark.parametrize("quarter", [(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 def test_no_direction_of_the_frame_is_special(
-    table: dict[str, tuple[float, float, float]],
-    both: Callable[[Array], dict[str, Array]],
+    kind: Kind,
     quarter: tuple[int, int, int],
 ) -> None:
-    compare(table, both(TIMES), np.round(pin.exp3(np.pi / 2 * np.array(quarter))), np.zeros(3), ROUNDING)
+    compare(
+        kind, kind.inputs(TIMES), np.round(pin.exp3(np.pi / 2 * np.array(quarter))), np.zeros(3), ROUNDING
+    )
 
 
 @pytest.mark.parametrize("distance", [2.0**20, 2.0**30])
-def test_distance_from_the_origin_costs_only_its_own_rounding(
-    table: dict[str, tuple[float, float, float]], both: Callable[[Array], dict[str, Array]], distance: float
-) -> None:
+def test_distance_from_the_origin_costs_only_its_own_rounding(kind: Kind, distance: float) -> None:
     # Points are integers, so the moved drawing is exact; positions are rounded at the distance,
     # and the middle of the drawing as well.
     shift = np.array([distance, -distance, 3 * distance])
-    compare(table, both(TIMES), np.eye(3), shift, ROUNDING + 8 * EPS * 3 * distance)
+    compare(kind, kind.inputs(TIMES), np.eye(3), shift, ROUNDING + 8 * EPS * 3 * distance)
 
 
 @pytest.mark.parametrize("distance", [2.0**20, 2.0**30])
-def test_rates_far_from_the_origin_are_as_accurate_as_near_it(
-    table: dict[str, tuple[float, float, float]], both: Callable[[Array], dict[str, Array]], distance: float
-) -> None:
-    near = absolute.solve(absolute.macpherson(table, closure="collinear"), both(TIMES))
-    far = absolute.solve(
-        absolute.macpherson(changed(table, np.eye(3), np.full(3, distance)), closure="collinear"), both(TIMES)
-    )
-    for name in table:
+def test_rates_far_from_the_origin_are_as_accurate_as_near_it(kind: Kind, distance: float) -> None:
+    near = absolute.solve(kind.build(kind.car), kind.inputs(TIMES))
+    far = absolute.solve(kind.build(changed(kind.car, np.eye(3), np.full(3, distance))), kind.inputs(TIMES))
+    for name in kind.car:
         # Differences to the middle keep the rounding of the middle, eps * distance, in the worst
         # case; here body shapes are differences of it and so exact to a few parts of eps * size.
         assert np.allclose(far.velocity[name], near.velocity[name], rtol=0, atol=ROUNDING)
@@ -103,18 +94,16 @@ def test_rates_far_from_the_origin_are_as_accurate_as_near_it(
 
 
 @pytest.mark.parametrize("factor", [1e-6, 1e-3, 1e3, 1e9])
-def test_scaled_mechanism_moves_scaled(
-    table: dict[str, tuple[float, float, float]], both: Callable[[Array], dict[str, Array]], factor: float
-) -> None:
-    plain = absolute.solve(absolute.macpherson(table, closure="collinear"), both(TIMES), conditions=True)
-    inputs = both(TIMES)
+def test_scaled_mechanism_moves_scaled(kind: Kind, factor: float) -> None:
+    plain = absolute.solve(kind.build(kind.car), kind.inputs(TIMES), conditions=True)
+    inputs = kind.inputs(TIMES)
     scaled_inputs = {"arm_angle": inputs["arm_angle"], "rack": inputs["rack"] * factor}
     scaled = absolute.solve(
-        absolute.macpherson(changed(table, np.eye(3) * factor, np.zeros(3)), closure="collinear"),
+        kind.build(changed(kind.car, np.eye(3) * factor, np.zeros(3))),
         scaled_inputs,
         conditions=True,
     )
-    for name in table:
+    for name in kind.car:
         for a, b in (
             (scaled.position, plain.position),
             (scaled.velocity, plain.velocity),

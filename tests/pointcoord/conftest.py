@@ -8,11 +8,12 @@ import pytest
 from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from validate.cars.car import Points
 from validate.cars.paper_car import PAPER
 
-EVERYTHING = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")
+EVERYTHING = tuple(EFFECTS)
 
 
 @pytest.fixture(scope="session")

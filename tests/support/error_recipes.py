@@ -197,7 +197,9 @@ RECIPES: dict[str, Recipe] = {
         {"instant": None, "residual": np.isfinite, "inputs": bool, "condition": np.isfinite},
     ),
     "validate.formulations.protocol.AccuracyError": Recipe(
-        lambda *_: Accuracy(condition=np.ones(2), position={"wheel_centre": np.full((2, 3), -1.0)}),
+        lambda *_: Accuracy(
+            condition=np.ones(2), claims={"position": {"wheel_centre": np.full((2, 3), -1.0)}}
+        ),
         ("position of wheel_centre", "-1", "finite numbers from 0 up"),
         {"claim": "position of wheel_centre", "problem": bool, "allowed": bool},
     ),

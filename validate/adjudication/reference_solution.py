@@ -9,15 +9,15 @@ product is. Whoever knows that asks for `exact_sides`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.input_rates import rates
-from validate.formulations.protocol import Accuracy, Solution
+from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Instant, solve_reference
 from validate.reference.candidates import CLEAR_SIGN
 
@@ -69,23 +69,23 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
     instants = [reference_instant(scene, inputs_at(scene, t), exact_sides) for t in scene.instants.tolist()]
-    return as_solution(scene.instants, instants)
+    return as_solution(scene, instants)
 
 
-def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
-    """The reference at instants, rounded to doubles.
+def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
+    """The reference at the instants of a scene, rounded to doubles.
 
     Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
-    first = instants[0]
-    angles = [n for n in ("camber", "kingpin") if all(n in i.effects for i in instants)]
+    times, bodies, first = scene.instants, scene.mechanism.topology.bodies, instants[0]
+    angles = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
-        "angular_velocity": _rounded([i.angular_velocity for i in instants], ("knuckle",)),
-        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], ("knuckle",)),
+        "angular_velocity": _rounded([i.angular_velocity for i in instants], bodies),
+        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], bodies),
         "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
@@ -97,11 +97,10 @@ def as_solution(times: Array, instants: Sequence[Instant]) -> Solution:
         q: {n: UNIT_ROUNDOFF * np.abs(array) + dust[q] for n, array in arrays.items()}
         for q, arrays in swept.items()
     }
-    accuracy = Accuracy(condition=np.ones(len(times)), proven=True, **claims)
-    return Solution("reference", times, accuracy=accuracy, notes=(), **swept)
+    return Solution("reference", times, swept, Accuracy(np.ones(len(times)), claims, proven=True))
 
 
-def scales(numbers: Mapping[str, Arrays]) -> dict[str, float]:
+def scales(numbers: Numbers) -> dict[str, float]:
     """The greatest number of each kind; of an acceleration the parts that cancel count, speed^2 / size."""
     corners = np.stack(list(numbers["position"].values()))
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
@@ -117,7 +116,7 @@ def scales(numbers: Mapping[str, Arrays]) -> dict[str, float]:
     }
 
 
-def _largest(vectors: Arrays) -> float:
+def _largest(vectors: Mapping[str, Array]) -> float:
     return max(float(np.abs(array).max()) for array in vectors.values())
 
 
@@ -125,12 +124,13 @@ def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
     return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
 
 
-def what_both_give(scene: Scene, answer: Solution, reference: Solution) -> tuple[Scene, Solution]:
-    """The scene and the answer without the angles that the reference leaves out.
+def told_by(reference: Solution, scene: Scene) -> dict[str, tuple[str, ...]]:
+    """What the scene asks for, by quantity, without the angles that the reference leaves out.
 
     Such an angle is 0/0 there, or half a turn, where its sign has no meaning.
     """
-    if not reference.wheel:
-        effects = tuple(effect for effect in scene.effects if effect != "wheel_angles")
-        scene = scene.model_copy(update={"effects": effects})
-    return scene, replace(answer, wheel={n: a for n, a in answer.wheel.items() if n in reference.wheel})
+    return {
+        quantity: tuple(name for name in names if name in reference.numbers[quantity])
+        for quantity, names in asked_numbers(scene).items()
+        if quantity in reference.numbers
+    }

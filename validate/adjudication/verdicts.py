@@ -11,7 +11,7 @@ from validate.adjudication.reference_solution import (
     inputs_at,
     reference_instant,
     reference_solution,
-    what_both_give,
+    told_by,
 )
 from validate.cars.input_limits import Linkage
 from validate.cars.scene_content import car_of
@@ -45,8 +45,8 @@ def judged_alone(scene: Scene, answer: Solution) -> str:
 
 
 def _is_wrong(scene: Scene, answer: Solution, reference: Solution) -> bool:
-    asked, answer = what_both_give(scene, answer, reference)
-    return bool(compare_solutions(asked, answer, reference, "judged").disagreements)
+    asked = told_by(reference, scene)
+    return bool(compare_solutions(scene, answer, reference, "judged", asked).disagreements)
 
 
 def unanswered(scene: Scene) -> str:

@@ -17,13 +17,13 @@ from validate.commands.usage import (
     require_target,
 )
 from validate.comparison.examined import Examined, examine
+from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, formulation
 from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.paper.errata import Finding, findings
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown

@@ -67,7 +67,7 @@ def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
     notes = [note for note in motion.notes if note not in warnings]
     if motion.closing.moves and not motion.closing.noticeable:
         notes.append(motion.closing.words)
-    if any("wheel_axis" in EFFECTS[effect].axes for effect in scene.effects):
+    if any("wheel_axis" in EFFECTS[effect].lines for effect in scene.effects):
         notes += scene.mechanism.defaults_taken
     for note in notes:
         console.note(f"{name}: {note}")

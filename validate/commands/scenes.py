@@ -8,14 +8,18 @@ import numpy as np
 
 from pointcoord import AssemblyError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import End, Standing
-from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
+from pointcoord.linkage.topology import Topology
 from pointcoord.results.closing import ALLOWED
+from pointcoord.suspensions import SUSPENSIONS
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_scene, load_scene, name_of, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.plain_text import shown
+
+SOLVED = ("positions", "positions and velocities", "positions, velocities and accelerations")
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -36,12 +40,10 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     """
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
-    plan = plan_effects(scene.effects)
-    evaluated = plan.derivatives(scene.mechanism.topology).values()
-    name = name_of(options.scene)
+    part, plan, name = scene.mechanism, plan_effects(scene.effects), name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
-        f"mechanism: {scene.mechanism.type}, {scene.mechanism.side} side; inputs: {', '.join(scene.inputs)}",
+        f"mechanism: {part.type}, {part.side} side; inputs: {', '.join(scene.inputs)}",
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
         *(f"computed: {effect.gives}" for effect in ALWAYS),
         *(f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects),
@@ -49,11 +51,22 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
             for effect in plan.left_out
         ),
-        f"derivatives solved for: {plan.derivative}; evaluated for every point: {min(evaluated)}, "
-        f"for some: {max(evaluated)}",
+        *_work(plan, part.topology),
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
+
+
+def _work(plan: Plan, topology: Topology) -> list[str]:
+    """To which time derivative points are solved and evaluated for that."""
+    derivatives = plan.derivatives(topology)
+    groups = [
+        (SOLVED[order], [name for name, highest in derivatives.items() if highest == order])
+        for order in sorted(set(derivatives.values()), reverse=True)
+    ]
+    each = (f"{words} of {', '.join(names)}" for words, names in groups)
+    evaluated = f"{groups[0][0]} of every point" if len(groups) == 1 else "; ".join(each)
+    return [f"solved for: {SOLVED[plan.derivative]}", f"evaluated: {evaluated}"]
 
 
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
@@ -64,17 +77,18 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
     except AssemblyError as error:
         console.complain(f"{name}: {error}")
         return ExitStatus.NO_VERDICT
-    lines = [
-        f"drawn {input_name} = {_told(input_name, value)}; from there, the others held, it can go from "
-        f"{' to '.join(_end(input_name, end) for end in stands.reach[input_name])}"
-        for input_name, value in stands.inputs.items()
-    ]
-    inner = "wheel_axis_inner" if "wheel_axis_inner" in scene.mechanism.points else "strut_lower (by default)"
-    angles = ", ".join(f"{name} {_degrees(angle)} deg" for name, angle in stands.angles.items())
-    lines.append(f"there: {angles}; the wheel turns about the line from {inner} to wheel_centre")
-    lines.append(stands.closing.words)
+    units, topology = scene.mechanism.topology.input_units, scene.mechanism.topology
+    lines = ["as drawn:"]
+    for one, value in stands.inputs.items():
+        low, high = (_end(end, units[one]) for end in stands.reach[one])
+        lines.append(f"  {one} is {_told(value, units[one])}; the other inputs held, it reaches")
+        lines += [f"    from {low}", f"    to   {high}"]
+    lines += [f"  {angle} is {_degrees(value)} deg" for angle, value in stands.angles.items()]
+    inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
+    lines.append(f"  the wheel turns about the line from {inner} to {centre}")
+    lines.append(f"  {stands.closing.words}")
     console.say("\n".join(lines))
-    if stands.closing.changes_the_car and scene.mechanism.closure == "drawn":
+    if stands.closing.changes_the_car and not topology.puts_in_place:
         limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
         console.complain(
             f"{name}: mechanism.points: {stands.closing.words}: that is another car, which is refused; "
@@ -88,16 +102,24 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
 
 def _out_of_reach(scene: Scene, stands: Standing) -> list[str]:
     """Inputs that the scene drives farther than they go with the others as drawn."""
-    told = []
+    told, units = [], scene.mechanism.topology.input_units
     for name, (low, high) in stands.reach.items():
         values = scene.functions[name].series(scene.instants, 0)[:, 0]
         least, most = float(values.min()), float(values.max())
         if least < low.value or most > high.value:
             told.append(
-                f"the scene drives {name} from {_told(name, least)} to {_told(name, most)}, beyond what it "
-                "reaches with the others as drawn"
+                f"the scene drives {name} from {_told(least, units[name])} to {_told(most, units[name])}, "
+                "beyond what it reaches with the others as drawn"
             )
     return told
+
+
+def _default(scene: Scene, point: str) -> str:
+    """A word on a point that stands in for one that the scene leaves out."""
+    stand_ins = SUSPENSIONS[scene.mechanism.type].closures[scene.mechanism.closure].stand_ins
+    left_out = (name for name, other in stand_ins.items() if other == point)
+    names = [name for name in left_out if name not in scene.mechanism.topology.points]
+    return f" (the default of {names[0]})" if names else ""
 
 
 def _degrees(angle: float) -> str:
@@ -105,13 +127,14 @@ def _degrees(angle: float) -> str:
     return f"{round(float(np.degrees(angle)), 3) + 0.0:g}"
 
 
-def _told(name: str, value: float) -> str:
-    return f"{value:.6g} rad ({np.degrees(value):.5g} deg)" if name == "arm_angle" else f"{value:.6g} mm"
+def _told(value: float, unit: str) -> str:
+    """A value in its unit, and an angle in degrees too."""
+    return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
 
 
-def _end(name: str, end: End) -> str:
-    held = f" (limited by {end.limits[0]})" if end.limits else ""
-    return _told(name, end.value) + held
+def _end(end: End, unit: str) -> str:
+    held = f", where it is held by {end.limits[0]}" if end.limits else ""
+    return _told(end.value, unit) + held
 
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:

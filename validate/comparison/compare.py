@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_of, level, tolerance, untested
+from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
@@ -21,23 +23,6 @@ Array = NDArray[np.float64]
 # Numbers below the smallest normal one lose digits, and so do tolerances made of them.
 SMALLEST = float(np.finfo(float).tiny)
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
-
-UNITS = {
-    "position": "mm",
-    "velocity": "mm/s",
-    "acceleration": "mm/s^2",
-    "angular_velocity": "rad/s",
-    "angular_acceleration": "rad/s^2",
-    "wheel": "rad",
-}
-# Which effect of a scene asks for a quantity; positions are always asked for.
-EFFECT_OF = {
-    "velocity": "velocity",
-    "acceleration": "acceleration",
-    "angular_velocity": "knuckle_rates",
-    "angular_acceleration": "knuckle_rates",
-    "wheel": "wheel_angles",
-}
 
 
 @dataclass(frozen=True)
@@ -138,9 +123,17 @@ def _solved(solver: Formulation, scene: Scene) -> Solution:
     return solution
 
 
-def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> Outcome:
+def compare_solutions(
+    scene: Scene,
+    one: Solution,
+    two: Solution,
+    name: str,
+    asked: Mapping[str, Sequence[str]] | None = None,
+) -> Outcome:
     """Compare two solved scenes.
 
+    Args:
+        asked: names to compare by quantity, if these are not all that the scene asks for.
     Raises:
         FormulationError: one of them does not say at which instants its numbers are.
     """
@@ -151,22 +144,23 @@ def compare_solutions(scene: Scene, one: Solution, two: Solution, name: str) -> 
     first, second = first.at(both), second.at(both)
     rows: list[Comparison] = []
     missing: list[str] = []
-    for quantity in ("position", *(q for q, effect in EFFECT_OF.items() if effect in scene.effects)):
-        missing += _missing(quantity, first, second)
-        for part in _parts(quantity, first, second):
-            rows.append(_row(name, quantity, part, first, second, instants[both]))
+    for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
+        parts = _parts(quantity, names, first, second)
+        missing += _missing(quantity, parts, first, second)
+        rows += [_row(name, quantity, part, first, second, instants[both]) for part in parts]
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
 
 
-def _parts(quantity: str, one: Given, two: Given) -> list[str]:
-    """Every point, body or angle that one of them gives; one without a name if there is none."""
-    return list(dict.fromkeys((*one.numbers[quantity], *two.numbers[quantity]))) or [""]
+def _parts(quantity: str, asked: Sequence[str], one: Given, two: Given) -> list[str]:
+    """Every point, body or angle that the scene asks for, and whatever else both give."""
+    both = (name for name in one.numbers[quantity] if name in two.numbers[quantity])
+    return list(dict.fromkeys((*asked, *both)))
 
 
-def _missing(quantity: str, one: Given, two: Given) -> Iterator[str]:
-    words = "wheel angle" if quantity == "wheel" else quantity.replace("_", " ")
+def _missing(quantity: str, parts: Sequence[str], one: Given, two: Given) -> Iterator[str]:
+    words = QUANTITIES[quantity].words
     for side in (one, two):
-        lacking = [part for part in _parts(quantity, one, two) if part not in side.numbers[quantity]]
+        lacking = [part for part in parts if part not in side.numbers[quantity]]
         if lacking and not side.numbers[quantity]:
             yield f"{side.formulation} gives no {words}"
         elif lacking:
@@ -174,14 +168,14 @@ def _missing(quantity: str, one: Given, two: Given) -> Iterator[str]:
 
 
 def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Array) -> Comparison:
-    unit, nan = UNITS[quantity], math.nan
+    unit, nan = QUANTITIES[quantity].unit, math.nan
     known = [part in side.numbers[quantity] for side in (one, two)]
     if not all(known) or not len(times):
         ends = (scene, one.formulation, two.formulation, quantity, part, unit)
         return Comparison(*ends, nan, nan, nan, nan, "not given", "", nan)
     mine, other = one.numbers[quantity][part], two.numbers[quantity][part]
     gap = np.abs(mine - other)
-    if quantity == "wheel":
+    if unit == "rad":
         # Whole turns apart is the same angle.
         gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
     # A NaN is a disagreement, and the worst one.

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.formulations.protocol import NUMBERS_OF, FormulationError, Solution
+from pointcoord.effects.registry import QUANTITIES
+from validate.formulations.protocol import FormulationError, Solution, shape_of
 
 Array = NDArray[np.float64]
 Arrays = dict[str, dict[str, Array]]
@@ -68,28 +69,28 @@ def given(solution: Solution, instants: Array) -> Given:
         )
     # For each instant found the first place of its time.
     places = np.array([np.flatnonzero(times == t)[0] for t in instants[found]], dtype=np.intp)
-    numbers: Arrays = {}
-    claims: Arrays = {}
-    for quantity, width in NUMBERS_OF.items():
-        numbers[quantity], claims[quantity] = {}, {}
-        shape = (len(times), width) if width > 1 else (len(times),)
-        part = getattr(solution, quantity)
-        if not isinstance(part, Mapping):
-            notes.append(f"{who}: {_words(quantity)} is a {type(part).__name__}; needed: arrays by name")
+    numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
+    claims: Arrays = {quantity: {} for quantity in QUANTITIES}
+    claimed = _by_name(solution.accuracy.claims, f"{who}: its claims", notes)
+    for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", notes).items():
+        if quantity not in QUANTITIES:
+            known = ", ".join(QUANTITIES)
+            notes.append(f"{who}: {quantity!r} is no quantity and is left out; there are: {known}")
             continue
-        claimed = getattr(solution.accuracy, quantity)
-        for name, raw in part.items():
-            what = f"{who}: {_words(quantity)} of {name}"
+        words, shape = QUANTITIES[quantity].words, shape_of(quantity, len(times))
+        claims_here = _by_name(claimed.get(quantity, {}), f"{who}: the claims of its {words}", notes)
+        for name, raw in _by_name(given_part, f"{who}: {words}", notes).items():
+            what = f"{who}: {words} of {name}"
             array = _shaped(raw, shape)
             if isinstance(array, str):
                 notes.append(f"{what} {array}; it is left out")
                 continue
             wrong = int(np.count_nonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=-1)))
-            said = any(note.startswith(f"{_words(quantity)} of {name} ") for note in solution.notes)
+            said = any(note.startswith(f"{words} of {name} ") for note in solution.notes)
             if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
             numbers[quantity][name] = array[places]
-            claim = _shaped(claimed[name], shape) if name in claimed else "is not given"
+            claim = _shaped(claims_here[name], shape) if name in claims_here else "is not given"
             if isinstance(claim, str):
                 notes.append(f"{what}: its accuracy {claim}")
             else:
@@ -99,6 +100,14 @@ def given(solution: Solution, instants: Array) -> Given:
         notes.append(f"{who}: its condition number {condition}; 1 is taken")
         condition = np.ones_like(times)
     return Given(who, found, numbers, claims, condition[places], tuple(notes))
+
+
+def _by_name(part: object, what: str, notes: list[str]) -> Mapping[str, object]:
+    """A mapping as it is; what is none is told and empty."""
+    if isinstance(part, Mapping):
+        return part
+    notes.append(f"{what} is a {type(part).__name__}; needed: arrays by name")
+    return {}
 
 
 def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
@@ -118,7 +127,3 @@ def _real(raw: object) -> Array | str:
     if array.dtype.kind not in "iuf":
         return f"is of type {array.dtype}; needed: real numbers"
     return array.astype(float)
-
-
-def _words(quantity: str) -> str:
-    return "wheel angle" if quantity == "wheel" else quantity.replace("_", " ")

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart, Scene
 from validate.extras import MissingPackage
+from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
-from validate.formulations.protocol import AccuracyError, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
 
 try:
     import absolute
@@ -22,9 +25,7 @@ except ModuleNotFoundError as error:
     raise MissingPackage("absolute", error) from None
 
 Array = NDArray[np.float64]
-
-# What the scene's effect `wheel_angles` stands for.
-WHEEL_ANGLES = ("camber", "kingpin")
+Arrays = Mapping[str, Array]
 
 SLOW = 2.0**-200  # rad/s and mm/s
 LONGEST = 500  # s, as a power of two whose square is still a number
@@ -42,50 +43,73 @@ class AbsoluteCoordinates:
         Raises:
             FormulationError: the model refuses the scene, or does not know the error of a number.
         """
-        part, times, wanted = scene.mechanism, scene.instants, scene.effects
-        inputs = {name: rates(law, times) for name, law in scene.inputs.items()}
-        heave = inputs.pop("heave", None)
-        with np.errstate(invalid="ignore"):  # the model refuses what is not finite
-            chassis = None if heave is None else heave[:, :, None] * np.array(part.up)
+        part, asked = scene.mechanism, asked_numbers(scene)
+        inputs = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+        chassis = _chassis_motion(part, inputs)
+        inputs = {name: law for name, law in inputs.items() if name not in part.topology.chassis_motion}
         unit = slow_unit(inputs, chassis)
-        inputs = {name: _per(unit, law) for name, law in inputs.items()}
-        needs_rates = any(effect in wanted for effect in ("velocity", "acceleration", "knuckle_rates"))
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         try:
-            model = absolute.macpherson(
+            model = absolute.suspension_of(part.type)(
                 near, up=part.up, right=part.right, side=part.side, closure=part.closure
             )
             _require_the_drawn_car(scene, model)
             solved = absolute.solve(
                 model,
-                inputs,
+                {name: _per(unit, law) for name, law in inputs.items()},
                 chassis=None if chassis is None else _per(unit, chassis),
-                rates=needs_rates,
+                rates=plan_effects(scene.effects).derivative > 0,
                 conditions=True,
                 errors=True,
-                effects=WHEEL_ANGLES,
+                effects=_effects(asked),
             )
         except absolute.AbsoluteError as error:
             if isinstance(error.partial, absolute.Solution):
                 error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
             raise FormulationError(self.name, error) from error
-        solved, position = _per_second(unit, solved), _moved(solved.position, origin)
+        numbers: dict[str, Arrays] = {}
+        accuracy: dict[str, Arrays] = {}
+        for quantity, names in asked.items():
+            found, estimates = (
+                _per_second(unit, quantity, arrays) for arrays in _told(solved, quantity, origin)
+            )
+            claimed = claims(quantity, found, estimates, chassis)
+            numbers[quantity] = {name: found[name] for name in names if name in found}
+            accuracy[quantity] = {name: claimed[name] for name in names if name in claimed}
+        condition = np.ones(len(scene.instants)) if solved.condition is None else solved.condition
         try:
-            accuracy = claims(solved, position, chassis)
+            return Solution(self.name, scene.instants, numbers, Accuracy(condition, accuracy))
         except AccuracyError as error:
             raise FormulationError(self.name, error) from error
-        return Solution(
-            formulation=self.name,
-            times=times,
-            position=position,
-            velocity=solved.velocity if "velocity" in wanted else {},
-            acceleration=solved.acceleration if "acceleration" in wanted else {},
-            angular_velocity=_knuckle(solved.angular_velocity, wanted),
-            angular_acceleration=_knuckle(solved.angular_acceleration, wanted),
-            wheel=solved.effects if "wheel_angles" in wanted else {},
-            accuracy=accuracy,
-        )
+
+
+def _chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
+    """What the inputs that move the chassis come to, (N, 3, 3), mm and s; None if there are none."""
+    directions = {"up": part.up, "right": part.right}
+    with np.errstate(invalid="ignore"):  # the model refuses what is not finite
+        moves = [
+            inputs[name][:, :, None] * np.array(directions[direction])
+            for name, direction in part.topology.chassis_motion.items()
+            if name in inputs
+        ]
+        return np.asarray(sum(moves[1:], moves[0])) if moves else None
+
+
+def _effects(asked: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
+    """What the scene asks for and the model calls effects, which are numbers of the whole car."""
+    wanted = (name for quantity, names in asked.items() if QUANTITIES[quantity].of == "car" for name in names)
+    return tuple(name for name in wanted if name in absolute.EFFECTS)
+
+
+def _told(solved: absolute.Solution, quantity: str, origin: Array) -> tuple[Arrays, Arrays]:
+    """The model's numbers of a quantity and what it says of their errors; none of what it does not know."""
+    if QUANTITIES[quantity].of == "car":
+        return solved.effects, solved.effect_errors
+    # It calls the quantities of points and bodies as pointcoord does.
+    numbers, errors = (getattr(solved, name, {}) for name in (quantity, f"{quantity}_error"))
+    is_place = QUANTITIES[quantity].of == "point" and per_second(quantity) == 0
+    return (_moved(numbers, origin) if is_place else numbers), errors
 
 
 def _require_the_drawn_car(scene: Scene, model: absolute.Model) -> None:
@@ -104,8 +128,8 @@ def _require_the_drawn_car(scene: Scene, model: absolute.Model) -> None:
             scene.title or "scene",
             "mechanism.points",
             f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
-            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw strut_rod_end on the strut axis "
-            "and tie_rod_inner on the line of the rack",
+            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw the points that miss where they "
+            "belong",
         )
 
 
@@ -135,35 +159,16 @@ def _per(unit: Array, series: Array) -> Array:
     return np.stack([series[:, 0], series[:, 1] * factor, series[:, 2] * factor * factor], axis=1)
 
 
-def _per_second(unit: Array, solved: absolute.Solution) -> absolute.Solution:
-    """Rates and their errors per second again."""
+def _per_second(unit: Array, quantity: str, arrays: Arrays) -> Arrays:
+    """Rates, or their errors, per second again."""
     if (unit == 1.0).all():
-        return solved
-    once = unit[:, None]
-    twice = once * once
-
-    def divided(arrays: Mapping[str, Array], divisor: Array) -> dict[str, Array]:
-        return {name: array / divisor for name, array in arrays.items()}
-
-    return replace(
-        solved,
-        velocity=divided(solved.velocity, once),
-        velocity_error=divided(solved.velocity_error, once),
-        angular_velocity=divided(solved.angular_velocity, once),
-        angular_velocity_error=divided(solved.angular_velocity_error, once),
-        acceleration=divided(solved.acceleration, twice),
-        acceleration_error=divided(solved.acceleration_error, twice),
-        angular_acceleration=divided(solved.angular_acceleration, twice),
-        angular_acceleration_error=divided(solved.angular_acceleration_error, twice),
-    )
+        return arrays
+    divisor = unit ** per_second(quantity)
+    return {name: array / divisor.reshape(-1, *(1,) * (array.ndim - 1)) for name, array in arrays.items()}
 
 
-def _moved(position: Mapping[str, Array], origin: Array) -> dict[str, Array]:
+def _moved(position: Arrays, origin: Array) -> dict[str, Array]:
     return {name: place + origin for name, place in position.items()}
-
-
-def _knuckle(rates_of_bodies: Mapping[str, Array], wanted: tuple[str, ...]) -> dict[str, Array]:
-    return {"knuckle": rates_of_bodies["knuckle"]} if "knuckle_rates" in wanted else {}
 
 
 def extent(part: MechanismPart) -> float:

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import Method
-from validate.formulations.protocol import NUMBERS_OF, Accuracy, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
 
@@ -43,16 +44,13 @@ class PointCoordinates:
         return Solution(
             formulation=self.name,
             times=motion.times,
-            position=motion.position,
-            velocity=motion.velocity,
-            acceleration=motion.acceleration,
-            angular_velocity=motion.angular_velocity,
-            angular_acceleration=motion.angular_acceleration,
-            wheel=motion.wheel,
+            numbers=motion.numbers,
             accuracy=Accuracy(
                 condition=proof.condition,
+                claims={
+                    quantity: self._claims(scene, motion, proof, quantity) for quantity in motion.numbers
+                },
                 proven=True,
-                **{quantity: self._claims(scene, motion, proof, quantity) for quantity in NUMBERS_OF},
             ),
             notes=motion.notes,
         )
@@ -69,9 +67,9 @@ class PointCoordinates:
         expected = proof.expected[quantity]
         for name, proven in proof.proven[quantity].items():
             # What is not a number has no error; the comparison finds it.
-            number = np.isfinite(getattr(motion, quantity)[name])
+            number = np.isfinite(motion.numbers[quantity][name])
             bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
-            _refuse_unproven(self.name, motion, proof, f"{quantity.replace('_', ' ')} of {name}", bound)
+            _refuse_unproven(self.name, motion, proof, f"{QUANTITIES[quantity].words} of {name}", bound)
             capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected[name])
             claims[name] = np.where(number, np.minimum(proven, capped), 0.0)
         return claims

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.scene_file import Scene
 
 Array = NDArray[np.float64]
 
 
-NUMBERS_OF = {
-    "position": 3,
-    "velocity": 3,
-    "acceleration": 3,
-    "angular_velocity": 3,
-    "angular_acceleration": 3,
-    "wheel": 1,
-}
-"""The quantities of a solution, and how many numbers each has at an instant."""
+Numbers = Mapping[str, Mapping[str, Array]]
+"""By quantity, then by point, body or angle: (N, 3), or (N,) of what the car has one number of."""
+
+
+def shape_of(quantity: str, count: int) -> tuple[int, ...]:
+    """The shape of the numbers of a quantity at `count` instants: vectors but of what the whole car has."""
+    return (count,) if QUANTITIES[quantity].of == "car" else (count, 3)
 
 
 class AccuracyError(ValueError):
@@ -45,32 +44,31 @@ class Accuracy:
 
     Attributes:
         condition: condition number of the matrix that gives the rates, shape (N,).
-        position, velocity, acceleration: by point, (N, 3), mm and s.
-        angular_velocity, angular_acceleration: by body, (N, 3), rad/s and rad/s^2.
-        wheel: by angle, (N,), rad.
+        claims: by quantity and name, each like the numbers that it is about, in their unit.
         proven: whether the claims are proven bounds or estimates.
     Raises:
-        AccuracyError: a claim is not a finite number from 0 up, or has not the shape of its numbers.
+        AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
+            about no quantity that there is.
     """
 
     condition: Array
-    position: Mapping[str, Array] = field(default_factory=dict)
-    velocity: Mapping[str, Array] = field(default_factory=dict)
-    acceleration: Mapping[str, Array] = field(default_factory=dict)
-    angular_velocity: Mapping[str, Array] = field(default_factory=dict)
-    angular_acceleration: Mapping[str, Array] = field(default_factory=dict)
-    wheel: Mapping[str, Array] = field(default_factory=dict)
+    claims: Numbers = field(default_factory=dict)
     proven: bool = False
+
+    def with_claims(self, claims: Numbers) -> Accuracy:
+        """The same with other claims of some quantities."""
+        return replace(self, claims={**self.claims, **claims})
 
     def __post_init__(self) -> None:
         if np.ndim(self.condition) != 1:
             raise AccuracyError("condition", f"has the shape {np.shape(self.condition)}", "one per instant")
         count = len(self.condition)
         _check_claim("condition", self.condition, (count,))
-        for quantity, width in NUMBERS_OF.items():
-            for name, claim in getattr(self, quantity).items():
-                shape = (count, width) if width > 1 else (count,)
-                _check_claim(f"{quantity} of {name}", claim, shape)
+        for quantity, claims in self.claims.items():
+            if quantity not in QUANTITIES:
+                raise AccuracyError(str(quantity), "is no quantity", ", ".join(QUANTITIES))
+            for name, claim in claims.items():
+                _check_claim(f"{quantity} of {name}", claim, shape_of(quantity, count))
 
 
 def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:
@@ -89,29 +87,37 @@ def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:
 
 @dataclass(frozen=True, repr=False)
 class Solution:
-    """A solved scene as plain arrays; empty mappings where the scene did not ask.
+    """A solved scene as plain arrays; every quantity that it gives is an attribute too, such as `position`.
+
+        Solution("mine", times, {"position": {"wheel_centre": places}}, Accuracy(np.ones(len(times))))
 
     Attributes:
+        formulation: who gives it.
         times: shape (N,), s.
-        position, velocity, acceleration: by point, (N, 3), mm and s.
-        angular_velocity, angular_acceleration: by body, (N, 3), rad and s, world axes.
-        wheel: `camber` and `kingpin`, (N,), rad.
+        numbers: by quantity (see `pointcoord.effects.registry.QUANTITIES`, which gives the units) and by
+            point, body or angle. What the scene does not ask for may be left out.
+        accuracy: how far each number may be off; what is not claimed of a number cannot be tested.
         notes: what the formulation itself says of numbers that have no meaning.
     """
 
     formulation: str
     times: Array
-    position: Mapping[str, Array]
-    velocity: Mapping[str, Array]
-    acceleration: Mapping[str, Array]
-    angular_velocity: Mapping[str, Array]
-    angular_acceleration: Mapping[str, Array]
-    wheel: Mapping[str, Array]
+    numbers: Numbers
     accuracy: Accuracy
     notes: tuple[str, ...] = ()
 
+    def with_numbers(self, numbers: Numbers) -> Solution:
+        """The same with other numbers of some quantities."""
+        return replace(self, numbers={**self.numbers, **numbers})
+
+    def __getattr__(self, name: str) -> Mapping[str, Array]:
+        numbers: Numbers = self.__dict__.get("numbers", {})
+        if name in numbers:
+            return numbers[name]
+        raise AttributeError(f"the solution of {self.__dict__.get('formulation')} has no {name!r}")
+
     def __repr__(self) -> str:
-        given = ", ".join(quantity for quantity in NUMBERS_OF if getattr(self, quantity))
+        given = ", ".join(quantity for quantity, arrays in self.numbers.items() if arrays)
         return f"<Solution of {self.formulation}: {np.size(self.times)} instants; {given}>"
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.car import Car, Closure, any_rotation, other_side, turned
+from validate.cars.car import Car, Closure, any_rotation, moved, other_side, turned
+from validate.cars.double_wishbone import DOUBLE_WISHBONE
 from validate.cars.macpherson import BESIDE
 from validate.cars.paper_car import PAPER
 from validate.cars.scene_content import SQUARE, Law, scene_content
@@ -54,10 +55,41 @@ def drawn_at(car: Car, arm_angle: float, rack: float) -> Car:
         {"arm_angle": (arm_angle, 0, 0), "rack": (rack, 0, 0)},
         up=car.up,
         right=car.right,
+        side=car.side,
         closure=car.closure,
+        suspension=car.suspension,
     )
     return replace(car, points={name: pose.position_as_float(name) for name in car.points})
 
 
 # The strut beside its ball joint on the other side of the car, leaning every way.
 OTHER_CAR = turned(other_side(BESIDE_CAR), any_rotation(1))
+WISHBONE_CAR = DOUBLE_WISHBONE.base["drawn"]
+# The same with a lower arm so short that the upper one can follow it to its dead points.
+SHORT_ARM_CAR = replace(
+    WISHBONE_CAR,
+    points=dict(WISHBONE_CAR.points)
+    | {"lower_arm_front": (-110.0, 580.0, 69.0), "lower_arm_rear": (90.0, 580.0, 78.0)},
+)
+FAR = np.array([3e6, -2e6, 2e6])  # mm
+
+
+def _far(car: Car) -> Car:
+    """The car on the other side, turned about three axes and 4e6 mm from the origin."""
+    return moved(turned(other_side(car), any_rotation(9)), FAR)
+
+
+CARS: Mapping[str, Car] = {
+    "paper": PAPER_CAR,
+    "beside": BESIDE_CAR,
+    "wide": WIDE_CAR,
+    "other": OTHER_CAR,
+    "turned": _far(BESIDE_CAR),
+    "wishbone": WISHBONE_CAR,
+    "short-arm": SHORT_ARM_CAR,
+    "wishbone-turned": _far(WISHBONE_CAR),
+}
+"""Cars by the name that a case calls them by."""
+
+# Families that make sense for every suspension take each of these, and add this to the names of their cases.
+EVERY: Mapping[str, str] = {"": "paper", "-wishbone": "wishbone"}

@@ -97,6 +97,11 @@ def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
     return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
 
 
+def coarse(values: tuple[float, ...]) -> tuple[float, ...]:
+    """Every third value and the last: what a case tries of a second suspension."""
+    return tuple(dict.fromkeys((*values[::3], values[-1])))
+
+
 def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:
     """The answers of a trial that the case does not allow."""
     return tuple(a for a in trial.answers if not case.expected[a.formulation].met(trial.value, a.outcome))

@@ -8,12 +8,13 @@ once more.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
+from validate.adjudication.reference_solution import told_by
 from validate.comparison.compare import Comparison, compare_solutions
 from validate.formulations.protocol import Solution
 from validate.hard.case import Answer, Outcome
@@ -23,10 +24,10 @@ Array = NDArray[np.float64]
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
     """Hold all numbers of a solution to the reference, each to what the solution itself claims of it."""
-    rows = compare_solutions(scene, answer, reference, "hard").rows
+    rows = compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
     outcome = _outcome(scene, answer, reference, rows)
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
-    bound = max(float(np.max(claim)) for claim in answer.accuracy.position.values())
+    bound = max(float(np.max(claim)) for claim in answer.accuracy.claims["position"].values())
     return Answer(
         formulation=answer.formulation,
         outcome=outcome,
@@ -41,7 +42,8 @@ def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer
 def _outcome(scene: Scene, answer: Solution, reference: Solution, rows: tuple[Comparison, ...]) -> Outcome:
     if not _wrong(rows):
         return "right"
-    rest = compare_solutions(scene, _without_noted(answer, reference), reference, "hard").rows
+    mended = _without_noted(answer, reference)
+    rest = compare_solutions(scene, mended, reference, "hard", told_by(reference, scene)).rows
     return "wrong" if _wrong(rest) else "noted"
 
 
@@ -55,14 +57,12 @@ def _wrong(rows: tuple[Comparison, ...]) -> bool:
 
 def _without_noted(answer: Solution, reference: Solution) -> Solution:
     """The answer with the reference in place of what is not finite and has a note."""
-    return replace(
-        answer,
-        angular_velocity=_mended(
-            answer.angular_velocity, reference.angular_velocity, "angular velocity", answer.notes
-        ),
-        angular_acceleration=_mended(
-            answer.angular_acceleration, reference.angular_acceleration, "angular acceleration", answer.notes
-        ),
+    return answer.with_numbers(
+        {
+            quantity: _mended(arrays, reference.numbers[quantity], QUANTITIES[quantity].words, answer.notes)
+            for quantity, arrays in answer.numbers.items()
+            if quantity in reference.numbers
+        }
     )
 
 
@@ -82,7 +82,7 @@ def _error(answer: Solution, reference: Solution) -> float:
 
 
 def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:
-    where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
+    where = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
     if outcome == "right":
         return where
     if np.isfinite(worst.difference):

@@ -7,16 +7,14 @@ interval is halved in fractions until it is shorter than 1e-16 of the input's ra
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
 import numpy as np
 
-from validate.cars.car import RIGHT, UP, Car, any_rotation, as_tuple, mirrored, turned
 from validate.cars.input_limits import Linkage
-from validate.cars.macpherson import BESIDE
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR, WIDE_CAR
+from validate.hard.cars import CARS
 from validate.reference import InfeasibleError, SingularPoseError, solve_reference
 
 DIGITS = 15  # of the reference: only whether there is a pose counts, which is proven anyhow
@@ -32,7 +30,7 @@ class LastValue:
         value: rad or mm; poses exist up to here.
         reach: distance from this end to the opposite one, rad or mm.
         ahead: whether it is the upper end.
-        lock: what locks there, `arm`, `strut` or `tie_rod`.
+        lock: what locks there: `arm`, `tie_rod` or the suspension's `upper_lock`.
     """
 
     value: Fraction
@@ -45,22 +43,9 @@ class LastValue:
         return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
 
 
-def car_called(name: str) -> Car:
-    """The paper's car; `beside` and `wide`, whose struts pass beside the ball joint; or `turned`.
-
-    That is `beside` mirrored, turned about three axes and 4e6 mm from the origin.
-    """
-    known = {"paper": PAPER_CAR, "beside": BESIDE_CAR, "wide": WIDE_CAR}
-    if name in known:
-        return known[name]
-    turn, shift = any_rotation(9), np.array([3e6, -2e6, 2e6])
-    there = turned(Car(mirrored(BESIDE), "right", UP, RIGHT), turn)
-    return replace(there, points={n: as_tuple(np.array(p) + shift) for n, p in there.points.items()})
-
-
 def home(car: str, level: bool = True) -> dict[str, float]:
     """Inputs amid their ranges, from which each is driven: the arm level or as drawn, the rack as drawn."""
-    drawn = Linkage.of(car_called(car)).drawn_angle
+    drawn = Linkage.of(CARS[car]).drawn_angle
     return {"arm_angle": 0.5 * np.pi if level else drawn, "rack": 0.0}
 
 
@@ -69,7 +54,7 @@ def last_value(car: str, driven: str, ahead: bool, level: bool = True) -> LastVa
     """The end of an input, the other one at home.
 
     Args:
-        car: a name that `car_called` knows.
+        car: the name of one in `CARS`.
         driven: `arm_angle` or `rack`.
         ahead: whether the upper end is wanted.
         level: see `home`.
@@ -77,7 +62,7 @@ def last_value(car: str, driven: str, ahead: bool, level: bool = True) -> LastVa
         ValueError: no end is near the place where plain floating point sees it.
     """
     held = home(car, level)
-    linkage = Linkage.of(car_called(car))
+    linkage = Linkage.of(CARS[car])
     this, opposite = (linkage.end(held, driven, way) for way in (ahead, not ahead))
     if this is None or opposite is None:
         raise ValueError(f"{driven} of the car {car!r} has no end on one of its sides")
@@ -101,16 +86,17 @@ def reachable(car: str, values: Mapping[str, Fraction | float]) -> bool:
 
     A pose that is singular to 400 digits counts as existing: it is the end itself.
     """
-    hardpoints = car_called(car)
+    there = CARS[car]
     inputs = {name: (value, 0, 0) for name, value in values.items()}
     try:
         solve_reference(
-            hardpoints.points,
+            there.points,
             inputs,
-            up=hardpoints.up,
-            right=hardpoints.right,
-            side=hardpoints.side,
-            closure=hardpoints.closure,
+            up=there.up,
+            right=there.right,
+            side=there.side,
+            closure=there.closure,
+            suspension=there.suspension,
             digits=DIGITS,
         )
     except InfeasibleError:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Scene, SceneError
-from validate.adjudication.reference_solution import reference_solution, what_both_give
+from validate.adjudication.reference_solution import reference_solution
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
@@ -138,10 +138,9 @@ def _reference(scene: Scene) -> Solution | Exception:
 
 
 def _judged(scene: Scene, answer: Solution, reference: Solution) -> Answer:
-    asked, shared = what_both_give(scene, answer, reference)
     try:
         with np.errstate(all="ignore"):
-            return judged_answer(asked, shared, reference)
+            return judged_answer(scene, answer, reference)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
         return Answer(answer.formulation, "unjudged", f"cannot be compared: {_told(error)}")
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion
+from pointcoord.effects.registry import QUANTITIES
 from validate.output.files import require_known_ending, write_whole
 
 Array = NDArray[np.float64]
@@ -28,19 +29,17 @@ class Writable(Protocol):
 def columns(motion: Motion) -> Iterator[tuple[str, Array]]:
     """Every computed number of a motion as a named column with its unit."""
     yield "time [s]", motion.times
-    vectors = (
-        (motion.position, "position", "mm"),
-        (motion.velocity, "velocity", "mm/s"),
-        (motion.acceleration, "acceleration", "mm/s^2"),
-        (motion.angular_velocity, "angular_velocity", "rad/s"),
-        (motion.angular_acceleration, "angular_acceleration", "rad/s^2"),
-    )
-    for channel, quantity, unit in vectors:
-        for name in channel:
-            for i, axis in enumerate("xyz"):
-                yield f"{quantity}.{name}.{axis} [{unit}]", channel[name][:, i]
-    for name in motion.wheel:
-        yield f"wheel.{name} [deg]", np.degrees(motion.wheel[name])
+    for quantity, channel in motion.numbers.items():
+        unit = QUANTITIES[quantity].unit
+        for name, array in channel.items():
+            if unit == "rad":
+                # Users read angles in degrees.
+                yield f"{quantity}.{name} [deg]", np.degrees(array)
+            elif array.ndim == 1:
+                yield f"{quantity}.{name} [{unit}]", array
+            else:
+                for i, axis in enumerate("xyz"):
+                    yield f"{quantity}.{name}.{axis} [{unit}]", array[:, i]
 
 
 def write_csv(stream: Writable, motion: Motion) -> None:

@@ -24,6 +24,11 @@ VIEW = 290.0  # px, side of the square that a view is scaled into
 MARGIN = 30.0
 LINE = 15.0  # px, from line to line of text
 LETTERS = 150  # to a line
+LETTER = 6.5  # px, wide
+TOGETHER = 9.0  # px: points closer than that have one number
+CLEAR = 16.0  # px: a number so far from every other point and number is clear enough
+# Where a number may stand beside its point, to the right and down, the first that is clear.
+AROUND = ((1, -1), (1, 0), (1, 1), (0, -1), (0, 1), (-1, -1), (-1, 0), (-1, 1))
 KEY = (
     "blue: as drawn; red: as closed, where that differs by a pixel; filled: on the chassis; "
     "dashed: steering axis and spin axis"
@@ -37,6 +42,7 @@ text { font: 11px sans-serif; fill: #222 }
 .body { fill: #3b6ea5; fill-opacity: 0.15; stroke: none }
 .chassis { fill: #222 }
 .moving { fill: #fff; stroke: #222; stroke-width: 1.5 }
+.number { text-anchor: middle; paint-order: stroke; stroke: #fff; stroke-width: 3px }
 .frame { fill: none; stroke: #ddd }
 """
 
@@ -141,20 +147,38 @@ def _view(
     for name, (x, y) in drawn.items():
         kind = "chassis" if name in topology.chassis else "moving"
         parts.append(f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="3"/>')
-    return parts + [_text(x, y, text) for x, y, text in _labels(drawn, numbers)]
+    frame = np.array(corner) + np.array([[-room, -room], [VIEW + room, VIEW + room]])
+    return parts + [_text(x, y, text, "number") for x, y, text in _labels(drawn, numbers, frame)]
 
 
-def _labels(drawn: Mapping[str, Array], numbers: Mapping[str, str]) -> list[tuple[float, float, str]]:
-    """A number beside every point; points that fall together on the paper share one."""
+def _labels(
+    drawn: Mapping[str, Array], numbers: Mapping[str, str], frame: Array
+) -> list[tuple[float, float, str]]:
+    """A number beside every point, where there is room; points that fall together on the paper share one."""
     groups: list[tuple[Array, list[str]]] = []
     for name, place in drawn.items():
         for other, together in groups:
-            if np.abs(other - place).max() < 9.0:
+            if np.abs(other - place).max() < TOGETHER:
                 together.append(numbers[name])
                 break
         else:
             groups.append((place, [numbers[name]]))
-    return [(place[0] + 5.0, place[1] - 5.0, ", ".join(together)) for place, together in groups]
+    found: list[tuple[float, float, str]] = []
+    taken = list(drawn.values())
+    for place, together in groups:
+        text = ", ".join(together)
+        wide = LETTER * len(text)
+        around = place + np.array(AROUND) * np.array([6.0 + 0.5 * wide, 11.0])
+        half = np.array([0.5 * wide, 6.0])
+        others = np.array([other for other in taken if np.abs(other - place).max() >= TOGETHER])
+        # A number is wider than it is high, and reaches further to its sides.
+        away = np.linalg.norm((around[:, None] - others) / (1.0 + half / 20.0), axis=-1)
+        clear = np.minimum(away.min(axis=1, initial=CLEAR), CLEAR)
+        clear[~((frame[0] <= around - half) & (around + half <= frame[1])).all(axis=1)] = 0.0
+        best = around[int(np.argmax(clear))]
+        taken.append(best)
+        found.append((best[0], best[1] + 4.0, text))
+    return found
 
 
 def _line(kind: str, start: Array, end: Array) -> str:

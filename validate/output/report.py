@@ -7,9 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
+from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
-from validate.paper.errata import Finding
+from validate.comparison.findings import Finding
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 
 # Columns of words, which read better from the left.
@@ -49,11 +50,20 @@ def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
     for row in outcome.rows:
-        # The two wheel angles are quantities of their own.
-        key = row.name if row.quantity == "wheel" else row.quantity
+        key = _words(row)
         if key not in worst or _severity(row) > _severity(worst[key]):
             worst[key] = row
     return list(worst.values())
+
+
+def _of_the_car(row: Comparison) -> bool:
+    """Whether a row is about a number that the whole car has, such as an angle of the wheel."""
+    return QUANTITIES[row.quantity].of == "car"
+
+
+def _words(row: Comparison) -> str:
+    """What a row is about; each number of the whole car is a quantity of its own."""
+    return row.name if _of_the_car(row) else QUANTITIES[row.quantity].words
 
 
 def _severity(row: Comparison) -> tuple[int, float]:
@@ -66,8 +76,8 @@ def outcome_text(outcome: Outcome) -> str:
     first, second = (s.formulation for s in outcome.solutions)
     rows = [
         (
-            row.name if row.quantity == "wheel" else row.quantity.replace("_", " "),
-            "" if row.quantity == "wheel" else row.name,
+            _words(row),
+            "" if _of_the_car(row) else row.name,
             _with_unit(row.difference, row.unit),
             _with_unit(row.tolerance, row.unit),
             f"{row.instant:.4g} s",
@@ -88,7 +98,7 @@ def agreement_line(outcome: Outcome) -> str:
     """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
     first, second = (s.formulation for s in outcome.solutions)
     worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
-    where = f"{worst.quantity.replace('_', ' ')} of {worst.name}"
+    where = worst.name if _of_the_car(worst) else f"{_words(worst)} of {worst.name}"
     return (
         f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} quantities; the largest "
         f"difference uses {worst.share:.1e} of its tolerance ({where})"
@@ -100,7 +110,7 @@ def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
     if not findings:
         return f"The paper's printed formulas agree in {', '.join(scenes)}."
     rows = [
-        (f.scene, f.quantity.replace("_", " "), _with_unit(f.worst.difference, f.worst.unit), f.erratum)
+        (f.scene, QUANTITIES[f.quantity].words, _with_unit(f.worst.difference, f.worst.unit), f.erratum)
         for f in findings
     ]
     lines = table(("scene", "wrong quantity", "largest difference", "erratum"), rows)

@@ -1,11 +1,8 @@
-"""The paper's printed formulas held against the mended ones: what they get wrong, and why."""
+"""The paper's printed formulas that are wrong, and which quantities that spoils."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-
-from validate.comparison.compare import Comparison, Outcome
+from collections.abc import Collection
 
 EQUATION_23 = (
     "eq. (23): rows 8-11 lack the factor 2 of a product's second derivative, and row 11 repeats points 7, 5"
@@ -18,30 +15,12 @@ CAUSES = {
 }
 
 
-@dataclass(frozen=True)
-class Finding:
-    """A quantity of a scene that the printed formulas get wrong, its worst row and the erratum."""
+def erratum_of(quantity: str, wrong: Collection[str]) -> str:
+    """The erratum behind a wrong quantity; the knuckle's alpha inherits from what it is made of.
 
-    scene: str
-    quantity: str
-    worst: Comparison
-    erratum: str
-
-
-def findings(outcomes: Iterable[Outcome]) -> tuple[Finding, ...]:
-    """What disagrees in comparisons with the printed formulas, a row per scene and quantity."""
-    result = []
-    for outcome in outcomes:
-        wrong: dict[str, Comparison] = {}
-        for row in outcome.disagreements:
-            if row.quantity not in wrong or row.share > wrong[row.quantity].share:
-                wrong[row.quantity] = row
-        result += [Finding(outcome.scene, q, row, _cause(q, wrong)) for q, row in wrong.items()]
-    return tuple(result)
-
-
-def _cause(quantity: str, wrong: dict[str, Comparison]) -> str:
-    """The erratum behind a wrong quantity; the knuckle's alpha inherits from what it is made of."""
+    Args:
+        wrong: all the quantities that are wrong in a scene.
+    """
     if quantity == "angular_acceleration":
         parts = [CAUSES[q] for q in ("acceleration", "angular_velocity") if q in wrong]
         return "; ".join(parts) or QUOTIENT.replace("omega", "alpha")

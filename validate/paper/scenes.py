@@ -3,4 +3,4 @@
 # The paper's examples, and the chassis motion that is its third degree of freedom; the paper's formulas as
 # printed are tried on them alone.
 PAPER_SCENES = ("bounce", "steer", "bounce-and-steer", "bounce-on-a-heaving-chassis")
-DEFAULT_SCENES = (*PAPER_SCENES, "off-axis-strut")
+DEFAULT_SCENES = (*PAPER_SCENES, "off-axis-strut", "double-wishbone")

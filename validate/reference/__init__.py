@@ -22,6 +22,5 @@ try:
     from validate.reference.sensitivity import Sensitivity as Sensitivity
     from validate.reference.sensitivity import sensitivities as sensitivities
     from validate.reference.solve import solve_reference as solve_reference
-    from validate.reference.time_functions import time_function_value as time_function_value
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.reference", error) from None

@@ -45,11 +45,6 @@ def centre_of(ball: arb) -> mpf:
     return mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent)))
 
 
-def radius_of(ball: arb) -> mpf:
-    """The radius of a ball, without rounding."""
-    return centre_of(ball.rad())
-
-
 def mpf_from_fraction(value: Fraction, digits: int) -> mpf:
     """The fraction as mpf: exact if its denominator is a power of two, else rounded to `digits`."""
     power = value.denominator.bit_length() - 1

@@ -34,8 +34,8 @@ class Instant:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
-        angular_velocity: "knuckle" and "lower_arm", rad/s.
-        angular_acceleration: "knuckle" and "lower_arm", rad/s^2.
+        angular_velocity: of the knuckle and of each arm (see `Linkage.arms`), rad/s.
+        angular_acceleration: of the same, rad/s^2.
         effects: by name, see `effects.registry`; one that is undefined (0/0, or at 180 deg) is left out.
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.

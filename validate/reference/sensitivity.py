@@ -38,7 +38,7 @@ class Sensitivity:
 
     Attributes:
         position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
-        angular_velocity, angular_acceleration: of "knuckle" and "lower_arm".
+        angular_velocity, angular_acceleration: of the knuckle and of each arm.
         effects: by name, see `effects.registry`; one that is undefined (0/0) is left out.
         error_bound: proven bound on the error of each quantity above.
     """

@@ -52,14 +52,13 @@ def solve_reference(
     It sets the precision of python-flint, which is global: not for several threads at once.
 
     Args:
-        points: the points by name, mm; they fix the lengths and need not be assembled. Without
-            rack_centre the rack's line passes through tie_rod_inner; without wheel_axis_inner the wheel's
-            spin axis starts in the strut's strut_lower.
+        points: the points by name, mm; they fix the lengths and need not be assembled. Some may be left out
+            (see `Linkage.stand_ins` and `left_out`).
         inputs: "arm_angle" (rad), "rack" (mm), "heave" (mm), each (value, rate, acceleration).
         guess: some or all points by name, mm, near the wanted assembly.
         up: unit vector of the paper's z in the frame of the points.
         right: unit vector of the paper's y in the frame of the points.
-        side: "left" or "right" wheel, for camber and kingpin angle.
+        side: "left" or "right" wheel, for the effects.
         digits: digits of every number, relative to the greatest of its kind; 15 to 200.
         closure: "drawn" takes a suspension as it is drawn, a strut with its axis in the knuckle on the line
             of strut_lower and strut_top; "collinear" is the paper's strut, the ball joint on one line with

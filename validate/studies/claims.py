@@ -19,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import SceneError
+from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import DUST, as_solution, inputs_at, reference_instant, scales
 from validate.cars.random_scenes import RandomScene, random_scene
 from validate.cars.registry import VARIANTS, Variant
-from validate.formulations.protocol import NUMBERS_OF, FormulationError, Solution
+from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import NAMES, formulation
 from validate.output.report import table
 from validate.reference import NoReferenceError
@@ -67,8 +69,8 @@ def held_scene(car: RandomScene, name: str) -> list[Held]:
         instants = [reference_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
     except (FormulationError, SceneError, NoReferenceError):
         return []
-    reference = as_solution(scene.instants, instants)
-    return [_held(car, quantity, solution, reference, instants) for quantity in NUMBERS_OF]
+    reference = as_solution(scene, instants)
+    return [_held(car, quantity, solution, reference, instants) for quantity in asked_numbers(scene)]
 
 
 def _held(
@@ -76,10 +78,10 @@ def _held(
 ) -> Held:
     found: list[tuple[float, float]] = []
     # The reference's own error is that of numbers as large as the largest ones that a number is made of.
-    dust = DUST * scales({q: getattr(reference, q) for q in NUMBERS_OF})[quantity]
-    for name in getattr(reference, quantity):
-        numbers = getattr(solution, quantity)[name].reshape(len(instants), -1)
-        claims = getattr(solution.accuracy, quantity)[name].reshape(len(instants), -1)
+    dust = DUST * scales(reference.numbers)[quantity]
+    for name in reference.numbers[quantity]:
+        numbers = solution.numbers[quantity][name].reshape(len(instants), -1)
+        claims = solution.accuracy.claims[quantity][name].reshape(len(instants), -1)
         for row, claim, instant in zip(numbers, claims, instants, strict=True):
             errors = (_distance(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
             found += [(e if e > dust else 0.0, float(c)) for e, c in zip(errors, claim, strict=True)]
@@ -106,7 +108,7 @@ def study(cars: Iterable[RandomScene], name: str) -> list[Held]:
 def study_text(helds: Sequence[Held]) -> str:
     """A row for each suspension and quantity: numbers, the largest error / claim, claim / error at levels."""
     rows = []
-    for variant, quantity in itertools.product(VARIANTS, NUMBERS_OF):
+    for variant, quantity in itertools.product(VARIANTS, QUANTITIES):
         part = [held for held in helds if (held.variant, held.quantity) == (variant, quantity)]
         if not part:
             continue
@@ -116,7 +118,7 @@ def study_text(helds: Sequence[Held]) -> str:
         rows.append(
             (
                 variant.words,
-                quantity.replace("_", " "),
+                QUANTITIES[quantity].words,
                 str(sum(len(held.error) + held.exact for held in part)),
                 str(sum(held.exact for held in part)),
                 f"{worst.share:.7g}",

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from rate_sensitivity import rate_sensitivities
 from sample_cars import SampleCar, by_car
 
 from pointcoord import InputOutOfRange, Scene, simulate
@@ -54,7 +55,8 @@ def test_heave_adds_itself_to_positions_and_its_rates_to_rates(
         max(np.abs(v).max() for v in getattr(moved, q).values()) for q in ("velocity", "acceleration")
     )
     sense, bend = (
-        max(getattr(p, f"{q}_sensitivity").max() for p in (one, other)) for q in ("velocity", "acceleration")
+        max(float(largest.max()) for largest in both)
+        for both in zip(rate_sensitivities(still), rate_sensitivities(moved), strict=True)
     )
     speed = 30 * (sense * pose + share * fast)
     second = 30 * (bend * pose + 2 * sense * speed + share * (hard + fast * sense))

@@ -36,7 +36,7 @@ def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureF
     assert "Table 2" in out
     assert "Table 3" in out
     assert "cannot be matched to better than about 10 mm" in out
-    assert "5 of 5 scenes agree" in out
+    assert f"{len(DEFAULT_SCENES)} of {len(DEFAULT_SCENES)} scenes agree" in out
 
 
 def test_json_goes_alone_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
@@ -201,7 +201,46 @@ def test_plan_says_what_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixtur
     out = capsys.readouterr().out
     assert "computed: velocity of every point" in out
     assert "left out: camber and kingpin angle" in out
-    assert "derivatives solved for: 1" in out
+    assert "solved for: positions and velocities\n" in out
+    assert "evaluated: positions and velocities of every point\n" in out
+
+
+def test_plan_says_which_points_are_evaluated_further_than_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = scene_file(
+        tmp_path, ('["velocity", "acceleration", "knuckle_rates", "wheel_angles"]', '["knuckle_rates"]')
+    )
+    assert main(["plan", path]) == 0
+    out = capsys.readouterr().out
+    assert (
+        "evaluated: positions, velocities and accelerations of lower_ball_joint, tie_rod_outer, strut_lower; "
+        "positions of lower_arm_front, " in out
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "bounce",
+            [
+                "from 0.562492 rad (32.228 deg), where it is held by link lower_ball_joint - lower_arm_rear",
+                "camber is -6.993 deg",
+                "from strut_lower (the default of wheel_axis_inner) to wheel_centre",
+            ],
+        ),
+        ("double-wishbone", ["kingpin is 6.997 deg", "from wheel_axis_inner to wheel_centre", "closes"]),
+    ],
+)
+def test_plan_says_where_the_drawing_stands(
+    name: str, words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Lotus prints 7.00 degrees for the double wishbone; 32.228 degrees are README's."""
+    assert main(["plan", name]) == 0
+    out = capsys.readouterr().out
+    for word in words:
+        assert word in out
 
 
 def test_scenes_lists_every_built_in_scene(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,5 +1,6 @@
 """Tolerances and verdicts, held to numbers that can be worked out by hand."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -46,6 +47,11 @@ def test_what_a_side_would_give_is_its_largest_claim_or_what_rounding_leaves() -
     ]
 
 
+def changed(solution: Solution, quantity: str, arrays: Mapping[str, np.ndarray]) -> Solution:
+    """The solution with some numbers of a quantity replaced."""
+    return solution.with_numbers({quantity: {**solution.numbers[quantity], **arrays}})
+
+
 def row(one: Solution, other: Solution, quantity: str, name: str) -> Comparison:
     outcome = compare_solutions(SCENE, one, replace(other, formulation="other"), "steer")
     (found,) = (r for r in outcome.rows if (r.quantity, r.name) == (quantity, name))
@@ -59,11 +65,11 @@ def row(one: Solution, other: Solution, quantity: str, name: str) -> Comparison:
 def test_an_angle_agrees_with_itself_whole_turns_on_and_not_half_a_turn_on(
     solved: Solution, turned: float, verdict: str
 ) -> None:
-    other = replace(solved, wheel={**solved.wheel, "camber": solved.wheel["camber"] + turned})
+    other = changed(solved, "wheel", {"camber": solved.numbers["wheel"]["camber"] + turned})
     if verdict == "agrees":
         # A whole turn added is rounded, by more than what is claimed: claim as much.
-        claims = {name: claim + 4e-15 for name, claim in solved.accuracy.wheel.items()}
-        other = replace(other, accuracy=replace(solved.accuracy, wheel=claims))
+        claims = {name: claim + 4e-15 for name, claim in solved.accuracy.claims["wheel"].items()}
+        other = replace(other, accuracy=solved.accuracy.with_claims({"wheel": claims}))
     assert row(solved, other, "wheel", "camber").verdict == verdict
 
 
@@ -75,16 +81,16 @@ def test_a_solution_prints_as_a_line(solved: Solution) -> None:
 def test_a_wrong_number_does_not_widen_its_own_tolerance(solved: Solution) -> None:
     # Points of the chassis stand still and claim nothing: a fault of 1e20 in one number of another point must
     # not excuse a fault of 1e-13 there.
-    spoilt = dict(solved.velocity)
+    spoilt = dict(solved.numbers["velocity"])
     spoilt["wheel_centre"] = spoilt["wheel_centre"].copy()
     spoilt["wheel_centre"][3] = 1e20
     spoilt["strut_top"] = spoilt["strut_top"] + 1e-13
-    assert row(solved, replace(solved, velocity=spoilt), "velocity", "strut_top").verdict == "disagrees"
+    assert row(solved, changed(solved, "velocity", spoilt), "velocity", "strut_top").verdict == "disagrees"
 
 
 def test_the_absolute_model_claims_what_the_chassis_rounds_and_twice_its_estimates() -> None:
     scene = Scene.load("bounce-on-a-heaving-chassis")
-    claims = formulation("absolute").solve(scene).accuracy
+    claims = formulation("absolute").solve(scene).accuracy.claims
     part, times = scene.mechanism, scene.instants
     laws = {name: rates(law, times) for name, law in scene.inputs.items()}
     lift = laws.pop("heave")[:, 0, None] * np.array(part.up)
@@ -92,7 +98,7 @@ def test_the_absolute_model_claims_what_the_chassis_rounds_and_twice_its_estimat
     still = absolute.solve(model, laws, errors=True)
     # Of a point that does not move in the chassis' frame only the sums with the lift and the origin round.
     rounded = EPS * np.abs(lift) + EPS * np.abs(np.array(part.points["strut_top"]) + lift)
-    assert (claims.position["strut_top"] >= rounded).all()
-    assert (claims.position["strut_top"] <= rounded + 4.0 * EPS * 500.0).all()
+    assert (claims["position"]["strut_top"] >= rounded).all()
+    assert (claims["position"]["strut_top"] <= rounded + 4.0 * EPS * 500.0).all()
     for point in ("tie_rod_outer", "wheel_centre"):
-        assert (claims.velocity[point] >= 1.9 * still.velocity_error[point]).all()
+        assert (claims["velocity"][point] >= 1.9 * still.velocity_error[point]).all()

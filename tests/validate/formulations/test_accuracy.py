@@ -9,7 +9,7 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
@@ -31,7 +31,7 @@ ONES = np.ones(COUNT)
 )
 def test_a_claim_that_is_no_bound_is_refused_with_what_is_allowed(claim: Any, said: str) -> None:
     with pytest.raises(AccuracyError, match="allowed: ") as caught:
-        Accuracy(ONES, velocity={"wheel_centre": claim})
+        Accuracy(ONES, {"velocity": {"wheel_centre": claim}})
     assert said in str(caught.value)
 
 
@@ -53,14 +53,19 @@ class Changed:
         return self.change(replace(formulation("absolute").solve(scene), formulation="changed"))
 
 
+def with_claims(solution: Solution, **claims: Any) -> Solution:
+    """The solution with other claims of some quantities."""
+    return replace(solution, accuracy=solution.accuracy.with_claims(claims))
+
+
 def compared(change: Callable[[Solution], object]) -> Outcome:
     return compare(SCENE, "pointcoord", Changed(change))
 
 
 def with_velocity(wrong: Callable[[np.ndarray], Any]) -> Callable[[Solution], Solution]:
     def change(solution: Solution) -> Solution:
-        arrays: Mapping[str, Any] = solution.velocity
-        return replace(solution, velocity={**arrays, "wheel_centre": wrong(arrays["wheel_centre"])})
+        arrays: Mapping[str, Any] = solution.numbers["velocity"]
+        return solution.with_numbers({"velocity": {**arrays, "wheel_centre": wrong(arrays["wheel_centre"])}})
 
     return change
 
@@ -107,7 +112,9 @@ def test_whole_numbers_are_numbers() -> None:
 
 
 def test_a_solver_of_some_quantities_is_compared_in_these() -> None:
-    outcome = compared(lambda s: replace(s, velocity={}, acceleration={}, angular_velocity={}, wheel={}))
+    outcome = compared(
+        lambda s: s.with_numbers({"velocity": {}, "acceleration": {}, "angular_velocity": {}, "wheel": {}})
+    )
     assert {row.quantity for row in outcome.rows if row.verdict == "agrees"} == {
         "position",
         "angular_acceleration",
@@ -119,15 +126,11 @@ def test_a_solver_of_some_quantities_is_compared_in_these() -> None:
 
 def test_instants_that_both_give_are_compared() -> None:
     def every_other(solution: Solution) -> Solution:
-        few = {
-            q: {n: a[::2] for n, a in getattr(solution, q).items()}
-            for q in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
-        }
-        claims = {q: {n: a[::2] for n, a in getattr(solution.accuracy, q).items()} for q in few}
-        wheel = {n: a[::2] for n, a in solution.wheel.items()}
-        angles = {n: a[::2] for n, a in solution.accuracy.wheel.items()}
-        accuracy = Accuracy(solution.accuracy.condition[::2], wheel=angles, **claims)
-        return replace(solution, times=solution.times[::2], wheel=wheel, accuracy=accuracy, **few)
+        def half(numbers: Numbers) -> Numbers:
+            return {q: {n: a[::2] for n, a in arrays.items()} for q, arrays in numbers.items()}
+
+        accuracy = Accuracy(solution.accuracy.condition[::2], half(solution.accuracy.claims))
+        return replace(solution, times=solution.times[::2], numbers=half(solution.numbers), accuracy=accuracy)
 
     outcome = compared(every_other)
     assert outcome.agreed
@@ -141,7 +144,7 @@ def test_instants_that_both_give_are_compared() -> None:
     [
         lambda s: replace(s, times=None),
         lambda s: replace(s, times=s.times[:, None]),
-        lambda s: {"position": s.position},
+        lambda s: {"position": s.numbers["position"]},
         lambda s: replace(s, accuracy=Accuracy(-s.accuracy.condition)),
     ],
 )
@@ -153,8 +156,8 @@ def test_what_is_no_solution_is_a_refusal(change: Callable[[Solution], object]) 
 @pytest.mark.parametrize("quantity", ["position", "velocity", "angular_acceleration", "wheel"])
 def test_a_tolerance_that_rests_on_one_sides_claim_alone_tests_nothing(quantity: str) -> None:
     def wide(solution: Solution) -> Solution:
-        claims = {name: claim + 1e-3 for name, claim in getattr(solution.accuracy, quantity).items()}
-        return replace(solution, accuracy=replace(solution.accuracy, **{quantity: claims}))
+        claims = {name: claim + 1e-3 for name, claim in solution.accuracy.claims[quantity].items()}
+        return with_claims(solution, **{quantity: claims})
 
     outcome = compared(wide)
     loose = [row for row in outcome.rows if row.quantity == quantity and row.difference > 0.0]
@@ -168,12 +171,10 @@ def test_a_tolerance_that_rests_on_one_sides_claim_alone_tests_nothing(quantity:
 
 
 def test_a_claim_of_nothing_is_no_test_and_a_fault_is_found_however_little_is_claimed() -> None:
-    none = compared(lambda s: replace(s, accuracy=replace(s.accuracy, velocity={})))
+    none = compared(lambda s: with_claims(s, velocity={}))
     assert {row.verdict for row in none.rows if row.quantity == "velocity"} == {"not tested"}
     exact = compared(
-        lambda s: replace(
-            s, accuracy=replace(s.accuracy, velocity={n: 0.0 * c for n, c in s.accuracy.velocity.items()})
-        )
+        lambda s: with_claims(s, velocity={n: 0.0 * c for n, c in s.accuracy.claims["velocity"].items()})
     )
     assert {row.quantity for row in exact.disagreements} == {"velocity"}
 

@@ -32,7 +32,7 @@ def require_agreement(outcome: Outcome) -> None:
     """Every row agrees; of rates that are lost to underflow when they are multiplied nothing can be said."""
     assert not outcome.disagreements
     for row in outcome.undecided:
-        numbers = getattr(outcome.solutions[0], row.quantity).values()
+        numbers = outcome.solutions[0].numbers[row.quantity].values()
         assert max(float(np.abs(array).max()) for array in numbers) < 1e-280, row
 
 
@@ -69,7 +69,7 @@ def test_a_tolerance_is_no_wider_than_its_derivation_needs() -> None:
         outcome = compare(Scene.load(name), "pointcoord", "absolute")
         solution = outcome.solutions[1]
         for row in outcome.rows:
-            numbers = getattr(solution, row.quantity)
+            numbers = solution.numbers[row.quantity]
             largest = max(float(np.abs(array).max()) for array in numbers.values())
             assert row.tolerance < 1e-12 * largest, row
             if row.quantity != "wheel" and row.difference > 0.0 and row.part < 1.0:

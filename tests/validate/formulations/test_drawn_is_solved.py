@@ -63,7 +63,7 @@ def solved(name: str, scene: Scene) -> Solution:
 
 def allowed(solution: Solution) -> float:
     """What a model says that its points may be off by, mm, carried ones too."""
-    return max(float(claim.max()) for claim in solution.accuracy.position.values())
+    return max(float(claim.max()) for claim in solution.accuracy.claims["position"].values())
 
 
 def gain(name: str, scene: Scene) -> float:
@@ -108,7 +108,7 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
     drawing = {name: np.array(place) for name, place in car.points.items()}
     for name in MODELS:
         solution = first if name == "pointcoord" else solved(name, scene)
-        there = {n: place[0] for n, place in solution.position.items()}
+        there = {n: place[0] for n, place in solution.numbers["position"].items()}
         for point, distance in off(drawing, there).items():
             assert distance <= rounding + allowed(solution), (name, point)
     for point, distance in off(drawing, true_places(scene)).items():
@@ -125,7 +125,7 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
     last = 2.0 * EPS * max(float(np.abs(place).max()) for place in exact.values())  # both are rounded
     for name in MODELS:
         solution = solved(name, scene)
-        there = {n: place[0] for n, place in solution.position.items()}
+        there = {n: place[0] for n, place in solution.numbers["position"].items()}
         for point, distance in off(there, exact).items():
             assert distance <= allowed(solution) + last, (name, point)
     for point, distance in off(true_places(scene), exact).items():
@@ -149,8 +149,8 @@ def test_a_collinear_strut_once_closed_and_drawn_so_moves_as_before(
         condition = max(float(s.accuracy.condition.max()) for s in (before, after))
         raised = condition * gain(name, scene_at(closed, *inputs))
         room = allowed(before) + allowed(after) + raised * EPS * far
-        for point, place in before.position.items():
-            assert float(np.abs(place - after.position[point]).max()) <= room, (name, point)
+        for point, place in before.numbers["position"].items():
+            assert float(np.abs(place - after.numbers["position"][point]).max()) <= room, (name, point)
 
 
 LAWS = ("mirrored", "turned", "moved", "scaled")
@@ -184,13 +184,13 @@ def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: f
         elsewhere = scene_at(other, angle, sign * scale * travel)
         there = solved(name, elsewhere)
         # Coordinates are rounded anew, and the condition number says what comes of that.
-        far = max(float(np.abs(place).max()) for place in there.position.values())
+        far = max(float(np.abs(place).max()) for place in there.numbers["position"].values())
         raised = gain(name, elsewhere) * float(there.accuracy.condition.max())
         rounding = 2.0 * raised * EPS * far
         room = scale * allowed(here) + allowed(there) + rounding
-        for point, place in here.position.items():
+        for point, place in here.numbers["position"].items():
             moved = place @ matrix.T + shift
-            assert float(np.abs(moved - there.position[point]).max()) <= room, (name, point)
+            assert float(np.abs(moved - there.numbers["position"][point]).max()) <= room, (name, point)
 
 
 def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner() -> None:
@@ -200,8 +200,8 @@ def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner() -> None:
     short = Car({n: p for n, p in points.items() if n != "rack_centre"}, "left", whole.up, whole.right)
     for name in MODELS:
         one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (whole, short))
-        for point, place in one.position.items():
-            assert np.array_equal(place, two.position[point]), (name, point)
+        for point, place in one.numbers["position"].items():
+            assert np.array_equal(place, two.numbers["position"][point]), (name, point)
 
 
 def test_the_two_kinds_of_strut_are_two_cars_where_the_ball_joint_is_off_the_axis() -> None:
@@ -209,7 +209,9 @@ def test_the_two_kinds_of_strut_are_two_cars_where_the_ball_joint_is_off_the_axi
     bent = Car(BESIDE_CAR.points, "left", BESIDE_CAR.up, BESIDE_CAR.right, "collinear")
     for name in MODELS:
         one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (BESIDE_CAR, bent))
-        distance = np.abs(one.position["wheel_centre"] - two.position["wheel_centre"]).max()
+        distance = np.abs(
+            one.numbers["position"]["wheel_centre"] - two.numbers["position"]["wheel_centre"]
+        ).max()
         assert distance > 5.0, name
     drawn = Car(PAPER_CAR.points, "left", PAPER_CAR.up, PAPER_CAR.right, "drawn")
     assert Linkage.of(drawn).drawn_angle == Linkage.of(PAPER_CAR).drawn_angle

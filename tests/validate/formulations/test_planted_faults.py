@@ -11,18 +11,20 @@ import absolute
 import pointcoord.effects.rigid
 import pointcoord.results.readout
 import pointcoord.solve.dense_output
-import pointcoord.solve.pointwise
 import pointcoord.solve.taylor
 import validate.formulations.absolute_coordinates
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.method import NEWTON
 from pointcoord.results.samples import Samples
-from validate.comparison.compare import compare
+from validate.comparison.compare import compare, compare_solutions
+from validate.formulations.asked_numbers import per_second
+from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.paper.scenes import DEFAULT_SCENES
+from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 
 # The module; the package's attribute of this name is the function.
 solver = import_module("pointcoord.simulation")
@@ -47,16 +49,21 @@ def _link_too_long(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, drawn=drawn)
 
 
-def _mirrored_wheel(mechanism: Mechanism) -> Mechanism:
-    """The wheel centre on the wrong side of the knuckle's plane: one sign."""
-    weights = mechanism.carrier_weights["wheel_centre"] * np.array([1.0, 1.0, -1.0])
-    return replace(mechanism, carrier_weights={"wheel_centre": weights})
+def _displaced_wheel(mechanism: Mechanism) -> Mechanism:
+    """The wheel centre a part in 1e9 further from the knuckle's plane than it is drawn."""
+    weights = dict(mechanism.carrier_weights)
+    weights["wheel_centre"] = weights["wheel_centre"] * np.array([1.0, 1.0, 1.0 + 1e-9])
+    return replace(mechanism, carrier_weights=weights)
 
 
 def _half_square_term(patch: pytest.MonkeyPatch) -> None:
     """The factor 2 of eq. (23) dropped in every row."""
-    term = pointcoord.solve.pointwise.square_velocity_term
-    patch.setattr(solver, "square_velocity_term", lambda s, v: 0.5 * term(s, v))
+    wrong = replace(NEWTON, square_velocity_term=lambda s, v: 0.5 * NEWTON.square_velocity_term(s, v))
+    faulty = PointCoordinates("pointcoord-newton", wrong)
+    patch.setattr(
+        "validate.comparison.compare.formulation",
+        lambda name: faulty if name == faulty.name else formulation(name),
+    )
 
 
 def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
@@ -98,19 +105,26 @@ def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
 
 
 def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
-    build = absolute.macpherson
+    suspension_of = absolute.suspension_of
+
+    def wrong(kind: str) -> Callable[..., absolute.Model]:
+        build = suspension_of(kind)
+        return lambda points, **options: build(change(dict(points)), **(options | axes))
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        def wrong(points: dict, **options: object) -> absolute.Model:
-            return build(change(dict(points)), **(options | axes))
-
-        patch.setattr(absolute, "macpherson", wrong)
+        patch.setattr(absolute, "suspension_of", wrong)
 
     return plant
 
 
-def _moved(name: str, *shift: float) -> Callable[[dict], dict]:
-    return lambda points: points | {name: tuple(np.add(points[name], shift))}
+def _moved(names: tuple[str, ...], *shift: float) -> Callable[[dict], dict]:
+    """The points of these names, as far as the car has them, elsewhere."""
+    return lambda points: points | {n: tuple(np.add(points[n], shift)) for n in names if n in points}
+
+
+def _exchanged(points: dict) -> dict:
+    front, rear = points["lower_arm_front"], points["lower_arm_rear"]
+    return points | {"lower_arm_front": rear, "lower_arm_rear": front}
 
 
 def _body_frame(patch: pytest.MonkeyPatch) -> None:
@@ -119,7 +133,8 @@ def _body_frame(patch: pytest.MonkeyPatch) -> None:
 
     def wrong(*args: object, **options: object) -> absolute.Solution:
         solved = solve(*args, **options)
-        p = [solved.position[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower")]
+        third = "strut_lower" if "strut_lower" in solved.position else "upper_ball_joint"
+        p = [solved.position[n] for n in ("lower_ball_joint", "tie_rod_outer", third)]
         e1 = p[1] - p[0]
         e3 = np.cross(e1, p[2] - p[0])
         axes = np.stack(
@@ -160,7 +175,7 @@ def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
 
 @dataclass(frozen=True)
 class Fault:
-    """Where a fault goes, the scene that shows it, and the quantity that it spoils."""
+    """Where a fault goes, one of the paper's scenes that shows it, and the quantity that it spoils."""
 
     plant: Plant
     scene: str
@@ -170,7 +185,7 @@ class Fault:
 
 FAULTS = {
     "a link 1e-7 mm too long": Fault(_in_mechanism(_link_too_long), "bounce", "position"),
-    "the wheel on the wrong side of the knuckle": Fault(_in_mechanism(_mirrored_wheel), "steer", "position"),
+    "the wheel a part in 1e9 off its place": Fault(_in_mechanism(_displaced_wheel), "steer", "position"),
     "the factor 2 of eq. (23) dropped": Fault(
         _half_square_term, "bounce", "acceleration", "pointcoord-newton"
     ),
@@ -187,17 +202,15 @@ FAULTS = {
         _in_absolute_model(lambda p: p, right=(0.0, -1.0, 0.0)), "steer", "position"
     ),
     "the tie rod 1e-7 mm too short": Fault(
-        _in_absolute_model(_moved("tie_rod_inner", 0.0, -1e-7, 0.0)), "bounce", "position"
+        _in_absolute_model(_moved(("tie_rod_inner",), 0.0, -1e-7, 0.0)), "bounce", "position"
     ),
-    "the strut's axis off by 1e-9 mm": Fault(
-        _in_absolute_model(_moved("strut_lower", 1e-9, 0.0, 0.0)), "steer", "position"
+    "the strut or the upper ball joint off by 1e-9 mm": Fault(
+        _in_absolute_model(_moved(("strut_lower", "upper_ball_joint"), 1e-9, 0.0, 0.0)), "steer", "position"
     ),
-    "a wrong point: the wheel at the rod's end": Fault(
-        _in_absolute_model(lambda p: p | {"wheel_centre": p["strut_rod_end"]}), "bounce", "position"
+    "a wrong point: the wheel at the tie rod's end": Fault(
+        _in_absolute_model(lambda p: p | {"wheel_centre": p["tie_rod_outer"]}), "bounce", "position"
     ),
-    "y and z of a point exchanged": Fault(
-        _in_absolute_model(lambda p: p | {"lower_arm_rear": (540, -20, -10)}), "bounce", "position"
-    ),
+    "the pivots of the arm exchanged": Fault(_in_absolute_model(_exchanged), "bounce", "position"),
     "the vertical tilted by 1e-9 rad": Fault(
         _in_absolute_model(lambda p: p, up=(1e-9, 0.0, 1.0)), "bounce", "position"
     ),
@@ -206,10 +219,24 @@ FAULTS = {
 }
 
 
+def heaving(scene: Scene) -> Scene:
+    """The scene on a chassis that moves up and down, so that it shows every fault."""
+    content = scene.model_dump(mode="json", exclude_none=True)
+    content["inputs"]["heave"] = {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}
+    return Scene.from_mapping(content)
+
+
+OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
+OTHER_CARS = {name: heaving(Scene.load(name)) for name in DEFAULT_SCENES if name not in PAPER_SCENES}
+
+
+@pytest.mark.parametrize("car", ["paper", *OTHER_CARS])
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_single_fault_makes_the_comparison_fail(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_single_fault_makes_the_comparison_fail(
+    name: str, car: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     fault = FAULTS[name]
-    scene = Scene.load(fault.scene)
+    scene = OTHER_CARS[car] if car in OTHER_CARS else OWN_SCENES[fault.scene]
     assert compare(scene, fault.first, "absolute").agreed
     fault.plant(monkeypatch)
     outcome = compare(scene, fault.first, "absolute")
@@ -217,6 +244,7 @@ def test_a_single_fault_makes_the_comparison_fail(name: str, monkeypatch: pytest
 
 
 NEAR = 1e-11  # relative: a hundred thousand roundings, which a tolerance for a whole motion let pass
+RATES = [quantity for quantity in QUANTITIES if per_second(quantity) > 0]
 
 
 def _scaled(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -247,7 +275,7 @@ def _off_in_absolute(quantity: str) -> Plant:
 
 
 @pytest.mark.parametrize("scene", DEFAULT_SCENES)
-@pytest.mark.parametrize("quantity", ["velocity", "acceleration", "angular_velocity", "angular_acceleration"])
+@pytest.mark.parametrize("quantity", RATES)
 @pytest.mark.parametrize(
     ("plant", "method"),
     [
@@ -286,38 +314,19 @@ def test_a_rate_that_is_summed_wrong_by_a_part_in_1e11_is_caught(
     assert spoilt <= {row.quantity for row in outcome.disagreements}
 
 
-class _Stretched:
-    """A formulation whose result of one name is a relative 1e-7 off at one instant."""
-
-    name = "stretched"
-
-    def __init__(self, quantity: str, part: str) -> None:
-        self.quantity, self.part = quantity, part
-
-    def solve(self, scene: Scene) -> Solution:
-        solution = formulation("absolute").solve(scene)
-        arrays = dict(getattr(solution, self.quantity))
-        wrong = arrays[self.part].copy()
-        wrong[len(wrong) // 2] *= 1.0 + 1e-7
-        return replace(solution, **{self.quantity: arrays | {self.part: wrong}})
-
-
-@pytest.mark.parametrize(
-    ("quantity", "part"),
-    [
-        ("position", "strut_lower"),
-        ("position", "rack_centre"),
-        ("velocity", "tie_rod_inner"),
-        ("acceleration", "wheel_centre"),
-        ("angular_velocity", "knuckle"),
-        ("angular_acceleration", "knuckle"),
-        ("wheel", "camber"),
-        ("wheel", "kingpin"),
-    ],
-)
-def test_one_number_at_one_instant_a_ten_millionth_off_is_seen(quantity: str, part: str) -> None:
-    outcome = compare(Scene.load("steer"), "pointcoord", _Stretched(quantity, part))
-    assert [(row.quantity, row.name) for row in outcome.disagreements] == [(quantity, part)]
+@pytest.mark.parametrize("name", ["steer", *OTHER_CARS])
+def test_one_number_at_one_instant_a_ten_millionth_off_is_seen(name: str) -> None:
+    """Of every point, body and angle: off by as much of the largest number of its quantity."""
+    scene = Scene.load(name)
+    ours, theirs = (formulation(who).solve(scene) for who in ("pointcoord", "absolute"))
+    for quantity, arrays in theirs.numbers.items():
+        largest = max(float(np.abs(array).max()) for array in arrays.values())
+        for part, array in arrays.items():
+            wrong = array.copy()
+            wrong[len(wrong) // 2] += 1e-7 * largest
+            faulty = theirs.with_numbers({quantity: {**arrays, part: wrong}})
+            outcome = compare_solutions(scene, ours, faulty, name)
+            assert [(row.quantity, row.name) for row in outcome.disagreements] == [(quantity, part)]
 
 
 def test_not_a_number_is_a_disagreement() -> None:
@@ -326,9 +335,10 @@ def test_not_a_number_is_a_disagreement() -> None:
 
         def solve(self, scene: Scene) -> Solution:
             solution = formulation("absolute").solve(scene)
-            wrong = solution.velocity["wheel_centre"].copy()
-            wrong[3, 1] = np.nan
-            return replace(solution, velocity={**solution.velocity, "wheel_centre": wrong})
+            velocity = dict(solution.numbers["velocity"])
+            velocity["wheel_centre"] = velocity["wheel_centre"].copy()
+            velocity["wheel_centre"][3, 1] = np.nan
+            return solution.with_numbers({"velocity": velocity})
 
     outcome = compare(Scene.load("steer"), "pointcoord", Holes())
     assert [(row.quantity, row.name) for row in outcome.disagreements] == [("velocity", "wheel_centre")]
@@ -339,7 +349,8 @@ def test_a_missing_result_cannot_pass_for_agreement() -> None:
         name = "silent"
 
         def solve(self, scene: Scene) -> Solution:
-            return replace(formulation("absolute").solve(scene), angular_velocity={})
+            solution = formulation("absolute").solve(scene)
+            return solution.with_numbers({"angular_velocity": {}})
 
     outcome = compare(Scene.load("steer"), "pointcoord", Silent())
     assert not outcome.agreed

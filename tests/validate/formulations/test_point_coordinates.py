@@ -35,7 +35,7 @@ def test_poses_are_proven_to_a_part_in_1e12_of_the_way_before_a_lock() -> None:
     solved = formulation("pointcoord").solve(rack_to_its_end(1e-12))
     # A fold of the length of the car: condition number 1 / sqrt(1e-12) and somewhat more.
     assert solved.accuracy.condition[1] > 1e6
-    assert max(float(claim.max()) for claim in solved.accuracy.position.values()) < 1e-6
+    assert max(float(claim.max()) for claim in solved.accuracy.claims["position"].values()) < 1e-6
 
 
 @pytest.mark.parametrize("part", ["bound", "carried_bound"])
@@ -61,8 +61,8 @@ def test_a_series_claims_what_it_leaves_out_and_a_coarse_one_is_no_test(toleranc
     series, newton = (formulation(name).solve(scene) for name in ("pointcoord", "pointcoord-newton"))
     outcome = compare_solutions(scene, series, newton, "steer")
     assert not outcome.disagreements
-    claimed = max(float(claim.max()) for claim in series.accuracy.acceleration.values())
-    largest = max(float(np.abs(array).max()) for array in series.acceleration.values())
+    claimed = max(float(claim.max()) for claim in series.accuracy.claims["acceleration"].values())
+    largest = max(float(np.abs(array).max()) for array in series.numbers["acceleration"].values())
     # A series is cut at 4 eps to 1e-6 of a derivative's size.
     if tolerance < 1.0:
         assert outcome.agreed
@@ -87,9 +87,9 @@ def test_a_fault_of_a_number_does_not_widen_what_is_claimed_of_it(
 
     right = formulation("pointcoord").solve(Scene.load("steer")).accuracy
     monkeypatch.setattr(Motion, "proof", spoilt)
-    claims = getattr(formulation("pointcoord").solve(Scene.load("steer")).accuracy, quantity)
+    claims = formulation("pointcoord").solve(Scene.load("steer")).accuracy.claims[quantity]
     for name, claim in claims.items():
-        assert (claim >= getattr(right, quantity)[name]).all()
+        assert (claim >= right.claims[quantity][name]).all()
         assert (claim < 1e-6).all()
 
 
@@ -102,8 +102,8 @@ def test_what_lies_far_away_loosens_positions_and_no_rate() -> None:
         formulation("pointcoord").solve(s) for s in (Scene.from_mapping(content), Scene.load("bounce"))
     )
     for quantity in ("position", "velocity", "angular_acceleration", "wheel"):
-        for name, claim in getattr(near.accuracy, quantity).items():
-            away = getattr(far.accuracy, quantity)[name]
+        for name, claim in near.accuracy.claims[quantity].items():
+            away = far.accuracy.claims[quantity][name]
             if quantity == "position":
                 assert away.max() > 1e3 * claim.max() or claim.max() == 0.0
             else:

@@ -3,9 +3,8 @@
 Two models that share an assumption agree on a wrong answer, so nothing here compares one with the other.
 """
 
-from collections.abc import Mapping
 from fractions import Fraction
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
@@ -13,123 +12,208 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from validate.formulations.asked_numbers import per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
-CAR = {name: np.array(p) for name, p in Scene.load("off-axis-strut").mechanism.points.items()}
-LAWS: dict[str, Any] = {
-    "arm_angle": {"sine": {"amplitude": 0.15, "angular_frequency": 5.0, "offset": 1.65}},
-    "rack": {"polynomial": [2.0, 30.0, -10.0]},
+Points = dict[str, Array]
+SCENES = {"strut": Scene.load("off-axis-strut"), "wishbone": Scene.load("double-wishbone")}
+CARS = {
+    car: {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    for car, scene in SCENES.items()
+}
+LAWS: dict[str, dict[str, Any]] = {
+    "strut": {
+        "arm_angle": {"sine": {"amplitude": 0.15, "angular_frequency": 5.0, "offset": 1.65}},
+        "rack": {"polynomial": [2.0, 30.0, -10.0]},
+    },
+    "wishbone": {
+        "arm_angle": {"sine": {"amplitude": 0.1, "angular_frequency": 5.0, "offset": 1.5}},
+        "rack": {"polynomial": [2.0, 20.0, -10.0]},
+    },
 }
 # Lengths of 1000 mm in doubles, moved by another route: some hundred roundings, a condition number below
 # a hundred, and rates some ten times the lengths.
 CLOSE = 1e4 * np.finfo(float).eps * 1000.0
 
 models = pytest.mark.parametrize("name", ["pointcoord", "pointcoord-newton", "absolute"])
+cars = pytest.mark.parametrize("car", SCENES)
 
 
-def solved(name: str, points: Mapping[str, Array], side: str = "left", **laws: Any) -> Solution:
+def solved(name: str, car: str, points: Points | None = None, side: str = "", **laws: Any) -> Solution:
+    """A car's motion by a model, with other points, on the other side, or driven otherwise."""
+    drawn = SCENES[car].mechanism
     content = {
-        "effects": ["velocity", "acceleration", "knuckle_rates", "wheel_angles"],
+        "effects": list(EFFECTS),
         "mechanism": {
-            "type": "macpherson",
-            "side": side,
-            "points": {point: place.tolist() for point, place in points.items()},
+            "type": drawn.type,
+            "side": side or drawn.side,
+            "points": {point: place.tolist() for point, place in (points or CARS[car]).items()},
         },
-        "inputs": LAWS | laws,
+        "inputs": LAWS[car] | laws,
         "time": {"start": 0.0, "stop": 1.0, "samples": 7},
     }
     return formulation(name).solve(Scene.from_mapping(content))
 
 
 def same_knuckle(one: Solution, other: Solution, points: tuple[str, ...]) -> None:
-    for quantity in ("position", "velocity", "acceleration"):
-        for point in points:
-            gap = np.abs(getattr(one, quantity)[point] - getattr(other, quantity)[point]).max()
-            assert gap <= CLOSE * {"position": 1.0, "velocity": 10.0, "acceleration": 100.0}[quantity]
-    for angle in ("camber", "kingpin"):
-        assert np.abs(one.wheel[angle] - other.wheel[angle]).max() <= CLOSE / 100.0
+    """The points move alike, and every angle of the car is the same."""
+    for quantity, numbers in one.numbers.items():
+        if QUANTITIES[quantity].of == "car":
+            for angle, values in numbers.items():
+                assert np.abs(values - other.numbers[quantity][angle]).max() <= CLOSE / 100.0, angle
+        elif QUANTITIES[quantity].of == "point":
+            for point in points:
+                gap = np.abs(numbers[point] - other.numbers[quantity][point]).max()
+                assert gap <= CLOSE * 10.0 ** per_second(quantity), (quantity, point)
 
 
 @models
 @pytest.mark.parametrize("place", [-0.4, 0.3, 1.7])
 def test_the_strut_axis_is_a_line_wherever_on_it_strut_lower_is_drawn(name: str, place: float) -> None:
-    top, lower = CAR["strut_top"], CAR["strut_lower"]
-    elsewhere = {**CAR, "strut_lower": top + place * (lower - top)}
+    drawn = CARS["strut"]
+    top, lower = drawn["strut_top"], drawn["strut_lower"]
+    elsewhere = {**drawn, "strut_lower": top + place * (lower - top)}
     points = ("lower_ball_joint", "tie_rod_outer", "wheel_centre", "tie_rod_inner")
     if place < 0.0:
         # Above the strut top the axis points the other way, and so does the rod's end on it.
-        elsewhere["strut_rod_end"] = CAR["strut_rod_end"]
-    same_knuckle(solved(name, CAR), solved(name, elsewhere), (*points, "strut_rod_end"))
+        elsewhere["strut_rod_end"] = drawn["strut_rod_end"]
+    same_knuckle(solved(name, "strut"), solved(name, "strut", elsewhere), (*points, "strut_rod_end"))
 
 
 @models
-def test_the_spin_axis_is_a_line_wherever_on_it_its_inner_point_is_drawn(name: str) -> None:
-    inner, centre = CAR["wheel_axis_inner"], CAR["wheel_centre"]
-    elsewhere = {**CAR, "wheel_axis_inner": centre + 2.5 * (inner - centre)}
-    same_knuckle(solved(name, CAR), solved(name, elsewhere), ("wheel_centre", "tie_rod_outer"))
+@cars
+def test_the_spin_axis_is_a_line_wherever_on_it_its_inner_point_is_drawn(name: str, car: str) -> None:
+    inner, centre = CARS[car]["wheel_axis_inner"], CARS[car]["wheel_centre"]
+    elsewhere = {**CARS[car], "wheel_axis_inner": centre + 2.5 * (inner - centre)}
+    same_knuckle(solved(name, car), solved(name, car, elsewhere), ("wheel_centre", "tie_rod_outer"))
 
 
 @models
 def test_the_spin_axis_is_drawn_through_strut_lower_where_it_has_no_point_of_its_own(name: str) -> None:
-    without = {point: place for point, place in CAR.items() if point != "wheel_axis_inner"}
-    through = {**CAR, "wheel_axis_inner": CAR["strut_lower"]}
-    same_knuckle(solved(name, without), solved(name, through), ("wheel_centre", "tie_rod_outer"))
+    drawn = CARS["strut"]
+    without = {point: place for point, place in drawn.items() if point != "wheel_axis_inner"}
+    through = {**drawn, "wheel_axis_inner": drawn["strut_lower"]}
+    points = ("wheel_centre", "tie_rod_outer")
+    same_knuckle(solved(name, "strut", without), solved(name, "strut", through), points)
 
 
 @models
-def test_the_line_of_the_rack_is_a_line_wherever_on_it_its_centre_is_drawn(name: str) -> None:
+@cars
+def test_the_line_of_the_rack_is_a_line_wherever_on_it_its_centre_is_drawn(name: str, car: str) -> None:
     shift = 17.0  # towards -y, as a positive travel goes
-    elsewhere = {**CAR, "rack_centre": CAR["tie_rod_inner"] + [0.0, shift, 0.0]}
-    later = {"polynomial": [2.0 + shift, 30.0, -10.0]}
+    elsewhere = {**CARS[car], "rack_centre": CARS[car]["tie_rod_inner"] + [0.0, shift, 0.0]}
+    value, *rates_of_it = LAWS[car]["rack"]["polynomial"]
+    later = {"polynomial": [value + shift, *rates_of_it]}
     same_knuckle(
-        solved(name, CAR),
-        solved(name, elsewhere, rack=later),
+        solved(name, car),
+        solved(name, car, elsewhere, rack=later),
         ("wheel_centre", "tie_rod_inner", "tie_rod_outer"),
     )
 
 
 @models
+@pytest.mark.parametrize(
+    ("car", "arm"), [("strut", "lower_arm"), ("wishbone", "lower_arm"), ("wishbone", "upper_arm")]
+)
+def test_an_arm_turns_about_a_line_wherever_on_it_its_pivots_are_drawn(name: str, car: str, arm: str) -> None:
+    """But the arm angle is measured at the lower arm's front pivot, which must stay."""
+    front, rear = f"{arm}_front", f"{arm}_rear"
+    along = CARS[car][rear] - CARS[car][front]
+    elsewhere = {**CARS[car], rear: CARS[car][rear] + 0.7 * along}
+    if arm == "upper_arm":
+        elsewhere[front] = CARS[car][front] - 0.4 * along
+    points = ("lower_ball_joint", "tie_rod_outer", "wheel_centre")
+    same_knuckle(solved(name, car), solved(name, car, elsewhere), points)
+
+
+@models
+@cars
+def test_bodies_are_rigid_their_carried_points_too(name: str, car: str) -> None:
+    knuckle = {
+        "strut": ("lower_ball_joint", "tie_rod_outer", "strut_lower"),
+        "wishbone": ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer"),
+    }[car]
+    bodies = [(*knuckle, "wheel_centre", "wheel_axis_inner"), ("tie_rod_inner", "tie_rod_outer")]
+    bodies += [
+        (ball, f"{arm}_front", f"{arm}_rear")
+        for arm, ball in (("lower_arm", "lower_ball_joint"), ("upper_arm", "upper_ball_joint"))
+        if ball in CARS[car]
+    ]
+    places = solved(name, car).numbers["position"]
+    for body in bodies:
+        for one, other in combinations(body, 2):
+            drawn = np.linalg.norm(CARS[car][one] - CARS[car][other])
+            length = np.linalg.norm(places[one] - places[other], axis=-1)
+            assert np.abs(length - drawn).max() <= CLOSE, (one, other)
+    # A mirrored body has the same lengths: the wheel must stay on its side of the knuckle's plane.
+    corners = np.array([places[point] for point in (*knuckle, "wheel_centre")])
+    drawing = np.array([CARS[car][point] for point in (*knuckle, "wheel_centre")])
+    volumes, volume = (np.linalg.det(np.moveaxis(c[1:] - c[0], 0, -1)) for c in (corners, drawing))
+    assert np.abs(volumes / volume - 1.0).max() <= 1e-9
+
+
+@models
+def test_the_steering_axis_of_a_double_wishbone_runs_through_its_ball_joints(name: str) -> None:
+    """The kingpin angle is that of the line between them; turned about it, the rack turns the wheel."""
+    solution = solved(name, "wishbone")
+    places = solution.numbers["position"]
+    axis = places["upper_ball_joint"] - places["lower_ball_joint"]
+    # A right wheel: y is outboard. Leaning in at the top is positive.
+    assert np.abs(solution.numbers["wheel"]["kingpin"] - np.arctan2(-axis[:, 1], axis[:, 2])).max() <= 1e-14
+    held = solved(name, "wishbone", arm_angle={"constant": 1.5})
+    turning = held.numbers["angular_velocity"]["knuckle"]
+    ends = held.numbers["position"]
+    across = np.cross(turning, ends["upper_ball_joint"] - ends["lower_ball_joint"])
+    # Both ball joints stand still while the arms do: omega is along the line between them, 220 mm long.
+    assert np.abs(across).max() <= CLOSE * np.abs(turning).max()
+    assert np.abs(turning).max() > 0.05
+
+
+@models
+@cars
 def test_the_arm_angle_is_the_angle_at_the_front_pivot_between_the_vertical_and_the_ball_joint(
-    name: str,
+    name: str, car: str
 ) -> None:
-    solution = solved(name, CAR)
-    arm = solution.position["lower_ball_joint"] - CAR["lower_arm_front"]
-    wave = 1.65 + 0.15 * np.sin(5.0 * solution.times)
+    solution = solved(name, car)
+    arm = solution.numbers["position"]["lower_ball_joint"] - CARS[car]["lower_arm_front"]
+    sine = LAWS[car]["arm_angle"]["sine"]
+    wave = sine["offset"] + sine["amplitude"] * np.sin(sine["angular_frequency"] * solution.times)
     angle = np.arctan2(np.hypot(arm[:, 0], arm[:, 1]), arm[:, 2])
     assert np.abs(angle - wave).max() <= 1e-13
 
 
 @models
-def test_a_right_wheel_is_a_left_wheel_in_a_mirror(name: str) -> None:
+@cars
+def test_a_right_wheel_is_a_left_wheel_in_a_mirror(name: str, car: str) -> None:
     flip = np.array([1.0, -1.0, 1.0])
-    left = solved(name, CAR)
+    here = solved(name, car)
+    other = {"left": "right", "right": "left"}[SCENES[car].mechanism.side]
     # In the mirror the rack that moves to the left moves to the right.
-    right = solved(
-        name,
-        {point: place * flip for point, place in CAR.items()},
-        "right",
-        rack={"polynomial": [-2.0, -30.0, 10.0]},
-    )
-    for point, path in left.position.items():
-        assert np.abs(right.position[point] - path * flip).max() <= CLOSE
-    # Velocities turn with the mirror, turns against it; camber and kingpin say the same of both wheels.
-    axial = -flip
-    assert np.abs(right.angular_velocity["knuckle"] - left.angular_velocity["knuckle"] * axial).max() <= CLOSE
-    for angle in ("camber", "kingpin"):
-        assert np.abs(right.wheel[angle] - left.wheel[angle]).max() <= CLOSE / 100.0
+    back = {"polynomial": [-c for c in LAWS[car]["rack"]["polynomial"]]}
+    mirrored = {point: place * flip for point, place in CARS[car].items()}
+    there = solved(name, car, mirrored, other, rack=back)
+    for point, path in here.numbers["position"].items():
+        assert np.abs(there.numbers["position"][point] - path * flip).max() <= CLOSE
+    # Velocities turn with the mirror, turns against it; the wheel's angles say the same of both wheels.
+    omega, turned = (s.numbers["angular_velocity"]["knuckle"] for s in (here, there))
+    assert np.abs(turned + omega * flip).max() <= CLOSE
+    for angle, values in here.numbers["wheel"].items():
+        assert np.abs(there.numbers["wheel"][angle] - values).max() <= CLOSE / 100.0, angle
 
 
 @models
-def test_a_heave_moves_every_point_alike_and_turns_nothing(name: str) -> None:
-    still, heaved = solved(name, CAR), solved(name, CAR, heave={"polynomial": [5.0, 100.0, 50.0]})
+@cars
+def test_a_heave_moves_every_point_alike_and_turns_nothing(name: str, car: str) -> None:
+    still, heaved = solved(name, car), solved(name, car, heave={"polynomial": [5.0, 100.0, 50.0]})
     t = heaved.times
-    for point, path in still.position.items():
-        lift = heaved.position[point] - path
+    for point, path in still.numbers["position"].items():
+        lift = heaved.numbers["position"][point] - path
         assert np.abs(lift - np.outer(5.0 + 100.0 * t + 50.0 * t**2, [0.0, 0.0, 1.0])).max() <= CLOSE
-    gap = heaved.angular_velocity["knuckle"] - still.angular_velocity["knuckle"]
+    gap = heaved.numbers["angular_velocity"]["knuckle"] - still.numbers["angular_velocity"]["knuckle"]
     assert np.abs(gap).max() <= CLOSE
 
 

@@ -5,7 +5,6 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -45,10 +44,9 @@ def planted(
     solution: Solution, quantity: str, name: str, value: float, notes: tuple[str, ...] = ()
 ) -> Solution:
     """The solution with one number changed."""
-    arrays = {n: np.array(a) for n, a in getattr(solution, quantity).items()}
+    arrays = {n: np.array(a) for n, a in solution.numbers[quantity].items()}
     arrays[name][1, ...] = value + (arrays[name][1, ...] if math.isfinite(value) else 0.0)
-    changes: dict[str, Any] = {quantity: arrays, "notes": notes}
-    return replace(solution, **changes)
+    return replace(solution.with_numbers({quantity: arrays}), notes=notes)
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Callable[[Scene], Solution]) -> None:
@@ -118,8 +116,8 @@ def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
     scene: Scene, reference: Solution, solution: Solution
 ) -> None:
     """No partner is needed to test it: the reference is there."""
-    wide = {name: claim + 1.0 for name, claim in solution.accuracy.velocity.items()}
-    claimed = replace(solution, accuracy=replace(solution.accuracy, velocity=wide))
+    wide = {name: claim + 1.0 for name, claim in solution.accuracy.claims["velocity"].items()}
+    claimed = replace(solution, accuracy=solution.accuracy.with_claims({"velocity": wide}))
     assert judged_answer(scene, claimed, reference).outcome == "right"
     off = planted(claimed, "velocity", "strut_lower", 2.0)
     assert judged_answer(scene, off, reference).outcome == "wrong"

@@ -1,6 +1,7 @@
 """The picture of a drawing shows every hardpoint where it is, and what closing does to it."""
 
 import xml.etree.ElementTree as ET
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ def content(scene: Scene, **points: tuple[float, float, float]) -> dict[str, Any
     return plain
 
 
-@pytest.mark.parametrize("name", ["off-axis-strut", "bounce"])
+@pytest.mark.parametrize("name", ["off-axis-strut", "bounce", "double-wishbone"])
 def test_every_point_stands_in_all_three_views_at_one_scale(name: str) -> None:
     scene = Scene.load(name)
     root = ET.fromstring(svg(closed_drawing(scene)))
@@ -58,3 +59,35 @@ def test_odd_titles_leave_the_picture_well_formed() -> None:
     plain = content(Scene.load("off-axis-strut")) | {"title": "</svg> & \x1b[2J \n <b>"}
     root = ET.fromstring(svg(closed_drawing(Scene.from_mapping(plain))))
     assert any("</svg> & " in (text.text or "") for text in root.iter(f"{SVG}text"))
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "bounce", "double-wishbone"])
+def test_every_point_has_a_number_that_can_be_read_in_every_view(name: str) -> None:
+    """Inside the frame, and no two numbers in one place."""
+    drawing = closed_drawing(Scene.load(name))
+    root = ET.fromstring(svg(drawing))
+    labels = [text for text in root.iter(f"{SVG}text") if text.get("class") == "number"]
+    frames = [
+        (float(f.get("x", "")), float(f.get("x", "")) + float(f.get("width", "")))
+        for f in root.iter(f"{SVG}rect")
+        if f.get("class") == "frame"
+    ]
+    count = len(drawing.mechanism.topology.points)
+    for left, right in frames:
+        inside = [text for text in labels if left <= float(text.get("x", "")) <= right]
+        told = [number for text in inside for number in (text.text or "").split(", ")]
+        assert sorted(told, key=int) == [str(i) for i in range(1, count + 1)]
+        places = [(float(text.get("x", "")), float(text.get("y", ""))) for text in inside]
+        gaps = [max(abs(a - c), abs(b - d)) for (a, b), (c, d) in combinations(places, 2)]
+        assert min(gaps) >= 8.0
+        for text in inside:
+            half = 3.2 * len(text.text or "")
+            assert left <= float(text.get("x", "")) - half
+            assert float(text.get("x", "")) + half <= right
+
+
+def test_links_are_drawn_as_the_topology_has_them() -> None:
+    """Two lines a wishbone, the knuckle's three sides and the tie rod, in each view."""
+    root = ET.fromstring(svg(closed_drawing(Scene.load("double-wishbone"))))
+    assert len(root.findall(f".//{SVG}line[@class='member']")) == 3 * 8
+    assert len(root.findall(f".//{SVG}line[@class='axis']")) == 3 * 2

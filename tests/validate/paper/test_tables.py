@@ -4,7 +4,7 @@ import numpy as np
 
 from pointcoord import Scene, simulate
 from validate.comparison.compare import compare
-from validate.paper.errata import findings
+from validate.comparison.findings import findings
 from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper, root_mean_square
 
 ROWS = compare_with_paper()

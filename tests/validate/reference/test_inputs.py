@@ -10,9 +10,10 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from exact_time_functions import time_function_value
 from mpmath import mpf
 
-from validate.reference import BadInputError, NoReferenceError, solve_reference, time_function_value
+from validate.reference import BadInputError, NoReferenceError, solve_reference
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction
 from validate.reference.jet import Jet

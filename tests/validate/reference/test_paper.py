@@ -8,9 +8,10 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from exact_time_functions import time_function_value
 from mpmath import mpf
 
-from validate.reference import InfeasibleError, Instant, solve_reference, time_function_value
+from validate.reference import InfeasibleError, Instant, solve_reference
 from validate.reference.vectors import cross, dot, minus
 
 Table = dict[str, tuple[int, int, int]]

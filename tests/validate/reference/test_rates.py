@@ -6,10 +6,11 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from exact_time_functions import time_function_value
 from mpmath import mpf
 from reference_cars import ReferenceCar
 
-from validate.reference import Instant, time_function_value
+from validate.reference import Instant
 from validate.reference.vectors import cross, minus, plus
 
 STEP = Fraction(1, 10**12)

@@ -88,10 +88,10 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
     time = scene.time.model_copy(update={"samples": 3})
     scene = scene.model_copy(update={"time": time, "effects": ("velocity", "acceleration", "knuckle_rates")})
     solutions = {name: formulation(name).solve(scene) for name in deep.MODELS}
-    faulty = dict(getattr(solutions[model], quantity))
+    faulty = dict(solutions[model].numbers[quantity])
     name = next(iter(faulty))
     faulty[name] = faulty[name] + 1e-3
-    solutions[model] = replace(solutions[model], **{quantity: faulty})
+    solutions[model] = solutions[model].with_numbers({quantity: faulty})
     assert judged(scene, solutions["pointcoord"], solutions["absolute"]) == f"{model} wrong"
 
 
@@ -101,7 +101,7 @@ def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: p
     def shared(name: str, car: RandomScene) -> Solution:
         solution = honest(name, car)
         moved = solution.position["wheel_centre"] + 1e-3
-        return replace(solution, position={**solution.position, "wheel_centre": moved})
+        return solution.with_numbers({"position": {**solution.position, "wheel_centre": moved}})
 
     cars = (random_scene(number) for number in range(0, 200, deep.HELD))
     car = next(car for car in cars if deep.examine(car).outcome == "agreed, and with the reference")
@@ -118,7 +118,7 @@ def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
     answer = formulation("absolute").solve(scene)
     assert judged_alone(scene, answer) == "answer right"
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
-    assert judged_alone(scene, replace(answer, position=moved)) == "answer wrong"
+    assert judged_alone(scene, answer.with_numbers({"position": moved})) == "answer wrong"
     reference: Solution = reference_solution(scene)
     assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"

@@ -1,4 +1,4 @@
-"""Group 12: struts whose axis passes beside the ball joint, as drawn, where their own geometry gets hard.
+"""Struts whose axis passes beside the ball joint, as drawn, where their own geometry gets hard.
 
 The axis is fixed in the knuckle, and so it may stand in any way to the three points that carry the knuckle:
 through any of them, in their plane or at right angles to it, with its own two points far off or close
@@ -9,7 +9,6 @@ as near to the strut's top as it lies beside the axis, and two places of the top
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,15 +18,14 @@ from validate.cars.car import Car, as_tuples
 from validate.cars.input_limits import Linkage
 from validate.cars.macpherson import BESIDE
 from validate.cars.scene_content import scene_content
-from validate.hard.cars import BESIDE_CAR, WIDE_CAR
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, decades
-from validate.hard.cases.dead_points import OUTSIDE, inside, near_end
-from validate.hard.trial import scene_case, try_scene
+from validate.hard.cars import BESIDE_CAR
+from validate.hard.case import RIGHT, Case, Expected, decades
+from validate.hard.trial import try_scene
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
 
-GROUP = "12. The strut's axis beside the ball joint"
+GROUP = "The strut's axis beside the ball joint"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 OFF = 37.0  # mm: how far the axis is from the ball joint in the car that the cases are made from
 # A millimetre or so, as there may be in a car, must be solved; nearer a model may decline.
@@ -148,41 +146,6 @@ def motion(points: Points, arm: float, rack: float) -> dict[str, Any]:
     car = Car(as_tuples(dict(points)), "left", BESIDE_CAR.up, BESIDE_CAR.right)
     angle = Linkage.of(car).drawn_angle
     return scene_content(car, (angle, 0.5 * arm, 0.5 * arm), (0.0, 0.5 * rack, 0.5 * rack), stop=1.0)
-
-
-@cache
-def run_out() -> tuple[float, float]:
-    """Arm angles between which the wide car can be, rad: at the first its slide runs out."""
-    linkage = Linkage.of(WIDE_CAR)
-    home = {"arm_angle": linkage.drawn_angle, "rack": 0.0}
-    (low, _), (high, _) = (linkage.end(home, "arm_angle", ahead) or (0.0, "") for ahead in (False, True))
-    return low, high
-
-
-def slide_content(value: float, law: str) -> dict[str, Any]:
-    """The wide car near the arm angle at which its slide runs out, or beyond it."""
-    low, high = run_out()
-    near = low + (-value if law == "beyond" else value) * (high - low)
-    middle = 0.5 * (low + high)
-    if law == "moving":
-        return scene_content(WIDE_CAR, [middle, near - middle], 0.0, stop=1.0)
-    return scene_content(WIDE_CAR, near, 0.0)
-
-
-def _slide_case(law: str) -> Case:
-    return scene_case(
-        name=f"slide-runs-out-{law}",
-        group=GROUP,
-        why="the ball joint is as near to the strut's top as it lies beside the axis: it has no more way",
-        parameter="distance from the end, in parts of the arm's range"
-        + (", beyond it" if law == "beyond" else ""),
-        values=decades(-12, -1),
-        scene=lambda value: slide_content(value, law),
-        expected=dict.fromkeys(SOLVERS, REFUSED)
-        if law == "beyond"
-        else near_end(law) | {"pointcoord-newton": near_end(law)["pointcoord"]},
-        behaviour=OUTSIDE if law == "beyond" else inside(law),
-    )
 
 
 def _case(
@@ -344,5 +307,4 @@ CASES: tuple[Case, ...] = (
         Expected(("right", "refused"), right_from=1e-6),
         decades(),
     ),
-    *(_slide_case(law) for law in ("held", "moving", "beyond")),
 )

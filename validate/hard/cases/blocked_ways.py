@@ -10,11 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 
 from pointcoord import Scene
+from validate.cars.scene_content import scene_content
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
+from validate.hard.cars import CARS
 from validate.hard.case import RIGHT, Answer, Case, Trial
 from validate.hard.last_values import home, last_value, reachable
 
@@ -24,14 +26,16 @@ ARM = 1.3  # rad: where the arm is to be, besides the rack beyond its end
 Values = Mapping[str, float]
 
 
-def goal(overshoot: float) -> dict[str, float]:
+def goal(overshoot: float, car: str = "paper") -> dict[str, float]:
     """An arm angle well inside its range, and a rack travel beyond what it can be at any such angle."""
-    return {"arm_angle": ARM, "rack": last_value("paper", "rack", True).beyond(0.5 + overshoot)}
+    return {"arm_angle": ARM, "rack": last_value(car, "rack", True).beyond(0.5 + overshoot)}
 
 
-def moved_on(name: str, here: Values, end: Values, share: float) -> dict[str, float | Fraction]:
+def moved_on(
+    name: str, here: Values, end: Values, share: float, car: str = "paper"
+) -> dict[str, float | Fraction]:
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
-    start = home("paper", level=False)
+    start = home(car, level=False)
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
     if name == "absolute":
         return {
@@ -42,9 +46,9 @@ def moved_on(name: str, here: Values, end: Values, share: float) -> dict[str, fl
     return {"arm_angle": math.acos(height), "rack": rack}
 
 
-def share_of_way(name: str, here: Values, end: Values) -> tuple[float, float]:
+def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tuple[float, float]:
     """How far along the way the arm is, and how far the rack; equal if the place lies on it."""
-    start = home("paper", level=False)
+    start = home(car, level=False)
 
     def measure(values: Values) -> float:
         return values["arm_angle"] if name == "absolute" else math.cos(values["arm_angle"])
@@ -53,16 +57,16 @@ def share_of_way(name: str, here: Values, end: Values) -> tuple[float, float]:
     return arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
 
 
-def examine(overshoot: float) -> Trial:
+def examine(overshoot: float, car: str = "paper") -> Trial:
     """Ask every solver for a first instant that it cannot reach."""
-    end = goal(overshoot)
-    scene = Scene.from_mapping(paper_car(end["arm_angle"], end["rack"]))
+    end = goal(overshoot, car)
+    scene = Scene.from_mapping(scene_content(CARS[car], end["arm_angle"], end["rack"]))
     answers = []
     for name in SOLVERS:
         try:
             formulation(name).solve(scene)
         except FormulationError as error:
-            answers.append(judged(name, error.reason, end))
+            answers.append(judged(name, error.reason, end, car))
         except Exception as error:
             answers.append(Answer(name, "wrong", f"fails: {type(error).__name__}: {error}"))
         else:
@@ -70,20 +74,20 @@ def examine(overshoot: float) -> Trial:
     return Trial(overshoot, tuple(answers))
 
 
-def judged(name: str, reason: Exception, end: Values) -> Answer:
+def judged(name: str, reason: Exception, end: Values, car: str = "paper") -> Answer:
     """Whether a refusal names the place where its own way ends."""
     here: Values = getattr(reason, "reached", {})
     if set(here) < {"arm_angle", "rack"}:
         return Answer(name, "wrong", f"does not say how far it came: {type(reason).__name__}: {reason}")
-    arm, rack = share_of_way(name, here, end)
+    arm, rack = share_of_way(name, here, end, car)
     faults = []
     if abs(arm - rack) > SHARE:
         faults.append(
             f"what is reached does not lie on the way: the arm at {arm!r} of it, the rack at {rack!r}"
         )
-    if not reachable("paper", moved_on(name, here, end, -SHARE)):
+    if not reachable(car, moved_on(name, here, end, -SHARE, car)):
         faults.append("there is no pose just before what is reached")
-    if reachable("paper", moved_on(name, here, end, SHARE)):
+    if reachable(car, moved_on(name, here, end, SHARE, car)):
         faults.append("there is a pose just beyond what is reached")
     return Answer(
         name,
@@ -93,15 +97,15 @@ def judged(name: str, reason: Exception, end: Values) -> Answer:
     )
 
 
-def blocked_way(group: str, values: tuple[float, ...]) -> Case:
+def blocked_way(group: str, values: tuple[float, ...], car: str = "paper") -> Case:
     """The case, for the group of reachable ranges."""
     return Case(
-        name="start-beyond-both",
+        name="start-beyond-both" if car == "paper" else f"start-beyond-both-{car}",
         group=group,
         why="Arm and rack go from the drawing to the first instant together, and lock on the way.",
         parameter="rack travel beyond one and a half of its range, in parts of it",
         values=values,
         expected=dict.fromkeys(SOLVERS, RIGHT),
         behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
-        examine=examine,
+        examine=partial(examine, car=car),
     )

@@ -1,4 +1,4 @@
-r"""Group 4: rates of the knuckle where the printed quotient is 0/0, and rates that are exactly zero.
+r"""Rates of the knuckle where the printed quotient is 0/0, and rates that are exactly zero.
 
 The paper prints omega = v65 x v75 / (v65 . r75). As v = omega x r, its divisor is omega . (r65 x r75): it is
 zero whenever omega lies in the plane of the knuckle's three points. While the arm is held v75 itself is zero,
@@ -8,6 +8,7 @@ Least squares over the three points divides by an inertia tensor, which only a k
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -15,13 +16,14 @@ import numpy as np
 from scipy.optimize import brentq
 
 from pointcoord.suspensions.macpherson import KNUCKLE
+from validate.cars.car import Car
 from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.cars import OTHER_CAR, PAPER_CAR, paper_car
-from validate.hard.case import FAILS, RIGHT, Case, decades
+from validate.hard.cars import CARS, OTHER_CAR, PAPER_CAR, paper_car
+from validate.hard.case import FAILS, RIGHT, Case, coarse, decades
 from validate.hard.trial import Facts, Tried, scene_case
 from validate.reference import solve_reference
 
-GROUP = "4. Body rates"
+GROUP = "Body rates"
 VALUES = (*decades(-12, -1), 0.0)
 OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
 ALL = OURS | {"printed": FAILS}
@@ -81,17 +83,48 @@ def _in_the_plane(value: float) -> dict[str, Any]:
     return paper_car([plane_angle() + value, 1.0])
 
 
-def _resting(value: float) -> dict[str, Any]:
-    return scene_content(OTHER_CAR, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
+def _resting(car: Car) -> Callable[[float], dict[str, Any]]:
+    return lambda value: scene_content(car, [SQUARE + value, 0.0, 0.0], [20.0, 0.0], 0.0, stop=1.0)
 
 
-def _one_rate(name: str) -> Any:
+def _one_rate(car: Car, name: str) -> Callable[[float], dict[str, Any]]:
     def content(value: float) -> dict[str, Any]:
         laws: dict[str, Any] = {"arm_angle": SQUARE, "rack": 0.0}
-        laws[name] = [laws[name], value]
-        return paper_car(laws["arm_angle"], laws["rack"])
+        return scene_content(car, **laws | {name: [laws[name], value]})
 
     return content
+
+
+def _slow_and_still(suffix: str, moved: Car, still: Car) -> tuple[Case, ...]:
+    """Inputs that hardly move, and inputs at rest."""
+    tiny = (*(float(f"1e-{25 * k}") for k in range(1, 13)), 0.0)
+    return (
+        *(
+            scene_case(
+                name=f"{label}-hardly-moves{suffix}",
+                group=GROUP,
+                why=f"only the {label} moves, slower and slower: rates keep their digits down to zero",
+                parameter=f"rate of the {label}, {unit}; then at rest",
+                values=coarse(tiny) if suffix else tiny,
+                scene=_one_rate(moved, name),
+                expected=OURS,
+                behaviour="right, and exactly zero at rest",
+                measure=largest_rates,
+            )
+            for name, label, unit in (("arm_angle", "arm", "rad/s"), ("rack", "rack", "mm/s"))
+        ),
+        scene_case(
+            name=f"at-rest{suffix}",
+            group=GROUP,
+            why="all inputs rest, so every rate is zero: rounding must not make a motion of it",
+            parameter="arm angle from a right angle, rad; then at it",
+            values=coarse(VALUES) if suffix else VALUES,
+            scene=_resting(still),
+            expected=OURS,
+            behaviour="every rate is exactly zero",
+            measure=largest_rates,
+        ),
+    )
 
 
 CASES: tuple[Case, ...] = (
@@ -117,29 +150,6 @@ CASES: tuple[Case, ...] = (
         behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
         measure=omega_errors,
     ),
-    *(
-        scene_case(
-            name=f"{label}-hardly-moves",
-            group=GROUP,
-            why=f"only the {label} moves, slower and slower: rates keep their relative accuracy down to zero",
-            parameter=f"rate of the {label}, {unit}; then at rest",
-            values=(*(float(f"1e-{25 * k}") for k in range(1, 13)), 0.0),
-            scene=_one_rate(name),
-            expected=OURS,
-            behaviour="right, and exactly zero at rest",
-            measure=largest_rates,
-        )
-        for name, label, unit in (("arm_angle", "arm", "rad/s"), ("rack", "rack", "mm/s"))
-    ),
-    scene_case(
-        name="at-rest",
-        group=GROUP,
-        why="all inputs rest, so every rate is zero: rounding must not make a motion of it",
-        parameter="arm angle from a right angle, rad; then at it",
-        values=VALUES,
-        scene=_resting,
-        expected=OURS,
-        behaviour="every rate is exactly zero",
-        measure=largest_rates,
-    ),
+    *_slow_and_still("", PAPER_CAR, OTHER_CAR),
+    *_slow_and_still("-wishbone", CARS["wishbone"], CARS["wishbone-turned"]),
 )

@@ -19,15 +19,15 @@ import numpy as np
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
 from validate.cars.scene_content import SQUARE, Law, scene_content
-from validate.hard.cars import paper_car
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, decades
+from validate.hard.cars import CARS, EVERY, paper_car
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, coarse, decades
 from validate.hard.cases.counting import counting_cases, meeting
-from validate.hard.cases.near_points import assembled, drawn_angle
+from validate.hard.cases.near_points import assembled, drawn_angle, flat_upper_arm
 from validate.hard.cases.oriented import followed
-from validate.hard.last_values import car_called, last_value
+from validate.hard.last_values import last_value
 from validate.hard.trial import Facts, Tried, try_scene
 
-GROUP = "8. Branches"
+GROUP = "Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 # rad: half the motion through the place where the branches nearly meet; a dead point is 0.05 rad below it.
 WIDE = {"paper": 0.05, "beside": 0.04}
@@ -44,14 +44,14 @@ def through_the_meeting(share: float, side: float, car: str = "paper") -> Mappin
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
     angle, rack = meeting(car)
     law = (angle + WIDE[car], -2.0 * WIDE[car])
-    return scene_content(car_called(car), law, rack + side * 10.0 * share, stop=1.0, samples=5)
+    return scene_content(CARS[car], law, rack + side * 10.0 * share, stop=1.0, samples=5)
 
 
 def near_meeting(tried: Tried, car: str = "paper") -> Facts:
     """The sides, and how far apart the two assemblies are in the middle of the motion."""
     facts = dict(followed(tried))
     spare = float(
-        Linkage.of(car_called(car)).spare(
+        Linkage.of(CARS[car]).spare(
             np.array(meeting(car)[0]), np.array(tried.scene.functions["rack"].series(0.5, 0)[0])
         )
     )
@@ -87,21 +87,33 @@ def crooked(share: float) -> Mapping[str, Any]:
     return paper_car((drawn_angle(), 0.1), (0.0, 10.0), points=points, stop=1.0)
 
 
-def far_start(share: float, driven: str, ahead: bool) -> Mapping[str, Any]:
+def near_ends(share: float, car: str, driven: str, *ahead: bool) -> list[float]:
+    """Values of an input `share` of half its range inside its ends."""
+    return [last_value(car, driven, way).beyond(-0.5 * share) for way in ahead]
+
+
+def far_start(share: float, driven: str, ahead: bool, car: str = "paper") -> Mapping[str, Any]:
     """The first instant near the last value of an input, the drawing amid its range."""
-    end = last_value("paper", driven, ahead)
-    begin, inwards = end.beyond(-0.5 * share), -0.01 if ahead else 0.01
-    law = (begin, inwards * end.reach)
-    laws: tuple[Law, Law] = (law, 0.0) if driven == "arm_angle" else (SQUARE, law)
-    return paper_car(*laws, stop=1.0, samples=2)
+    (begin,) = near_ends(share, car, driven, ahead)
+    reach = last_value(car, driven, ahead).reach
+    return _driven(car, driven, (begin, (-0.01 if ahead else 0.01) * reach))
 
 
-def whole_range(share: float, driven: str) -> Mapping[str, Any]:
+def whole_range(share: float, driven: str, car: str = "paper") -> Mapping[str, Any]:
     """Two instants, near both ends of an input."""
-    low, high = (last_value("paper", driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
-    law = (high, low - high)
+    low, high = near_ends(share, car, driven, False, True)
+    return _driven(car, driven, (high, low - high))
+
+
+def _driven(car: str, driven: str, law: tuple[float, float]) -> Mapping[str, Any]:
     laws: tuple[Law, Law] = (law, 0.0) if driven == "arm_angle" else (SQUARE, law)
-    return paper_car(*laws, stop=1.0, samples=2)
+    return scene_content(CARS[car], *laws, stop=1.0, samples=2)
+
+
+def from_a_flat_wishbone(share: float, mirrored: bool) -> Mapping[str, Any]:
+    """The upper ball joint drawn near the plane of its pivots and the lower one, from where the arm goes."""
+    car = CARS["wishbone"].drawn_as(flat_upper_arm(-share if mirrored else share))
+    return scene_content(car, (Linkage.of(car).drawn_angle, 0.0, -0.02), 0.0, stop=1.0, samples=3)
 
 
 def _case(
@@ -126,6 +138,34 @@ def _case(
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour=behaviour,
         examine=lambda value: try_scene(value, scene(value), SOLVERS, measure),
+    )
+
+
+def _range_cases(suffix: str, car: str) -> tuple[Case, ...]:
+    """Cases of the whole range of inputs."""
+    return (
+        *(
+            _case(
+                f"far-start-{where}{suffix}",
+                "The drawing is the start guess, and the first instant lies at the far end of the range.",
+                "distance of the first instant from the end, in parts of half the range",
+                partial(far_start, driven=driven, ahead=ahead, car=car),
+                CLEAR,
+                FEW,
+            )
+            for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
+        ),
+        *(
+            _case(
+                f"whole-range-{where}{suffix}",
+                "Two instants, and between them the whole range of an input: one step could leap over it.",
+                "distance of both instants from their ends, in parts of half the range",
+                partial(whole_range, driven=driven, car=car),
+                CLEAR,
+                FEW[1:],
+            )
+            for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
+        ),
     )
 
 
@@ -185,27 +225,17 @@ CASES: tuple[Case, ...] = (
         crooked,
         STRAIGHTENED,
     ),
+    *(case for suffix, car in EVERY.items() for case in _range_cases(suffix, car)),
     *(
         _case(
-            f"far-start-{where}",
-            "The drawing is the start guess, and the first instant lies at the far end of the range.",
-            "distance of the first instant from the end, in parts of half the range",
-            partial(far_start, driven=driven, ahead=ahead),
+            f"flat-drawing{'-mirrored' if mirrored else ''}-wishbone",
+            "The drawing is close to its mirror image in the plane of the upper arm: rounding may choose.",
+            "height of the upper ball joint over that plane, in parts of the car's",
+            partial(from_a_flat_wishbone, mirrored=mirrored),
             CLEAR,
-            FEW,
+            coarse(decades()),
         )
-        for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
-    ),
-    *(
-        _case(
-            f"whole-range-{where}",
-            "Two instants, and between them the whole range of an input: one step could leap over it.",
-            "distance of both instants from their ends, in parts of half the range",
-            partial(whole_range, driven=driven),
-            CLEAR,
-            FEW[1:],
-        )
-        for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
+        for mirrored in (False, True)
     ),
     *counting_cases(GROUP, CLEAR),
 )

@@ -1,4 +1,4 @@
-"""Group 7, third part: laws whose terms all but cancel, so that the input is small beside what it is made of.
+"""Laws whose terms all but cancel, so that the input is small beside what it is made of.
 
 The input itself is an ordinary one. The reference, and the absolute model, take each law in many digits and
 round it once; pointcoord sums in twice the working precision and counts what that may be off into its bound.
@@ -7,13 +7,12 @@ round it once; pointcoord sums in twice the working precision and counts what th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
-from validate.cars.scene_content import SQUARE, Law
-from validate.hard.cars import paper_car
+from validate.cars.car import Car
+from validate.cars.scene_content import SQUARE, Law, scene_content
 from validate.hard.case import RIGHT, Case, Expected
-from validate.hard.cases.laws import law_case
+from validate.hard.cases.laws import Content, law_cases
 
 PHASE = 0.5  # rad: neither the sine nor its slope is near zero
 AMPLITUDES = tuple(float(f"1e{k}") for k in range(10))
@@ -24,11 +23,11 @@ MOST = 20
 U = 2.0**-53  # unit roundoff
 
 
-def cancelling_sine(driven: str) -> Callable[[float], dict[str, Any]]:
+def cancelling_sine(driven: str) -> Content:
     """An offset that all but cancels the swing at time 0, by the reciprocal of the amplitude."""
     wanted, rate = ORDINARY[driven]
 
-    def content(value: float) -> dict[str, Any]:
+    def content(car: Car, value: float) -> dict[str, Any]:
         amplitude = 1.0 / value
         wave = {
             "amplitude": amplitude,
@@ -38,7 +37,7 @@ def cancelling_sine(driven: str) -> Callable[[float], dict[str, Any]]:
         }
         laws: dict[str, Law | None] = {"arm_angle": SQUARE, "rack": 0.0, "heave": None}
         laws[driven] = {"sine": wave}
-        return paper_car(laws["arm_angle"] or SQUARE, laws["rack"] or 0.0, laws["heave"], stop=0.5)
+        return scene_content(car, laws["arm_angle"] or SQUARE, laws["rack"] or 0.0, laws["heave"], stop=0.5)
 
     return content
 
@@ -48,12 +47,12 @@ def expanded(power: int, start: float) -> list[float]:
     return [16.0 * math.comb(power, k) * (-start) ** (power - k) for k in range(power + 1)]
 
 
-def cancelling_polynomial(power: int) -> Callable[[float], dict[str, Any]]:
+def cancelling_polynomial(power: int) -> Content:
     """The rack goes 16 mm in the second after a late start, all its terms as large as that is late."""
 
-    def content(value: float) -> dict[str, Any]:
+    def content(car: Car, value: float) -> dict[str, Any]:
         start = 1.0 / value
-        return paper_car(SQUARE, expanded(power, start), start=start, stop=start + 1.0)
+        return scene_content(car, SQUARE, expanded(power, start), start=start, stop=start + 1.0)
 
     return content
 
@@ -69,9 +68,9 @@ def right_from(power: int) -> float:
     return 2.0 ** -math.floor(math.log2(latest))
 
 
-def _polynomial_case(power: int) -> Case:
+def _polynomial_cases(power: int) -> tuple[Case, ...]:
     ours = Expected(("right", "refused"), right_from(power))
-    return law_case(
+    return law_cases(
         f"cancelling-polynomial-{power}",
         f"16 (t - start)^{power}, multiplied out: terms up to {POWERS_OF_TEN[power]} times their sum",
         "1 s over the start of a motion of 1 s",
@@ -86,7 +85,9 @@ POWERS_OF_TEN = {power: f"1e{math.floor(math.log10(2.0 ** ((MOST + 1) * power)))
 
 CASES: tuple[Case, ...] = (
     *(
-        law_case(
+        case
+        for driven in ORDINARY
+        for case in law_cases(
             f"cancelling-sine-{driven.replace('_', '-')}",
             "a large swing is all but cancelled by its offset, and what is left drives the input",
             "1 rad or 1 mm over the amplitude",
@@ -94,7 +95,6 @@ CASES: tuple[Case, ...] = (
             cancelling_sine(driven),
             "right within the bound, which counts the rounding of the law",
         )
-        for driven in ORDINARY
     ),
-    *(_polynomial_case(power) for power in POWERS),
+    *(case for power in POWERS for case in _polynomial_cases(power)),
 )

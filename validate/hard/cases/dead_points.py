@@ -1,4 +1,4 @@
-"""Groups 1 and 2: the ends of the inputs, where the arm or the tie rod locks.
+"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock.
 
 An end is a fold: two assemblies meet there as the root of the distance, rates grow as its inverse root and
 the condition number with them. A value held inside an end has a pose, one beyond it has none.
@@ -6,23 +6,22 @@ the condition number with them. A value held inside an end has a pose, one beyon
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from validate.cars.car import Car
 from validate.cars.input_limits import Linkage
-from validate.cars.scene_content import scene_content
-from validate.hard.cars import OTHER_CAR, PAPER_CAR
+from validate.cars.scene_content import SQUARE, scene_content
+from validate.hard.cars import CARS
 from validate.hard.case import REFUSED, Case, Expected, decades
 from validate.hard.trial import scene_case
 
-ARM_GROUP = "1. The arm at its dead points"
-TOGGLE_GROUP = "2. Tie rod and steering arm in line"
+ARM_GROUP = "The arm at its dead points"
+TOGGLE_GROUP = "Tie rod and steering arm in line"
+UPPER_GROUP = "The knuckle's upper end out of reach"
 DISTANCE = "distance from the end, in parts of the input's range"
-
-CARS = {"": PAPER_CAR, "-turned": OTHER_CAR}
-ARM_ANGLES = (1.25, 1.5707963267948966, 1.9)  # rad, at which the rack is driven to its ends
+ARM_ANGLES = (1.25, SQUARE, 1.9)  # rad, at which the rack is driven to its ends
 
 # Where pointcoord has to be right, by how it comes near the end. Held: a path is followed until its steps
 # shrink below 1e-13 of it, which is at 1e-12 of the way to the end from the drawing, half a range away; ten
@@ -34,9 +33,10 @@ RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
 # its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
 # the range, and at ten times the nearest decade above that no end is near enough to be a reason.
 ABSOLUTE_FROM = 1e-11
+FULL = decades(-12, -1)
 COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
-BEYOND = {"pointcoord": REFUSED, "absolute": REFUSED}
 OUTSIDE = "refused: there is no pose"
+LAWS = ("held", "moving", "beyond")
 
 
 def near_end(law: str) -> dict[str, Expected]:
@@ -56,100 +56,156 @@ def inside(law: str) -> str:
 
 
 @cache
-def arm_ends(car_key: str) -> tuple[float, float]:
-    """Arm angles of the highest and of the lowest ball joint, rad."""
-    return Linkage.of(CARS[car_key]).dead_points()
+def ends(car: str, driven: str, arm_angle: float | None = None) -> tuple[float, float]:
+    """The least and the greatest value of an input of a car of `CARS`, rad or mm.
+
+    Args:
+        arm_angle: at which the rack is driven; as drawn if not given.
+    """
+    linkage = Linkage.of(CARS[car])
+    held = linkage.home | ({} if arm_angle is None else {"arm_angle": arm_angle})
+    low, high = (linkage.end(held, driven, ahead) for ahead in (False, True))
+    if low is None or high is None:
+        raise ValueError(f"{driven} of the car {car!r} has no end on one of its sides")
+    return low[0], high[0]
 
 
-@cache
-def rack_ends(car_key: str, arm_angle: float) -> tuple[float, float]:
+def rack_ends(car: str, arm_angle: float = SQUARE) -> tuple[float, float]:
     """Least and greatest rack travel, mm, at an arm angle."""
-    linkage = Linkage.of(CARS[car_key])
-    held = {"arm_angle": arm_angle, "rack": linkage.drawn_rack, "heave": 0.0}
-    ends = [linkage.end(held, "rack", ahead) for ahead in (False, True)]
-    low, high = (end[0] for end in ends if end is not None)
-    return low, high
+    return ends(car, "rack", arm_angle)
 
 
-def _arm_case(name: str, car_key: str, place: int, law: str) -> Case:
-    car, ends = CARS[car_key], arm_ends(car_key)
-    end, across = ends[place], ends[1 - place] - ends[place]
+@dataclass(frozen=True)
+class Approach:
+    """A way to one end of an input of a car.
 
-    def content(value: float) -> dict[str, Any]:
-        near = end + (-value if law == "beyond" else value) * across
-        return _content(car, law, near, 0.5 * (ends[0] + ends[1]), lambda angle: (angle, 0.0))
+    Attributes:
+        car: its name in `CARS`.
+        upper: whether to the greatest value.
+        arm_angle: at which the rack is driven.
+    """
 
-    which = ("highest", "lowest")[place]
-    return _case(
-        name,
-        ARM_GROUP,
-        law,
-        car_key,
-        f"the ball joint is {which} on its circle: its height says no more",
-        content,
-    )
+    car: str
+    driven: str
+    upper: bool
+    arm_angle: float | None = None
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """This end and the opposite one."""
+        low, high = ends(self.car, self.driven, self.arm_angle)
+        return (high, low) if self.upper else (low, high)
 
-def _toggle_case(name: str, car_key: str, place: int, law: str, arm_angle: float) -> Case:
-    car, ends = CARS[car_key], rack_ends(car_key, arm_angle)
-    end, across = ends[place], ends[1 - place] - ends[place]
-
-    def content(value: float) -> dict[str, Any]:
-        near = end + (-value if law == "beyond" else value) * across
-        return _content(car, law, near, 0.5 * (ends[0] + ends[1]), lambda travel: (arm_angle, travel))
-
-    how = ("at its least", "at its greatest")[place]
-    why = f"the rack is {how} travel at {arm_angle:.4g} rad: tie rod and steering arm lie in line"
-    return _case(name, TOGGLE_GROUP, law, car_key, why, content)
-
-
-def _content(
-    car: Car, law: str, near: float, middle: float, inputs: Callable[[Any], tuple[Any, Any]]
-) -> dict[str, Any]:
-    if law == "moving":
+    def content(self, value: float, law: str) -> dict[str, Any]:
+        """The scene near the end, or beyond it."""
+        end, other = self.ends
+        near = end + (-value if law == "beyond" else value) * (other - end)
+        middle = 0.5 * (end + other)
         # From the middle of the range to the place near its end at a constant rate, in one second.
-        return scene_content(car, *inputs([middle, near - middle]), stop=1.0)
-    return scene_content(car, *inputs(near))
+        way: float | Sequence[float] = [middle, near - middle] if law == "moving" else near
+        stop = 1.0 if law == "moving" else None
+        if self.driven == "arm_angle":
+            return scene_content(CARS[self.car], way, 0.0, stop=stop)
+        return scene_content(CARS[self.car], self.arm_angle or SQUARE, way, stop=stop)
 
 
-def _case(
-    name: str, group: str, law: str, car_key: str, why: str, content: Callable[[float], dict[str, Any]]
-) -> Case:
+def _cases(
+    name: str,
+    group: str,
+    why: str,
+    approach: Approach,
+    values: tuple[float, ...] | None = None,
+    newton: bool = False,
+    laws: Sequence[str] = LAWS,
+    suffix: str = "",
+) -> tuple[Case, ...]:
     more = {
         "held": "",
         "moving": "; the motion ends near it, with rates as the inverse root of the distance",
         "beyond": "; the input is beyond that",
     }
-    return scene_case(
-        name=name,
-        group=group,
-        why=why + more[law],
-        parameter=DISTANCE,
-        # A motion takes longest; with the other car it is tried at every second decade and at the end.
-        values=decades(-12, -1) if law != "moving" or car_key == "" else COARSE,
-        scene=content,
-        expected=BEYOND if law == "beyond" else near_end(law),
-        behaviour=OUTSIDE if law == "beyond" else inside(law),
+
+    def expected(law: str) -> dict[str, Expected]:
+        found = dict.fromkeys(("pointcoord", "absolute"), REFUSED) if law == "beyond" else near_end(law)
+        return found | ({"pointcoord-newton": found["pointcoord"]} if newton else {})
+
+    def case(law: str) -> Case:
+        return scene_case(
+            name=f"{name}{f'-{law}' if len(laws) > 1 else ''}{suffix}",
+            group=group,
+            why=why + more[law],
+            parameter=DISTANCE + (", beyond it" if law == "beyond" else ""),
+            # A motion takes longest; with another car than the first few values must do.
+            values=values or (FULL if law != "moving" or not suffix else COARSE),
+            scene=lambda value: approach.content(value, law),
+            expected=expected(law),
+            behaviour=OUTSIDE if law == "beyond" else inside(law),
+        )
+
+    return tuple(case(law) for law in laws)
+
+
+HIGHEST = ("highest", "lowest")
+TRAVEL = ("at its least", "at its greatest")
+
+
+def _arm_cases(car: str, suffix: str, values: tuple[float, ...] | None = None) -> tuple[Case, ...]:
+    # The ball joint is highest at the least angle.
+    return tuple(
+        case
+        for upper in (False, True)
+        for case in _cases(
+            f"arm-{HIGHEST[upper]}",
+            ARM_GROUP,
+            f"the ball joint is {HIGHEST[upper]} on its circle: its height says no more",
+            Approach(car, "arm_angle", upper),
+            values,
+            suffix=suffix,
+        )
     )
 
 
-LAWS = ("held", "moving", "beyond")
+def _rack_cases(
+    car: str, suffix: str, angle: float = SQUARE, where: str = "", values: tuple[float, ...] | None = None
+) -> tuple[Case, ...]:
+    return tuple(
+        case
+        for upper in (False, True)
+        for case in _cases(
+            f"rack-{('least', 'greatest')[upper]}{where}",
+            TOGGLE_GROUP,
+            f"the rack is {TRAVEL[upper]} travel at {angle:.4g} rad: tie rod and steering arm lie in line",
+            Approach(car, "rack", upper, angle),
+            values,
+            laws=("held",) if where else LAWS,
+            suffix=suffix,
+        )
+    )
+
+
 CASES: tuple[Case, ...] = (
-    *(
-        _arm_case(f"arm-{('highest', 'lowest')[place]}-{law}{key}", key, place, law)
-        for key in CARS
-        for place in (0, 1)
-        for law in LAWS
+    *_arm_cases("paper", ""),
+    *_arm_cases("other", "-turned"),
+    *_arm_cases("short-arm", "-wishbone", COARSE),
+    *_rack_cases("paper", ""),
+    *_rack_cases("other", "-turned"),
+    *_rack_cases("wishbone", "-wishbone", values=COARSE),
+    *_rack_cases("paper", "", ARM_ANGLES[0], "-arm-high"),
+    *_rack_cases("paper", "", ARM_ANGLES[2], "-arm-low"),
+    *_cases(
+        "slide-runs-out",
+        UPPER_GROUP,
+        "the ball joint is as near to the strut's top as it lies beside the axis: it has no more way",
+        Approach("wide", "arm_angle", False),
+        FULL,
+        newton=True,
     ),
-    *(
-        _toggle_case(f"rack-{('least', 'greatest')[place]}-{law}{key}", key, place, law, ARM_ANGLES[1])
-        for key in CARS
-        for place in (0, 1)
-        for law in LAWS
-    ),
-    *(
-        _toggle_case(f"rack-{('least', 'greatest')[place]}-arm-{name}", "", place, "held", angle)
-        for name, angle in (("high", ARM_ANGLES[0]), ("low", ARM_ANGLES[2]))
-        for place in (0, 1)
+    *_cases(
+        "upper-arm-locks",
+        UPPER_GROUP,
+        "upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
+        Approach("wishbone", "arm_angle", True),
+        COARSE,
+        newton=True,
     ),
 )

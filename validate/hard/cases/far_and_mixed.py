@@ -17,21 +17,18 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import reference_solution
-from validate.cars.car import Closure, as_tuple
-from validate.cars.macpherson import BESIDE
-from validate.cars.paper_car import PAPER
+from validate.cars.car import as_tuple, moved
 from validate.cars.scene_content import scene_content
 from validate.formulations.protocol import Accuracy, Solution
-from validate.hard.cars import paper_car
-from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, decades
+from validate.hard.cars import CARS
+from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, coarse, decades
 from validate.hard.cases.near_points import assembled, drawn_angle, nearer
 from validate.hard.judged import judged_answer
-from validate.hard.last_values import car_called
 from validate.hard.trial import Tried, solved, try_scene
 
 Array = NDArray[np.float64]
 
-GROUP = "6. Far from the origin, and mixed sizes"
+GROUP = "Far from the origin, and mixed sizes"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
@@ -49,8 +46,8 @@ NEARER = Expected(("right", "refused"), right_from=1e-9)
 
 
 def moved_car(distance: float, car: str = "paper") -> dict[str, Any]:
-    """A car in motion (see `car_called`), with its origin some whole millimetres away."""
-    home = car_called(car)
+    """A car in motion of `CARS`, with its origin some whole millimetres away."""
+    home = CARS[car]
     points = {n: as_tuple(np.array(p) + distance * np.array(AWAY)) for n, p in home.points.items()}
     there = replace(home, points=points)
     return scene_content(there, (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), stop=0.4)
@@ -69,8 +66,8 @@ def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     """Largest error of each quantity that does not know where the origin is."""
     return {
         quantity: max(
-            float(np.abs(array - getattr(reference, quantity)[name]).max())
-            for name, array in getattr(solution, quantity).items()
+            float(np.abs(array - reference.numbers[quantity][name]).max())
+            for name, array in solution.numbers[quantity].items()
         )
         for quantity in RATES
     }
@@ -113,7 +110,9 @@ def _as_at_home(answer: Answer, tried: Tried, car: str) -> Answer:
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
     for away, position in ((farthest, places), (nearest, tried.reference.position)):
-        strict = replace(solution, position=position, accuracy=_held_to(home.accuracy, EPS * away))
+        strict = replace(
+            solution.with_numbers({"position": position}), accuracy=_held_to(home.accuracy, EPS * away)
+        )
         judged = judged_answer(tried.scene, strict, tried.reference)
         if judged.outcome != "right":
             return replace(
@@ -126,57 +125,42 @@ def _held_to(home: Accuracy, rounding: float) -> Accuracy:
     """What a car may be off by that is off by as much at home, with a rounding of its positions."""
 
     def widened(quantity: str, more: float) -> dict[str, Array]:
-        claims = getattr(home, quantity)
+        claims = home.claims[quantity]
         largest = max(float(np.max(claim)) for claim in claims.values())
         return {name: np.full_like(claim, PLACED * LUCKY * largest + more) for name, claim in claims.items()}
 
     rates = {quantity: widened(quantity, 0.0) for quantity in RATES}
-    return Accuracy(home.condition, widened("position", rounding), **rates, proven=home.proven)
+    return replace(home, claims={"position": widened("position", rounding), **rates})
 
 
 def scaled_car(scale: float, car: str = "paper") -> dict[str, Any]:
-    """A car in motion (see `car_called`), all lengths multiplied."""
-    home = car_called(car)
+    """A car in motion of `CARS`, all lengths multiplied."""
+    home = CARS[car]
     there = replace(home, points={n: as_tuple(scale * np.array(p)) for n, p in home.points.items()})
     rack = (0.0, 30.0 * scale, 10.0 * scale)
     return scene_content(there, (1.5, 0.25, 0.125), rack, tolerance=1e-9 * scale, stop=0.4)
 
 
-def heaved_back(value: float) -> dict[str, Any]:
+def heaved_back(value: float, car: str = "paper") -> dict[str, Any]:
     """The car drawn far up, with a heave that brings it back to where it is at home."""
     distance = 1.0 / value
-    points = {name: [x, y, z + distance] for name, (x, y, z) in PAPER.items()}
-    return paper_car((1.5, 0.25, 0.125), (0.0, 30.0, 10.0), (-distance, 20.0), points=points, stop=0.4)
+    there = moved(CARS[car], np.array([0.0, 0.0, distance]))
+    return scene_content(there, (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), (-distance, 20.0), stop=0.4)
 
 
-def beside() -> dict[str, Array]:
-    """The car whose strut passes beside the ball joint."""
-    return {name: np.array(place) for name, place in BESIDE.items()}
-
-
-def lengthened(
-    value: float, moved: tuple[str, ...], base: str, home: Callable[[], dict[str, Array]] = assembled
-) -> dict[str, Array]:
+def lengthened(value: float, points: tuple[str, ...], base: str, car: str = "paper") -> dict[str, Array]:
     """Points moved away from another until they are 1 / value times as far from it."""
-    p = home()
-    return {n: p[base] + (x - p[base]) / value if n in moved else x for n, x in p.items()}
+    p = assembled(car)
+    return {n: p[base] + (x - p[base]) / value if n in points else x for n, x in p.items()}
 
 
 def mixed(
-    value: float,
-    points: Callable[[float], Mapping[str, Array]],
-    shrinking: bool,
-    closure: Closure = "collinear",
+    value: float, points: Callable[[float], Mapping[str, Array]], shrinking: bool, car: str = "paper"
 ) -> dict[str, Any]:
     """A motion of a car with a link that is out of proportion; a short link follows no more than itself."""
     share = value if shrinking else 1.0
-    return paper_car(
-        (drawn_angle(), 0.1 * share, 0.05 * share),
-        (0.0, 10.0 * share, 5.0 * share),
-        points={name: place.tolist() for name, place in points(value).items()},
-        closure=closure,
-        stop=1.0,
-    )
+    arm, rack = (drawn_angle(car), 0.1 * share, 0.05 * share), (0.0, 10.0 * share, 5.0 * share)
+    return scene_content(CARS[car].drawn_as(points(value)), arm, rack, stop=1.0)
 
 
 def _mixed_case(
@@ -185,7 +169,7 @@ def _mixed_case(
     parameter: str,
     points: Callable[[float], Mapping[str, Array]],
     shrinking: bool,
-    closure: Closure = "collinear",
+    car: str = "paper",
 ) -> Case:
     return Case(
         name=name,
@@ -196,7 +180,7 @@ def _mixed_case(
         values=(*decades(-4), 1e-6, 1e-9, 1e-12),
         expected=dict.fromkeys(SOLVERS, MIXED),
         behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
-        examine=lambda value: try_scene(value, mixed(value, points, shrinking, closure), SOLVERS),
+        examine=lambda value: try_scene(value, mixed(value, points, shrinking, car), SOLVERS),
     )
 
 
@@ -262,6 +246,61 @@ CASES: tuple[Case, ...] = (
         decades(-6, 4),
         "beside",
     ),
+    Case(
+        name="far-from-the-origin-wishbone",
+        group=GROUP,
+        why="The same of a double wishbone, whose knuckle has no direction of its own.",
+        parameter="1 mm over the distance along x; thrice as far along z",
+        values=coarse(decades()),
+        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
+        behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
+        examine=partial(far, car="wishbone"),
+    ),
+    Case(
+        name="far-and-heaved-back-wishbone",
+        group=GROUP,
+        why="A double wishbone drawn far up and heaved back.",
+        parameter="1 mm over the distance along up, which the heave cancels",
+        values=coarse(decades(-9)),
+        expected=dict.fromkeys(SOLVERS, RIGHT),
+        behaviour="right within the bound, rates and angles as right as at home",
+        examine=lambda value: try_scene(value, heaved_back(value, "wishbone"), SOLVERS),
+    ),
+    _sizes(
+        "sizes-wishbone",
+        "By powers of ten, a double wishbone.",
+        coarse(decades(-6, 4)),
+        "wishbone",
+    ),
+    _mixed_case(
+        "tie-rod-long-wishbone",
+        "The tie rod of a double wishbone is up to 1e14 mm long.",
+        LONG,
+        partial(lengthened, points=("tie_rod_inner",), base="tie_rod_outer", car="wishbone"),
+        False,
+        "wishbone",
+    ),
+    _mixed_case(
+        "arm-long-wishbone",
+        "The lower arm of a double wishbone is up to 1e14 mm long; its angle shrinks with it.",
+        LONG,
+        partial(lengthened, points=ARM_AXIS, base="lower_ball_joint", car="wishbone"),
+        True,
+        "wishbone",
+    ),
+    _mixed_case(
+        "upper-arm-long-wishbone",
+        "The upper arm is up to 1e14 mm long, so that its ball joint moves on what is nearly a plane.",
+        LONG,
+        partial(
+            lengthened,
+            points=("upper_arm_front", "upper_arm_rear"),
+            base="upper_ball_joint",
+            car="wishbone",
+        ),
+        False,
+        "wishbone",
+    ),
     _mixed_case(
         "tie-rod-at-the-strut",
         "The tie rod ends as little as 1e-10 mm from the strut's foot, in a car of 500 mm.",
@@ -273,39 +312,39 @@ CASES: tuple[Case, ...] = (
         "tie-rod-long",
         "The tie rod is up to 1e14 mm long, so that its outer end moves on what is nearly a plane.",
         LONG,
-        partial(lengthened, moved=("tie_rod_inner", "rack_centre"), base="tie_rod_outer"),
+        partial(lengthened, points=("tie_rod_inner", "rack_centre"), base="tie_rod_outer"),
         False,
     ),
     _mixed_case(
         "strut-long",
         "The strut is up to 1e14 mm long, so that its direction hardly changes.",
         LONG,
-        partial(lengthened, moved=("strut_top", "strut_rod_end"), base="lower_ball_joint"),
+        partial(lengthened, points=("strut_top", "strut_rod_end"), base="lower_ball_joint"),
         False,
     ),
     _mixed_case(
         "arm-long",
         "The arm is up to 1e14 mm long, so that a small angle is a long way; the angle shrinks with it.",
         LONG,
-        partial(lengthened, moved=ARM_AXIS, base="lower_ball_joint"),
+        partial(lengthened, points=ARM_AXIS, base="lower_ball_joint"),
         True,
     ),
     _mixed_case(
         "strut-long-beside",
         "The strut's top is up to 5e14 mm above a ball joint beside its axis, in a car of 500 mm.",
         LONG,
-        partial(lengthened, moved=("strut_top", "strut_rod_end"), base="strut_lower", home=beside),
+        partial(lengthened, points=("strut_top", "strut_rod_end"), base="strut_lower", car="beside"),
         False,
-        "drawn",
+        "beside",
     ),
     _mixed_case(
         "arm-long-beside",
         "The arm is as long, its ball joint beside the axis of the strut.",
         LONG,
         partial(
-            lengthened, moved=("lower_arm_front", "lower_arm_rear"), base="lower_ball_joint", home=beside
+            lengthened, points=("lower_arm_front", "lower_arm_rear"), base="lower_ball_joint", car="beside"
         ),
         True,
-        "drawn",
+        "beside",
     ),
 )

@@ -12,7 +12,7 @@ from validate.hard.case import RIGHT_OR_REFUSED, Case, Expected, decades
 from validate.hard.cases.dead_points import rack_ends
 from validate.hard.trial import scene_case
 
-GROUP = "11. Found by searches"
+GROUP = "Found by searches"
 # The strut of the largest share that a search for error / bound found, 0.99999 of it.
 SEARCHED = Car(
     {
@@ -44,7 +44,7 @@ def _searched(value: float) -> dict[str, Any]:
 
 
 def _touching(value: float) -> dict[str, Any]:
-    low, high = rack_ends("", SQUARE)
+    low, high = rack_ends("paper")
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     swing = {"sine": {"amplitude": half * (1.0 - value), "angular_frequency": 1.0, "offset": middle}}
     # From the middle to near the greatest travel and back; instants on both sides of the turn.

@@ -90,13 +90,12 @@ def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
     position = {name: place + value for name, place in home.position.items()}
     velocity = {name: v + rate for name, v in home.velocity.items()}
     acceleration = {name: a + push for name, a in home.acceleration.items()}
-    accuracy = replace(
-        home.accuracy,
-        position=_rounded(home.accuracy.position, position, value),
-        velocity=_rounded(home.accuracy.velocity, velocity, rate),
-        acceleration=_rounded(home.accuracy.acceleration, acceleration, push),
-    )
-    return replace(home, position=position, velocity=velocity, acceleration=acceleration, accuracy=accuracy)
+    sums = {"position": position, "velocity": velocity, "acceleration": acceleration}
+    claims = {
+        quantity: _rounded(home.accuracy.claims[quantity], sums[quantity], more)
+        for quantity, more in (("position", value), ("velocity", rate), ("acceleration", push))
+    }
+    return replace(home.with_numbers(sums), accuracy=home.accuracy.with_claims(claims))
 
 
 def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], added: Array) -> dict[str, Array]:

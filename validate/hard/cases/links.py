@@ -32,7 +32,7 @@ from validate.hard.cases.near_points import drawn_angle
 if TYPE_CHECKING:
     from absolute import Model
 
-GROUP = "10. Links and numbers that make no mechanism"
+GROUP = "Links and numbers that make no mechanism"
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 JOINTS = (
     "arm_pivot",

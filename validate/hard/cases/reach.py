@@ -8,8 +8,10 @@ there with right instants, and (pointcoord) the links that lie in line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -19,25 +21,30 @@ from validate.cars.scene_content import Law, scene_content
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
-from validate.hard.case import RIGHT, Answer, Case, Trial, decades
+from validate.hard.cars import CARS, EVERY
+from validate.hard.case import RIGHT, Answer, Case, Trial, coarse, decades
 from validate.hard.cases.blocked_ways import blocked_way
 from validate.hard.kept import fault_of_kept
-from validate.hard.last_values import LastValue, car_called, home, last_value
+from validate.hard.last_values import LastValue, home, last_value
 from validate.hard.trial import scene_case
 from validate.reference import InfeasibleError, NoReferenceError
 
-GROUP = "9. Reachable range"
+GROUP = "Reachable range"
 SHARE = 1e-9  # of the range: how exactly the last value must be found
 SAMPLES = 5
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
-# What is in line at each kind of end: all of the first, and one of the second.
 STRUT = {"strut_top on the strut axis"}
-TIE_ROD = ({"link tie_rod_inner - tie_rod_outer"}, {"strut_lower", "lower_ball_joint"})
+ROD = "link tie_rod_inner - tie_rod_outer"
 ARM = {"link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"}
+UPPER_ARM = {
+    "link upper_ball_joint - lower_ball_joint",
+    "link upper_ball_joint - upper_arm_front",
+    "link upper_ball_joint - upper_arm_rear",
+}
 LOCKED = {
     "arm": "ball joint, arm axis, up",
     "strut": "nothing: the top is at a right angle beside the ball joint",
+    "upper_arm": "upper arm and kingpin, in one plane with the upper pivots",
     "tie_rod": "tie rod, steering arm",
 }
 
@@ -47,7 +54,7 @@ class Drive:
     """One input of one car, driven beyond one of its ends.
 
     Attributes:
-        car: a name that `car_called` knows.
+        car: the name of one in `CARS`.
         moving: driven there from home within 1 s; else it is there at the only instant.
     """
 
@@ -79,7 +86,7 @@ class Drive:
         start = self.home[self.driven]
         laws: dict[str, Law] = dict(self.home)
         laws[self.driven] = (start, goal - start) if self.moving else goal
-        car = car_called(self.car)
+        car = CARS[self.car]
         return Scene.from_mapping(
             scene_content(
                 car,
@@ -179,7 +186,7 @@ def _faults_of_words(reason: Exception, scene: Scene, drive: Drive) -> list[str]
             faults.append(f"the message does not hold {drive.driven} = {reached[drive.driven]:.10g}")
         if reason.reduce != drive.driven:
             faults.append(f"{reason.reduce!r} is to be reduced, and {drive.driven!r} was driven")
-        if not _in_line(reason.limits, drive.end.lock):
+        if not _in_line(reason.limits, drive):
             faults.append(f"what limits it is not what lies in line: {', '.join(reason.limits[:3])}")
     return faults
 
@@ -189,14 +196,18 @@ def _shown(reason: Exception, driven: str, values: Mapping[str, float]) -> bool:
     return any(f"{driven} = {values[driven]:.{digits}g}" in str(reason) for digits in (10, 12))
 
 
-def _in_line(limits: tuple[str, ...], lock: str) -> bool:
+def _in_line(limits: tuple[str, ...], drive: Drive) -> bool:
+    """Whether the links that limit a motion the most are those that lock."""
+    lock, first = drive.end.lock, set(limits[:3])
     if lock == "arm":
-        return set(limits[:3]) >= ARM
+        return first >= ARM
     if lock == "strut":
         return set(limits) >= STRUT
-    limits, (rod, ends) = limits[:3], TIE_ROD
-    steering_arm = {limit for limit in limits if "tie_rod_outer" in limit and any(e in limit for e in ends)}
-    return set(limits) >= rod and bool(steering_arm)
+    if lock == "upper_arm":
+        return first >= UPPER_ARM
+    # Where the arm drives, what holds the knuckle's upper end is under the same force as the steering arm.
+    steered = limits[: 3 if drive.driven == "rack" else 5]
+    return ROD in first and any("tie_rod_outer" in limit and limit != ROD for limit in steered)
 
 
 def _case(drive: Drive, name: str, where: str, values: tuple[float, ...]) -> Case:
@@ -225,23 +236,35 @@ ENDS = {
     ("rack", True): ("rack-greatest", "Tie rod and steering arm lie in line"),
 }
 SLIDE = "The strut's slide has no more way"
+UPPER = "Upper arm and kingpin come to lie in one plane with the upper pivots"
+TIE = "The arm turns until tie rod and steering arm lie in line"
 # Every refusal is a whole motion towards a fold, so few values must do.
-SOME, EIGHT, ENDS_ONLY = decades()[::4], (*decades()[::2], 1e-11), decades()[::12]
+SOME, EIGHT, FOUR, ENDS_ONLY = decades()[::4], (*decades()[::2], 1e-11), decades()[::4], decades()[::12]
+
+
+def _ends(
+    car: str, suffix: str, driven: tuple[str, ...], values: tuple[float, ...], more: str = ""
+) -> list[Case]:
+    return [
+        _case(Drive(car, name, ahead), f"reach-{label}{suffix}", f"{where}{more}", values)
+        for (name, ahead), (label, where) in ENDS.items()
+        if name in driven
+    ]
+
+
+def _heaved(car: str, value: float) -> dict[str, Any]:
+    return scene_content(CARS[car], heave=(0.0, 1.0 / value), stop=1.0)
+
+
+BOTH = ("arm_angle", "rack")
+TURNED = ", in a car mirrored, turned and 4e6 mm from the origin"
 
 CASES: tuple[Case, ...] = (
-    *(
-        _case(Drive("paper", driven, ahead), f"reach-{name}", where, SOME)
-        for (driven, ahead), (name, where) in ENDS.items()
-    ),
-    *(
-        _case(
-            Drive("turned", driven, ahead),
-            f"reach-{name}-turned",
-            f"{where}, in a car mirrored, turned and 4e6 mm from the origin",
-            ENDS_ONLY,
-        )
-        for (driven, ahead), (name, where) in ENDS.items()
-    ),
+    *_ends("paper", "", BOTH, SOME),
+    *_ends("turned", "-turned", BOTH, ENDS_ONLY, TURNED),
+    *_ends("short-arm", "-wishbone", ("arm_angle",), ENDS_ONLY),
+    *_ends("wishbone", "-wishbone", ("rack",), ENDS_ONLY),
+    *_ends("wishbone-turned", "-wishbone-turned", ("rack",), ENDS_ONLY, TURNED),
     *(
         _case(
             Drive("paper", driven, ahead, moving=False),
@@ -251,23 +274,37 @@ CASES: tuple[Case, ...] = (
         )
         for (driven, ahead), (name, where) in ENDS.items()
     ),
-    _case(Drive("wide", "arm_angle", False), "reach-slide-runs-out", SLIDE, SOME),
-    _case(
-        Drive("wide", "arm_angle", False, moving=False),
-        "start-beyond-slide-runs-out",
-        f"{SLIDE}, and the first instant lies beyond",
-        EIGHT,
+    *(
+        case
+        for name, where, drive, values in (
+            ("slide-runs-out", SLIDE, Drive("wide", "arm_angle", False), SOME),
+            ("upper-arm-locks", UPPER, Drive("wishbone", "arm_angle", True), ENDS_ONLY),
+            ("tie-rod-locks-the-arm", TIE, Drive("wishbone", "arm_angle", False), ENDS_ONLY),
+        )
+        for case in (
+            _case(drive, f"reach-{name}", where, values),
+            _case(
+                replace(drive, moving=False),
+                f"start-beyond-{name}",
+                f"{where}, and the first instant lies beyond",
+                EIGHT if values == SOME else FOUR,
+            ),
+        )
     ),
     blocked_way(GROUP, EIGHT),
-    scene_case(
-        name="heave-has-no-end",
-        group=GROUP,
-        why="The chassis carries all points, so heave alone has no last value; only digits are lost.",
-        parameter="1 mm over the heave",
-        values=decades(),
-        scene=lambda value: paper_car(heave=(0.0, 1.0 / value), stop=1.0),
-        # Heave takes no part in any constraint: it is added to what was solved, which is the drawing itself.
-        expected=dict.fromkeys(SOLVERS, RIGHT),
-        behaviour="right at every heave",
+    blocked_way(GROUP, FOUR, "wishbone"),
+    *(
+        scene_case(
+            name=f"heave-has-no-end{suffix}",
+            group=GROUP,
+            why="The chassis carries all points, so heave alone has no last value; only digits are lost.",
+            parameter="1 mm over the heave",
+            values=coarse(decades()) if suffix else decades(),
+            scene=partial(_heaved, car),
+            # Heave takes no part in any constraint: it is added to what was solved, the drawing itself.
+            expected=dict.fromkeys(SOLVERS, RIGHT),
+            behaviour="right at every heave",
+        )
+        for suffix, car in EVERY.items()
     ),
 )

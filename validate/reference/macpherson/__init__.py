@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from validate.reference.drives import ArmAngle, RackTravel
 from validate.reference.linkage import Linkage
 from validate.reference.macpherson import branches, collinear, drawn
@@ -49,17 +51,10 @@ DRAWN = Linkage(
     candidate=branches.drawn_candidate,
 )
 
-COLLINEAR = Linkage(
-    points=POINTS,
-    stand_ins={RACK: INNER},
-    left_out=(SPIN,),
-    chassis=CHASSIS,
-    joints=JOINTS,
-    inputs=DRAWN.inputs,
+COLLINEAR = replace(
+    DRAWN,
     links=collinear.LINKS,
     steering_axis=(BALL, LOWER),  # eq. (16)
-    wheel_axis=DRAWN.wheel_axis,
-    arms=DRAWN.arms,
     size=collinear.SIZE,
     coordinates=collinear.COORDINATES,
     shape=collinear.shape,
@@ -70,7 +65,6 @@ COLLINEAR = Linkage(
     implied=collinear.implied,
     knuckle_frame=collinear.knuckle_frame,
     handedness=collinear.handedness,
-    choices=Choices,
     drawn_sides=branches.collinear_drawn_sides,
     posed_sides=branches.collinear_posed_sides,
     combinations=branches.collinear_combinations,

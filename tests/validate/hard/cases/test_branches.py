@@ -116,7 +116,7 @@ def mirror(scene: Scene, solution: Solution) -> Solution:
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
     outer = p["tie_rod_outer"]
     height = np.sum((outer - ball) * normal, axis=-1, keepdims=True)
-    return replace(solution, position={**p, "tie_rod_outer": outer - 2.0 * height * normal})
+    return solution.with_numbers({"position": {**p, "tie_rod_outer": outer - 2.0 * height * normal}})
 
 
 def test_a_jump_to_the_mirror_image_is_wrong_and_its_side_is_negative(

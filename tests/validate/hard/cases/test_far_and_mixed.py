@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
@@ -77,15 +76,14 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
 
         def solve(self, scene: Scene) -> Solution:
             solution = formulation("pointcoord-newton").solve(scene)
-            arrays = dict(getattr(solution, quantity))
+            arrays = dict(solution.numbers[quantity])
             name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
             arrays[name] = arrays[name] + lost
             # It knows that digits are lost, and says so, so that its own bounds hold.
-            claims = getattr(solution.accuracy, quantity)
-            wider = {quantity: {n: claim + 1e3 * lost for n, claim in claims.items()}}
-            accuracy = replace(solution.accuracy, **wider)
-            changes: dict[str, Any] = {"accuracy": accuracy, quantity: arrays}
-            return replace(solution, **changes)
+            claims = solution.accuracy.claims[quantity]
+            wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
+            accuracy = solution.accuracy.with_claims({quantity: wider})
+            return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
 
     far(value)  # the car at home is solved before the model is replaced
     monkeypatch.setattr(

@@ -134,7 +134,7 @@ def test_a_model_that_answers_a_number_that_is_none_is_found_out(monkeypatch: py
         def solve(self, scene: Scene) -> object:
             solution = formulation("absolute").solve(Scene.from_mapping(paper_car()))
             bad = {name: np.full_like(place, math.nan) for name, place in solution.position.items()}
-            return type(solution)(**{**vars(solution), "position": bad})
+            return solution.with_numbers({"position": bad})
 
     monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Blind())
     trial = try_scene(1.0, paper_car(), ("absolute",))

@@ -15,12 +15,12 @@ import pytest
 from pointcoord import AssemblyError, Scene, simulate
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
+from validate.hard.cars import CARS, paper_car
 from validate.hard.case import unexpected, wrong_without_warning
 from validate.hard.cases import blocked_ways
 from validate.hard.cases.reach import CASES, Drive, _refusal
 from validate.hard.kept import fault_of_kept
-from validate.hard.last_values import car_called, home, last_value, reachable
+from validate.hard.last_values import home, last_value, reachable
 
 BY_NAME = {case.name: case for case in CASES}
 PAPER_RACK = Drive("paper", "rack", True)
@@ -30,7 +30,7 @@ PAPER_RACK = Drive("paper", "rack", True)
 def test_the_arm_ends_where_its_ball_joint_is_highest_or_lowest_on_its_circle(car: str) -> None:
     # With u the axis and d the arm: height u_z (u . d) +- |d - u (u . d)| |z - u u_z|, worked out in
     # 50 digits from the coordinates as they are.
-    hardpoints = car_called(car)
+    hardpoints = CARS[car]
     with mpmath.workdps(50):
         front, rear, ball = (
             mpmath.matrix(hardpoints.points[n])

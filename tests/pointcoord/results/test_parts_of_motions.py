@@ -1,0 +1,90 @@
+"""A motion that stops before its scene ends is a motion with a status, and its error says the same."""
+
+import pickle
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from pointcoord import AssemblyError, Motion, MotionTooLong, PointcoordError, Scene, simulate
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.method import NEWTON, SERIES, Method
+from pointcoord.solve.assembly import assemble
+from pointcoord.solve.pointwise import solve_instants
+from pointcoord.solve.status import COMPLETE
+from pointcoord.solve.taylor import Settings, build_chain
+from validate.paper.printed import PRINTED
+
+ARM = (1.5, 1.0)  # rad: past the last angle, 152.013 degrees, at t = 1.153 s
+LAST = 1.15  # s
+
+
+def stopped_by(kind: type[PointcoordError], scene: Scene, method: Method) -> PointcoordError:
+    with pytest.raises(kind) as caught:
+        simulate(scene, method)
+    return caught.value
+
+
+@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=str)
+def test_a_whole_motion_is_complete_and_a_part_of_one_says_what_stopped_it(
+    make_scene: Callable[..., Scene], method: Method
+) -> None:
+    whole = simulate(make_scene(ARM, samples=24, stop=LAST), method)
+    assert whole.status is COMPLETE
+    assert whole.status.error(whole) is None
+    error = stopped_by(AssemblyError, make_scene(ARM, samples=31, stop=1.5), method)
+    part = error.partial
+    assert isinstance(part, Motion)
+    assert not part.status.complete
+    assert str(part.status.error(part)) == str(error)
+    assert repr(part).startswith(f"<part of a Motion by {method}")
+    # Both scenes have an instant every 0.05 s, and up to the end they ask for the same.
+    assert np.array_equal(part.times, whole.times)
+    again = pickle.loads(pickle.dumps(part))
+    assert again.status == part.status
+
+
+def test_a_part_of_a_motion_has_the_numbers_and_the_proof_of_the_whole(
+    make_scene: Callable[..., Scene],
+) -> None:
+    # At an instant that is solved for by itself nothing tells that a later one fails.
+    whole = simulate(make_scene(ARM, samples=24, stop=LAST), NEWTON)
+    part = stopped_by(AssemblyError, make_scene(ARM, samples=31, stop=1.5), NEWTON).partial
+    one, other = whole.proof(rates=True), part.proof(rates=True)
+    for quantity, channel in whole.numbers.items():
+        for name, array in channel.items():
+            assert np.array_equal(array, part.numbers[quantity][name])
+            assert np.array_equal(one.proven[quantity][name], other.proven[quantity][name])
+
+
+def test_a_motion_of_too_many_series_keeps_those_it_has(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 1)
+    error = stopped_by(MotionTooLong, make_scene(ARM, samples=116, stop=LAST), SERIES)
+    part = error.partial
+    assert 1 < len(part.times) < 116
+    assert np.isfinite(part.at(part.times[-1]).position["wheel_centre"]).all()
+    assert part.work.segments == 1
+
+
+def test_nothing_is_kept_where_no_instant_was_solved(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # No trial step is good enough: the chain cannot leave its start.
+    monkeypatch.setattr("pointcoord.solve.taylor.on_branch", lambda *_: np.array(False))
+    error = stopped_by(PointcoordError, make_scene(ARM, samples=2, stop=LAST), SERIES)
+    assert error.partial is None
+
+
+def test_solvers_stop_without_an_exception(make_scene: Callable[..., Scene], strut: Mechanism) -> None:
+    scene = make_scene(ARM, samples=31, stop=1.5)
+    functions = {name: scene.functions[name] for name in strut.topology.required_inputs}
+    pose = assemble(strut, {name: f.series(0.0, 0)[..., 0] for name, f in functions.items()})
+    chain = build_chain(strut, functions, pose, 0.0, 1.5, Settings(1e-12, derivative=2))
+    solved = solve_instants(strut, functions, pose, scene.instants, 2)
+    assert 1.15 < chain.stop < 1.16
+    assert len(solved.times) == len(solved.states[2]) == 24
+    for status in (chain.status, solved.status):
+        assert not status.complete
+        assert isinstance(status.error(), AssemblyError)

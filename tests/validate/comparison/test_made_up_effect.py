@@ -1,0 +1,188 @@
+"""An effect that nobody has heard of goes through everything once the two models' registries know it.
+
+Nothing in `validate` names an effect, a quantity or an angle: two made-up ones are planted in the registries,
+a length with a quantity of its own and an angle that jumps by a whole turn.
+"""
+
+import json
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from program import short_scene
+
+import absolute
+from absolute.effects.effect import Effect as AbsoluteEffect
+from absolute.effects.effect import Lines
+from absolute.effects.projected_angle import projected_angle
+from pointcoord import Scene
+from pointcoord.bounds.enclosed_points import EnclosedPoses
+from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.effects import registry
+from pointcoord.effects.angle import Angle, WheelAngles
+from pointcoord.effects.effect import Effect, Poses, Quantity
+from pointcoord.linkage.topology import Topology
+from validate.cli import main
+from validate.comparison.compare import Outcome, compare
+from validate.output.document import schema_text
+from validate.paper.scenes import DEFAULT_SCENES
+
+STUB = Quantity("stub", "stub length", "mm", "car")
+EPS = float(np.finfo(float).eps)
+
+
+class Stub(Effect):
+    """How far the wheel centre lies outboard of the inner point of the spin axis, mm."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return ("stub_axle",)
+
+    def needs(self, topology: Topology) -> Collection[str]:
+        return topology.wheel_axis
+
+    def evaluate(self, poses: Poses) -> dict[str, dict[str, np.ndarray]]:
+        inner, centre = (poses.states[0][name] for name in poses.mechanism.topology.wheel_axis)
+        return {STUB.name: {"stub_axle": poses.axes.component(centre - inner, "outboard")}}
+
+    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, np.ndarray]]:
+        inner, centre = (poses.points[0][name] for name in poses.mechanism.topology.wheel_axis)
+        exact = poses.axes.enclosed(centre - inner, "outboard").scaled(float(poses.mechanism.unit))
+        found = numbers[STUB.name]["stub_axle"]
+        return {STUB.name: {"stub_axle": np.stack([exact.apart(found), exact.radius[1]])}}
+
+
+OURS = (
+    Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,)),
+    # A wheel that stands upright leans by half a turn, more or less.
+    WheelAngles.of(
+        "flip",
+        "camber from the other side, rad",
+        Angle("flip", "flipped camber", "where the wheel leans in", "wheel_axis", "up", "inboard"),
+    ),
+)
+
+
+def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
+    """The absolute model's own, right or too long."""
+
+    def outboard(lines: Lines, along: np.ndarray) -> np.ndarray:
+        return along @ np.array(lines.corner.outboard)
+
+    def value(lines: Lines) -> np.ndarray:
+        return scale * outboard(lines, lines.line(lines.corner.wheel_axis))
+
+    def error(lines: Lines) -> np.ndarray:
+        ends = lines.corner.wheel_axis
+        size = lines.error(ends) + 3.0 * EPS * np.abs(lines.line(ends))
+        return np.asarray(size @ np.abs(lines.corner.outboard))
+
+    words = ("length of the stub axle", "+ outboard")
+    return AbsoluteEffect("stub_axle", "mm", *words, 0, value, error)
+
+
+FLIP = projected_angle(
+    "flip",
+    gives="camber from the other side",
+    sign="+ where the wheel leans in at its top",
+    line=lambda corner: corner.wheel_axis,
+    rise=lambda corner: corner.up,
+    run=lambda corner: corner.inboard,
+)
+
+Plant = Callable[..., None]
+
+
+@pytest.fixture
+def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
+    """Registers the effects in pointcoord, and in the absolute model those that it is to know."""
+    for effect in OURS:
+        monkeypatch.setitem(registry.EFFECTS, effect.name, effect)
+    monkeypatch.setitem(registry.QUANTITIES, STUB.name, STUB)
+
+    def in_absolute(*effects: AbsoluteEffect) -> None:
+        known = {**absolute.EFFECTS, **{effect.name: effect for effect in effects}}
+        monkeypatch.setattr(absolute, "EFFECTS", known)
+        monkeypatch.setattr("absolute.effects.EFFECTS", known)
+
+    in_absolute(stub_axle(), FLIP)
+    return in_absolute
+
+
+def asked(name: str) -> Scene:
+    """A built-in scene that asks for the new effects, and for one that has always been there."""
+    content: dict[str, Any] = Scene.load(name).model_dump(mode="json", exclude_none=True)
+    return Scene.from_mapping({**content, "effects": ["velocity", "stub_axle", "flip"]})
+
+
+def made_up(outcome: Outcome) -> dict[tuple[str, str], str]:
+    return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.name in ("stub_axle", "flip")}
+
+
+@pytest.mark.parametrize("name", DEFAULT_SCENES)
+def test_it_is_compared_like_every_other(name: str, planted: Plant) -> None:
+    outcome = compare(asked(name), "pointcoord", "absolute")
+    assert made_up(outcome) == {("stub", "stub_axle"): "agrees", ("wheel", "flip"): "agrees"}
+    assert {row.quantity for row in outcome.rows} == {"position", "velocity", "wheel", "stub"}
+    assert {row.name for row in outcome.rows if row.quantity == "wheel"} == {"flip"}
+    assert outcome.agreed
+
+
+def test_an_angle_that_jumps_by_a_whole_turn_jumps_at_other_instants_and_agrees(planted: Plant) -> None:
+    first, second = compare(asked("off-axis-strut"), "pointcoord", "absolute").solutions
+    ours, theirs = (solution.numbers["wheel"]["flip"] for solution in (first, second))
+    assert np.ptp(ours) > 6.0
+    assert np.abs(np.exp(1j * ours) - np.exp(1j * theirs)).max() < 1e-13
+
+
+def test_a_fault_of_it_is_caught(planted: Plant) -> None:
+    planted(stub_axle(1.0 + 1e-11), FLIP)
+    outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
+    assert made_up(outcome) == {("stub", "stub_axle"): "disagrees", ("wheel", "flip"): "agrees"}
+
+
+def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
+    planted: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = {name: effect for name, effect in absolute.EFFECTS.items() if name not in ("stub_axle", "flip")}
+    monkeypatch.setattr(absolute, "EFFECTS", known)
+    outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
+    assert made_up(outcome) == {("stub", "stub_axle"): "not given", ("wheel", "flip"): "not given"}
+    assert set(outcome.missing) == {"absolute gives no stub length", "absolute gives no wheel angle"}
+    assert not outcome.disagreements
+    assert not outcome.agreed
+
+
+def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = short_scene(tmp_path, effects='["stub_axle", "flip"]')
+    assert main(["plan", path]) == 0
+    out = capsys.readouterr().out
+    assert "computed: length of the stub axle, mm (stub_axle)" in out
+    assert "left out: velocity of every point, mm/s" in out
+    assert main(["simulate", path]) == 0
+    head, first, *_ = capsys.readouterr().out.splitlines()
+    row = dict(zip(head.split(","), map(float, first.split(",")), strict=True))
+    places = {axis: row[f"position.wheel_centre.{axis} [mm]"] for axis in "xyz"}
+    # A left wheel: outboard is -y.
+    assert row["stub.stub_axle [mm]"] == pytest.approx(row["position.strut_lower.y [mm]"] - places["y"])
+    assert 170.0 < abs(row["wheel.flip [deg]"]) <= 180.0
+    assert main(["validate", path, "--json", "-"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(json.loads(schema_text())).validate(data)
+    rows = {(r["quantity"], r["name"]): r["unit"] for r in data["scenes"][0]["comparisons"][0]["rows"]}
+    assert rows["stub", "stub_axle"] == "mm"
+    assert rows["wheel", "flip"] == "rad"
+    assert main(["validate", path]) == 0
+    table = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [line[2] for line in table if line[:1] == ["stub_axle"]] == ["mm"]
+    assert [line[2] for line in table if line[:1] == ["flip"]] == ["rad"]
+
+
+def test_the_registries_are_as_before() -> None:
+    """A check of the check: nothing of what is planted stays."""
+    assert "flip" not in registry.EFFECTS
+    assert STUB.name not in registry.QUANTITIES
+    assert "flip" not in absolute.EFFECTS

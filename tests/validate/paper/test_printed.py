@@ -1,0 +1,146 @@
+"""The paper's formulas as printed: which of them hold and which fail, and where."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from rate_sensitivity import rate_sensitivities
+
+from pointcoord import Scene, simulate
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.pointwise import square_velocity_term
+from pointcoord.suspensions.macpherson import COLLINEAR
+from validate.cars.paper_car import PAPER
+from validate.paper.printed import PRINTED, TOPOLOGY, PrintedQuotients, printed_square_velocity_term
+from validate.paper.printed_parallel import PrintedParallel
+
+Array = NDArray[np.float64]
+EPS = np.finfo(float).eps
+
+
+def quarter_turn(vector: Array) -> Array:
+    """Turned by 90 degrees about x, exactly: y becomes z, z becomes -y."""
+    x, y, z = np.asarray(vector, dtype=float)
+    return np.array([x, -z, y])
+
+
+def pose_of(mechanism: Mechanism, angle: float = 1.5) -> Pose:
+    return assemble(mechanism, {"arm_angle": np.array(angle), "rack": np.array(0.0)})
+
+
+def test_printed_term_differs_in_the_rows_of_the_strut_only() -> None:
+    system = TOPOLOGY.map
+    v = np.random.default_rng(2).normal(size=system.size)
+    true, printed = square_velocity_term(system, v), printed_square_velocity_term(system, v)
+    strut_rows = [i for i, label in enumerate(TOPOLOGY.labels) if "parallel" in label]
+    others = [i for i in range(len(true)) if i not in strut_rows]
+    assert np.array_equal(printed[others], true[others])
+    assert np.array_equal(printed[strut_rows[:3]], true[strut_rows[:3]] / 2)
+    assert printed[strut_rows[3]] == true[strut_rows[1]] / 2  # row 11 repeats row 9
+
+
+def test_printed_formulation_has_the_same_positions_and_velocities() -> None:
+    scene = Scene.load("bounce-and-steer")
+    newton, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
+    one, other = newton.proof(), printed.proof()
+    for name in newton.position:
+        gap = np.abs(newton.position[name] - printed.position[name]).max(axis=-1)
+        assert (gap <= one.bound + other.bound).all()
+        # The pose's error times its proven effect, and the rounding of one solve each. A carried point
+        # moves up to 30 times as fast as its carriers (its weights).
+        speed = np.abs(newton.velocity[name]).max()
+        rounding = 64 * EPS * (one.condition + other.condition) * speed
+        sensitive = rate_sensitivities(newton)[0] * one.bound + rate_sensitivities(printed)[0] * other.bound
+        assert (
+            np.abs(newton.velocity[name] - printed.velocity[name]).max(axis=-1) <= 30 * (sensitive + rounding)
+        ).all()
+
+
+@pytest.mark.parametrize("vertical", [True, False], ids=["strut upright", "strut of the paper laid flat"])
+def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not(
+    vertical: bool,
+) -> None:
+    points = {name: np.array(p) for name, p in PAPER.items()}
+    if vertical:
+        # An upright strut: every point of its axis above the lower ball joint. A quarter turn about x
+        # then lays it flat exactly.
+        for name in ("strut_lower", "strut_rod_end", "strut_top"):
+            points[name][:2] = points["lower_ball_joint"][:2]
+        turned = {name: quarter_turn(p) for name, p in points.items()}
+        up, right = quarter_turn([0.0, 0.0, 1.0]), quarter_turn([0.0, 1.0, 0.0])
+        flat = build_mechanism(COLLINEAR, turned, {"up": up, "right": right})
+        upright = build_mechanism(COLLINEAR, points, {"up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]})
+        y, tolerance = flat.drawn, 0.0
+    else:
+        # The assembled strut of the paper, turned about x until its axis has no z component.
+        upright = build_mechanism(COLLINEAR, PAPER, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
+        pose = pose_of(upright)
+        axis = np.subtract(*(pose.y[list(upright.layout.vector(n))] for n in ("strut_rod_end", "strut_top")))
+        c, s = np.array([axis[1], -axis[2]]) / np.hypot(axis[1], axis[2])
+        about = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+        turned = {name: about @ p for name, p in points.items()}
+        flat = build_mechanism(COLLINEAR, turned, {"up": about[:, 2], "right": about[:, 1]})
+        pose = pose_of(flat)
+        # The axis is flat up to the rounding of the turn and of the pose.
+        y, tolerance = pose.y, 16 * EPS + 4 * float(pose.bound / flat.unit)
+    shape = replace(
+        TOPOLOGY,
+        constraints=tuple(c for c in TOPOLOGY.constraints if isinstance(c, PrintedParallel)),
+    )
+    z = np.zeros(shape.layout.size)
+    for name in (*shape.moving, *shape.chassis):
+        z[list(shape.layout.vector(name))] = y[list(flat.layout.vector(name))]
+    # Two printed rows per pair of lines; flat, both say the same: rank two instead of four.
+    singular = np.linalg.svd(shape.map.jacobian(z), compute_uv=False)
+    assert singular[1] > 0.1
+    assert singular[2] <= 8 * tolerance
+    # The slide has no preferred axis. The turned car's bounding box may give it another unit, half or twice
+    # as long, which multiplies the rows of links and the columns of ratios by two.
+    conditions = [
+        np.linalg.cond(m.map.jacobian(pose_of(m).y if not vertical else m.drawn)) for m in (upright, flat)
+    ]
+    assert conditions[1] <= 4.001 * conditions[0]
+    assert any(isinstance(c, OnLine) for c in flat.topology.constraints)
+
+
+def test_printed_quotient_fails_in_the_steering_scene_and_least_squares_do_not() -> None:
+    scene = Scene.load("steer")
+    ours, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
+    omega = ours.angular_velocity["knuckle"]
+    # The arm stands still, so the knuckle turns about the steering axis through points 5 and 4.
+    axis = ours.position["strut_top"] - ours.position["lower_ball_joint"]
+    axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
+    across = np.linalg.norm(np.cross(omega, axis), axis=-1)
+    size = np.linalg.norm(omega, axis=-1)
+    # Points 5 and 7 are 60 mm apart: their velocities' rounding over that length.
+    assert (across <= 1e-9 * size).all()
+    assert size[0] == pytest.approx(1.46, abs=0.005)
+    assert (np.diff(size) > 0.0).all()
+    # The printed columns: not a number, or noise of the size of the numbers themselves.
+    noisy = printed.angular_velocity["knuckle"]
+    with np.errstate(invalid="ignore"):
+        wrong = ~(np.linalg.norm(noisy - omega, axis=-1) <= 0.1 * size)
+    assert wrong.mean() > 0.9
+    assert any("not a number" in note and "angular velocity" in note for note in printed.notes) == bool(
+        (~np.isfinite(noisy)).any()
+    )
+    assert ours.notes == (ours.closing.words,)
+
+
+def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> None:
+    rng = np.random.default_rng(3)
+    points = rng.normal(size=(3, 3))
+    omega, alpha = rng.normal(size=(2, 3))
+    v = np.cross(omega, points)
+    a = np.cross(alpha, points) + np.cross(omega, v)
+    names = ("a", "b", "c")
+    found = PrintedQuotients().rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
+    r = points[2] - points[0]
+    for exact, value in zip((omega, alpha), found, strict=True):
+        # v65 x v75 = omega (v65 . r75): a few roundings over the cosine that the quotient divides by.
+        spread = np.abs(np.cross(exact, points[1] - points[0]) @ r)
+        assert np.abs(value - exact).max() <= 200 * EPS * (1 + np.linalg.norm(omega) ** 2) * 30 / spread**2

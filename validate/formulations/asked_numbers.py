@@ -1,0 +1,24 @@
+"""What a scene asks a formulation for: which quantities, of which points, bodies and angles."""
+
+from __future__ import annotations
+
+from pointcoord import Scene
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import QUANTITIES
+
+
+def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """By quantity, in the order of pointcoord's registry, the names of what the scene's effects give."""
+    topology = scene.mechanism.topology
+    every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
+    asked: dict[str, tuple[str, ...]] = {}
+    for effect in plan_effects(scene.effects).computed:
+        for quantity, names in effect.gives_numbers.items():
+            named = every[QUANTITIES[quantity].of] if names is None else names
+            asked[quantity] = tuple(dict.fromkeys((*asked.get(quantity, ()), *named)))
+    return {quantity: asked[quantity] for quantity in QUANTITIES if quantity in asked}
+
+
+def per_second(quantity: str) -> int:
+    """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
+    return {"": 0, "s": 1, "s^2": 2}[QUANTITIES[quantity].unit.partition("/")[2]]
