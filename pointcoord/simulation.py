@@ -139,8 +139,6 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         return None
     samples = solved.samples(times)
     _require_known(solved, samples, task.scene.tolerance)
-    moved = (task.closing.words,) if task.closing.noticeable else ()
-    doubts, numbers = task.scene.mechanism.doubts, _missing_numbers(solved, samples)
     return Motion(
         times=samples.times,
         numbers=samples.numbers,
@@ -149,8 +147,24 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         start=task.start,
         closing=task.closing,
         work=task.start.work + solved.states.work,
-        notes=(*moved, *doubts, *solved.states.notes, *numbers),
+        notes=_notes(task, solved, samples),
         solved=solved,
+    )
+
+
+def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
+    """What the user should know: of the drawing, of how it was solved, and of single numbers."""
+    closed = (task.closing.words,) if task.closing.noticeable else ()
+    mechanism, axes, plan = solved.readout.mechanism, solved.readout.axes, solved.readout.plan
+    cautions = (
+        effect.caution(mechanism.topology, mechanism.drawing.vectors, axes) for effect in plan.computed
+    )
+    return (
+        *closed,
+        *task.scene.mechanism.doubts,
+        *solved.states.notes,
+        *(caution for caution in cautions if caution),
+        *_missing_numbers(solved, samples),
     )
 
 
