@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from absolute.effects.camber import camber
 from absolute.effects.effect import Effect
 from absolute.effects.kingpin import kingpin
-from absolute.effects.toe import toe
 from absolute.errors import InputError
 from absolute.mapping import ReadOnly
 
@@ -15,7 +14,6 @@ EFFECTS: Mapping[str, Effect] = ReadOnly(
         for effect in (
             camber,
             kingpin,
-            toe,
         )
     }
 )
