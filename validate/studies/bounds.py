@@ -295,7 +295,7 @@ def bounds_text(study: BoundStudy) -> str:
     parts = [
         _summary(study),
         *(
-            _set_text(f"{what} of a {variant.words}{how}", of_variant(checks, variant))
+            _set_text(f"{what} of cars ({variant.words}){how}", of_variant(checks, variant))
             for checks, what, how in (
                 (study.held, "poses", ", held close to the end of an input"),
                 (study.moving, "instants of motions", " that run towards the end of an input"),
@@ -318,7 +318,7 @@ def _summary(study: BoundStudy) -> str:
         checks = (*held, *moving)
         refused = sum(refusal.variant == variant for refusal in study.refusals)
         counts = (len(held), len(moving), refused, sum(not check.share <= 1.0 for check in checks))
-        share = f"{max(c.share for c in checks):.4g}" if checks else "-"
+        share = f"{max(c.share for c in checks):.7g}" if checks else "-"
         loose = f"{np.median(looseness(checks)['solved points']):.3g}" if checks else "-"
         rows.append((variant.words, *map(str, counts), share, loose))
     head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")

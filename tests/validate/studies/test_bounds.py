@@ -113,7 +113,7 @@ def test_report_as_text_and_as_plain_data_say_the_same(small: Any) -> None:
     assert "bounds below the error: 0" in text
     for variant in VARIANTS:
         count = len(of_variant(small.held, variant))
-        assert f"{count} poses of a {variant.words}, held" in text
+        assert f"{count} poses of cars ({variant.words}), held" in text
         assert data["held"][variant.words]["count"] == count > 0
     assert sum(row["poses"] for row in data["refusals"]) == len(small.refusals)
     slope = data["held"][VARIANTS[0].words]["error_over_rounding"]["slope"]
