@@ -55,6 +55,12 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
             there is none.
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
+
+    >>> motion = simulate(Scene.load("steer"))
+    >>> motion.position["wheel_centre"].shape
+    (81, 3)
+    >>> bool(motion.proof().bound.max() < 1e-11)
+    True
     """
     require_scene(scene)
     # Its dictionaries can be written after it was read.
@@ -133,8 +139,6 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         return None
     samples = solved.samples(times)
     _require_known(solved, samples, task.scene.tolerance)
-    moved = (task.closing.words,) if task.closing.noticeable else ()
-    doubts, numbers = task.scene.mechanism.doubts, _missing_numbers(solved, samples)
     return Motion(
         times=samples.times,
         numbers=samples.numbers,
@@ -143,8 +147,24 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         start=task.start,
         closing=task.closing,
         work=task.start.work + solved.states.work,
-        notes=(*moved, *doubts, *solved.states.notes, *numbers),
+        notes=_notes(task, solved, samples),
         solved=solved,
+    )
+
+
+def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
+    """What the user should know: of the drawing, of how it was solved, and of single numbers."""
+    closed = (task.closing.words,) if task.closing.noticeable else ()
+    mechanism, axes, plan = solved.readout.mechanism, solved.readout.axes, solved.readout.plan
+    cautions = (
+        effect.caution(mechanism.topology, mechanism.drawing.vectors, axes) for effect in plan.computed
+    )
+    return (
+        *closed,
+        *task.scene.mechanism.doubts,
+        *solved.states.notes,
+        *(caution for caution in cautions if caution),
+        *_missing_numbers(solved, samples),
     )
 
 

@@ -125,6 +125,18 @@ class WheelAngles(Effect):
                 )
         return ""
 
+    def caution(self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes) -> str:
+        """An angle that counts forwards needs right-handed axes, and nothing but the drawing tells."""
+        lengthwise = [a.words for a in self.angles if {a.sine, a.cosine} & {"forward", "rearward"}]
+        front, rear = topology.front_and_rear
+        if not lengthwise or axes.component(drawn[front] - drawn[rear], "forward") >= 0.0:
+            return ""
+        forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
+        return (
+            f"{' and '.join(lengthwise)} may have the wrong sign: by up and right the car's front lies "
+            f"towards {forward.tolist()}, as in right-handed axes, but {front} is drawn behind {rear}"
+        )
+
     def doubts(
         self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
     ) -> tuple[str, ...]:

@@ -114,6 +114,14 @@ class Effect(ABC):
         """Why a drawing does not have it and what to do, in words; empty if it does."""
         return ""
 
+    def caution(self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes) -> str:
+        """Why its numbers may not be what the user means by them, in words; empty if nothing says so.
+
+        Args:
+            drawn: the points, each (3,), mm.
+        """
+        return ""
+
     def doubts(
         self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
     ) -> tuple[str, ...]:

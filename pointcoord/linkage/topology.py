@@ -35,6 +35,7 @@ class Topology:
         steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
         wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
         wheel_centre: a point of the knuckle.
+        front_and_rear: two points of the chassis, of which the first lies ahead of the second.
         inboard: a point of the chassis that lies nearer the car's middle than the wheel centre.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
@@ -54,6 +55,7 @@ class Topology:
     wheel_axis: tuple[str, str]
     wheel_centre: str
     inboard: str
+    front_and_rear: tuple[str, str]
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     puts_in_place: bool = False

@@ -43,6 +43,7 @@ DRAWN = Topology(
     wheel_axis=("wheel_axis_inner", "wheel_centre"),
     wheel_centre="wheel_centre",
     inboard="upper_arm_front",
+    front_and_rear=("lower_arm_front", "lower_arm_rear"),
     stand_ins={"rack_centre": "tie_rod_inner"},
     chassis_motion={"heave": "up"},
 )

@@ -73,6 +73,7 @@ def _macpherson(
         wheel_axis=("wheel_axis_inner", "wheel_centre"),
         wheel_centre="wheel_centre",
         inboard="strut_top",
+        front_and_rear=("lower_arm_front", "lower_arm_rear"),
         stand_ins={"rack_centre": "tie_rod_inner", "wheel_axis_inner": "strut_lower"},
         chassis_motion={"heave": "up"},
         puts_in_place=puts_in_place,

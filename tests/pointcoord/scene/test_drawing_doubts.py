@@ -76,8 +76,8 @@ def test_mirrored_axes_are_told_how_to_say_so(make_scene: Callable[..., Scene]) 
     turned = simulate(make_scene(points=mirrored, right=(0.0, -1.0, 0.0), **laws))
     for name, path in plain.position.items():
         assert np.abs(turned.position[name] - path * [1.0, -1.0, 1.0]).max() < 1e-10
-    for angle, values in plain.wheel.items():
-        assert np.abs(turned.wheel[angle] - values).max() < 1e-12
+    for angle in ("camber", "kingpin"):  # which look along the car, and do not ask where its front is
+        assert np.abs(turned.wheel[angle] - plain.wheel[angle]).max() < 1e-12
 
 
 @pytest.mark.parametrize("call", [simulate, standing])
