@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from absolute.effects.camber import camber
+from absolute.effects.caster import caster
 from absolute.effects.effect import Effect
 from absolute.effects.kingpin import kingpin
 from absolute.effects.toe import toe
@@ -16,6 +17,7 @@ EFFECTS: Mapping[str, Effect] = ReadOnly(
             camber,
             kingpin,
             toe,
+            caster,
         )
     }
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from validate.reference.effects.camber import CAMBER
+from validate.reference.effects.caster import CASTER
 from validate.reference.effects.effect import Effect
 from validate.reference.effects.kingpin import KINGPIN
 from validate.reference.effects.toe import TOE
@@ -13,5 +14,6 @@ EFFECTS: dict[str, Effect] = {
         CAMBER,
         KINGPIN,
         TOE,
+        CASTER,
     )
 }
