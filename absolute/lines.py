@@ -17,8 +17,8 @@ class SolvedLines:
     """Lines at N instants, mm, in the axes of the frame of the points.
 
     A line between two points of one body turns with it and is nothing but turned: it is as good as the
-    body's rotation R, however far the car is from its origin, |d a| <= |turn x a| + rounding of R a. Any
-    other is a difference of two places and is off by what both are.
+    body's rotation R, however far the car is from its origin, |d a| <= |turn x a| + rounding of R a. A line
+    is also off by no more than its two ends are; this is less where the body may turn about the line.
 
     Attributes:
         rotation: (N, bodies, 3, 3). origin: (N, bodies, 3), from the middle, in units of size.
@@ -50,15 +50,17 @@ class SolvedLines:
     def error(self, ends: tuple[str, str]) -> Array:
         """(N, 3) how far each component of that line may be off."""
         body = self._body_of(ends)
+        of_places = sum((self._place_error(end) for end in ends), np.zeros(3))
         if body is None:
-            return sum((self._place_error(end) for end in ends), np.zeros(3))
+            return of_places
         along = np.abs(self.line(ends))
         if body == self.mechanism.model.chassis:
             return EPS * along
         turn = self.errors.rotation[body]
         turned = np.roll(turn, -1, axis=-1) * np.roll(along, -2, axis=-1)
         turned += np.roll(turn, -2, axis=-1) * np.roll(along, -1, axis=-1)
-        return np.asarray(turned + ARM * length(along)[:, None] + EPS * along)
+        turned += ARM * length(along)[:, None] + EPS * along
+        return np.minimum(turned, of_places)
 
     def _body_of(self, ends: tuple[str, str]) -> str | None:
         bodies = self.mechanism.model.bodies

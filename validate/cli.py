@@ -14,6 +14,12 @@ from validate.exit_status import HELP, ExitStatus
 from validate.output.console import Console
 from validate.output.document import program_version, schema_text
 
+DESCRIPTION = """\
+Cross-validation of suspension kinematics: one mechanism is solved by two formulations that
+share no code, and everything that they compute is compared. A mechanism and its motion are a
+scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
+form."""
+
 COMMANDS = (comparison, motion, scenes, draw, hard)
 
 
@@ -65,16 +71,15 @@ def parser() -> argparse.ArgumentParser:
     """
     top = _Parser(
         prog="pointcoord",
-        description="Cross-validation of suspension kinematics: one mechanism, solved by two independent\n"
-        "formulations, compared.",
+        description=DESCRIPTION,
         epilog=HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument(
-        "--version", action=_Say, const=lambda: f"pointcoord {program_version()}", help="say the version"
+        "--version", action=_Say, const=lambda: f"pointcoord {program_version()}", help="print the version"
     )
     top.add_argument(
-        "--schema", action=_Say, const=schema_text, help="say the JSON Schema of what --json writes"
+        "--schema", action=_Say, const=schema_text, help="print the JSON Schema of what --json writes"
     )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:

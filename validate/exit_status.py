@@ -45,9 +45,9 @@ HELP = "\n".join(
     (
         "exit status:",
         *(f"  {status.value:>3}  {meaning}" for status, meaning in MEANINGS.items()),
-        f"Of several scenes the first of {', '.join(str(status.value) for status in ORDER)} counts that any "
-        "of them has; but a run\nwhose results cannot be written ends with 4, and an interrupted one with "
-        "130, whatever they are.",
+        "A run of several scenes ends with the first of "
+        f"{', '.join(str(status.value) for status in ORDER)} that one of them has; with 4 if its results\n"
+        "cannot be written, and with 130 if it is interrupted.",
     )
 )
 

@@ -9,8 +9,8 @@ A line that is off by d a turns its projection z = (a . run, a . rise) by no mor
 
 where vectors between bars are taken without the signs of their components. From |d z| = |z| on the angle
 may be anything. To |d a| come 3 eps |a| for the roundings of the two products, each of three
-terms (three halves of eps at worst), and of the directions (two halves); to the angle 4 eps, since an arc
-tangent up to pi is rounded by less.
+terms (three halves of eps at worst), and of the directions (two halves); to the angle 2 eps of it, since an
+arc tangent is off by no more than one of its own last digits.
 """
 
 from collections.abc import Callable
@@ -52,6 +52,7 @@ def projected_angle(
         across = np.sum(np.abs(x[:, None] * p - y[:, None] * q) * off, axis=1)
         across = np.divide(across, seen, out=np.zeros_like(seen), where=seen > 0.0)
         left = seen - off @ (np.abs(p) + np.abs(q))
-        return np.where(left > 0.0, np.arctan2(across, left), np.pi) + 4.0 * EPS
+        turned = np.where(left > 0.0, np.arctan2(across, left), np.pi)
+        return np.asarray(turned + 2.0 * EPS * np.abs(np.arctan2(y, x)))
 
     return Effect(name, "rad", gives, sign, 0, value, error)

@@ -61,10 +61,10 @@ def test_angles_are_those_of_the_exact_points_within_their_claims(kind: Kind, si
             width[name].append(claim)
     for name in absolute.EFFECTS:
         assert len(width[name]) > 40
-        # Roundings are counted one by one: of a few dozen some come near a tenth of the worst.
-        assert share[name] > 0.05, name
-        # A fault of 1e-11 rad stands out a hundred times.
-        assert np.median(width[name]) < 1e-13, name
+        # The three components of a body's turn are added without their signs, of which some would cancel;
+        # still some of a few dozen come near a thirtieth of the worst, and that is a few dozen roundings.
+        assert share[name] > 0.03, name
+        assert np.median(width[name]) < 50 * EPS, name
 
 
 @every_kind

@@ -1,16 +1,15 @@
-"""The strut of the paper's table 1 and scenes of it, for all tests here."""
+"""The strut of the paper's table 1, and scenes of it or of another car, for all tests here."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pytest
+from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.car import Points
 from validate.cars.paper_car import PAPER
 
@@ -24,14 +23,14 @@ def table() -> Points:
 
 
 @pytest.fixture(scope="session")
-def strut(table: Points) -> Mechanism:
+def strut() -> Mechanism:
     """The strut of table 1, axes x rearward, y right, z up."""
-    return build_mechanism(COLLINEAR, table, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
+    return PAPER_STRUT.mechanism()
 
 
 @pytest.fixture(scope="session")
-def make_scene(table: Points) -> Callable[..., Scene]:
-    """A scene of the strut; an input is a mapping as in a scene file, or the numbers of a polynomial."""
+def make_scene() -> Callable[..., Scene]:
+    """A scene of some car; an input is a mapping as in a scene file, or the numbers of a polynomial."""
 
     def as_input(value: Any) -> Any:
         return value if isinstance(value, Mapping) else {"polynomial": [float(c) for c in value]}
@@ -46,24 +45,25 @@ def make_scene(table: Points) -> Callable[..., Scene]:
         samples: int = 9,
         effects: tuple[str, ...] = EVERYTHING,
         tolerance: float = 1e-9,
+        car: SampleCar = PAPER_STRUT,
         points: Mapping[str, Any] | None = None,
         up: Any = (0.0, 0.0, 1.0),
         right: Any = (0.0, 1.0, 0.0),
-        side: str = "left",
-        closure: str = "collinear",
+        side: str | None = None,
+        closure: str | None = None,
     ) -> Scene:
         inputs = {"arm_angle": as_input(arm_angle), "rack": as_input(rack)}
         if heave is not None:
             inputs["heave"] = as_input(heave)
-        located = {name: tuple(np.asarray(p, float).tolist()) for name, p in (points or table).items()}
+        located = {name: tuple(np.asarray(p, float).tolist()) for name, p in (points or car.points).items()}
         return Scene.from_mapping(
             {
                 "effects": effects,
                 "tolerance": tolerance,
                 "mechanism": {
-                    "type": "macpherson",
-                    "closure": closure,
-                    "side": side,
+                    "type": car.type,
+                    "closure": closure or car.closure,
+                    "side": side or car.side,
                     "points": located,
                     "up": tuple(np.asarray(up, float).tolist()),
                     "right": tuple(np.asarray(right, float).tolist()),

@@ -1,14 +1,17 @@
 """Laws that need no second model: turn, move, mirror or scale the car, run its inputs backwards."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 from lengthwise_angles import expected_angle
 from numpy.typing import NDArray
 from rate_sensitivity import rate_sensitivities
+from sample_cars import GENERAL_STRUT, PAPER_STRUT, WISHBONE, SampleCar, by_car
 from scipy.linalg import expm
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
@@ -24,7 +27,7 @@ def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> st
 
 
 @st.composite
-def cars(draw: st.DrawFn) -> Car:
+def struts(draw: st.DrawFn) -> Car:
     """A strut of several hundred millimetres, its points placed from the axis of the strut outwards."""
     lower = draw(box((300.0, -400.0, -100.0), (600.0, -250.0, 100.0)))
     top = lower + draw(box((-40.0, 100.0, 450.0), (40.0, 200.0, 600.0)))
@@ -44,6 +47,36 @@ def cars(draw: st.DrawFn) -> Car:
         "tie_rod_inner": inner,
         "wheel_centre": strut_lower + draw(box((-10.0, -100.0, -10.0), (10.0, -70.0, 10.0))),
     }
+
+
+@st.composite
+def general_struts(draw: st.DrawFn) -> Car:
+    """The same with the ball joint beside the axis, the rod's end on it, and a spin axis of its own."""
+    car = draw(struts())
+    top, lower = car["strut_top"], car["strut_lower"]
+    car["lower_ball_joint"] = car["lower_ball_joint"] + draw(box((-20.0, -60.0, -10.0), (20.0, -10.0, 10.0)))
+    car["strut_rod_end"] = top + draw(st.floats(0.4, 0.6)) * (lower - top)
+    return car | {"wheel_axis_inner": car["wheel_centre"] + draw(box((-5.0, 60.0, -5.0), (5.0, 90.0, 5.0)))}
+
+
+@st.composite
+def wishbones(draw: st.DrawFn) -> Car:
+    """A double wishbone of a small car: its points up to 15 mm from the built-in one's, mirrored."""
+    nudge = box((-15.0, -15.0, -15.0), (15.0, 15.0, 15.0))
+    car = {name: np.array(p) * [1.0, -1.0, 1.0] + draw(nudge) for name, p in WISHBONE.points.items()}
+    return car | {"rack_centre": car["tie_rod_inner"]}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A suspension with a closure, and random left wheels of it."""
+
+    sample: SampleCar
+    cars: st.SearchStrategy[Car]
+
+
+KINDS = [Kind(PAPER_STRUT, struts()), Kind(GENERAL_STRUT, general_struts()), Kind(WISHBONE, wishbones())]
+by_kind = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.sample.name)
 
 
 @st.composite
@@ -82,7 +115,12 @@ class Tolerances:
     """
 
     def __init__(
-        self, motions: tuple[Motion, Motion], distance: float, truncation: float, unit: float
+        self,
+        sample: SampleCar,
+        motions: tuple[Motion, Motion],
+        distance: float,
+        truncation: float,
+        unit: float,
     ) -> None:
         proofs = [motion.proof() for motion in motions]
         condition = max(float(p.condition.max()) for p in proofs)
@@ -104,20 +142,22 @@ class Tolerances:
         # Edges of the carriers turn with the knuckle, so a carried rate also takes the lower orders' error.
         self.velocity = gain * (velocity + sense * solved)
         self.acceleration = gain * (acceleration + 2 * sense * velocity + bend * solved)
-        points = [motions[0].position[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower")]
+        topology, place = sample.topology, motions[0].position
+        points = [place[name] for name in topology.bodies[topology.knuckle]]
         edges = [points[i] - points[i - 1] for i in range(3)]
         lengths = [np.linalg.norm(e, axis=-1).max() for e in edges]
         height = np.linalg.norm(np.cross(edges[0], edges[1]), axis=-1).min() / max(lengths)
         # A body's rate follows from its points' within twice sqrt(3) over the triangle's least height, and
         # its lever arms are off by the pose's error.
-        spin = max(float(np.abs(m.angular_velocity["knuckle"]).max()) for m in motions)
+        rate = max(float(np.abs(m.angular_velocity["knuckle"]).max()) for m in motions)
         turn = max(float(np.abs(m.angular_acceleration["knuckle"]).max()) for m in motions)
-        self.omega = 4 * (self.velocity + 2 * spin * self.position) / height
+        self.omega = 4 * (self.velocity + 2 * rate * self.position) / height
         self.alpha = (
-            4 * (self.acceleration + 4 * spin * self.velocity + 2 * (turn + spin**2) * self.position) / height
+            4 * (self.acceleration + 4 * rate * self.velocity + 2 * (turn + rate**2) * self.position) / height
         )
-        axis = np.linalg.norm(points[2] - points[0], axis=-1).min()
-        self.angle = 4 * self.position / min(axis, 60.0 * unit / 512.0)
+        lines = (topology.steering_axis, topology.wheel_axis)
+        shortest = min(np.linalg.norm(place[b] - place[a], axis=-1).min() for a, b in lines)
+        self.angle = 4 * self.position / shortest
 
 
 def compare(
@@ -148,6 +188,7 @@ methods = st.sampled_from(["series", "newton"])
 
 def changed_car(
     make_scene: Callable[..., Scene],
+    sample: SampleCar,
     car: Car,
     given_inputs: Mapping[str, Any],
     method: str,
@@ -156,10 +197,11 @@ def changed_car(
     scale: float,
     side: str = "left",
 ) -> None:
-    plain = solve(make_scene(points=car, **given_inputs, side=side), method)
+    plain = solve(make_scene(car=sample, points=car, **given_inputs, side=side), method)
     scaled = dict(given_inputs, rack=tuple(scale * c for c in given_inputs["rack"]))
     other = solve(
         make_scene(
+            car=sample,
             points=moved_by(matrix, shift, scale, car),
             up=matrix[:, 2],
             right=matrix[:, 1],
@@ -170,9 +212,9 @@ def changed_car(
         method,
     )
     truncation = 1e-9 * scale if method == "series" else 0.0
-    as_scaled = Tolerances((other, other), float(np.abs(shift).max()), truncation, other.unit)
+    as_scaled = Tolerances(sample, (other, other), float(np.abs(shift).max()), truncation, other.unit)
     # The plain car's own errors, in the other's units.
-    own = Tolerances((plain, plain), 0.0, 1e-9 if method == "series" else 0.0, plain.unit)
+    own = Tolerances(sample, (plain, plain), 0.0, 1e-9 if method == "series" else 0.0, plain.unit)
     for name, value in vars(own).items():
         factor = 1.0 if name in ("omega", "alpha", "angle") else scale
         setattr(as_scaled, name, getattr(as_scaled, name) + factor * value)
@@ -182,70 +224,114 @@ def changed_car(
     compare(plain, other, matrix, shift, scale, as_scaled)
 
 
+@by_kind
 @few
-@given(car=cars(), run=inputs(), turn=vectors, mirrored=st.booleans(), method=methods)
+@given(data=st.data(), run=inputs(), turn=vectors, mirrored=st.booleans(), method=methods)
 def test_turned_or_mirrored_car_moves_turned_or_mirrored(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any], turn: Array, mirrored: bool, method: str
+    make_scene: Callable[..., Scene],
+    kind: Kind,
+    data: st.DataObject,
+    run: dict[str, Any],
+    turn: Array,
+    mirrored: bool,
+    method: str,
 ) -> None:
     x, y, z = turn
     matrix = expm(np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]))
     if mirrored:
         matrix = matrix @ np.diag([1.0, -1.0, 1.0])
-    changed_car(make_scene, car, run, method, matrix, np.zeros(3), 1.0)
+    changed_car(make_scene, kind.sample, data.draw(kind.cars), run, method, matrix, np.zeros(3), 1.0)
 
 
+@by_kind
 @few
 @given(
-    car=cars(),
+    data=st.data(),
     run=inputs(),
     axes=st.permutations([0, 1, 2]),
     signs=st.tuples(*[st.sampled_from([-1.0, 1.0])] * 3),
 )
 def test_no_axis_of_the_frame_is_special(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any], axes: list[int], signs: tuple[float, ...]
+    make_scene: Callable[..., Scene],
+    kind: Kind,
+    data: st.DataObject,
+    run: dict[str, Any],
+    axes: list[int],
+    signs: tuple[float, ...],
 ) -> None:
     # All 48 turns and mirror images that leave the axes in place: hardpoints are not rounded at all.
-    changed_car(make_scene, car, run, "newton", np.eye(3)[axes] * np.array(signs)[:, None], np.zeros(3), 1.0)
+    changed_car(
+        make_scene,
+        kind.sample,
+        data.draw(kind.cars),
+        run,
+        "newton",
+        np.eye(3)[axes] * np.array(signs)[:, None],
+        np.zeros(3),
+        1.0,
+    )
 
 
+@by_kind
 @few
-@given(car=cars(), run=inputs(), shift=vectors, power=st.integers(0, 8), method=methods)
+@given(data=st.data(), run=inputs(), shift=vectors, power=st.integers(0, 8), method=methods)
 def test_moved_car_moves_the_same_elsewhere(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any], shift: Array, power: int, method: str
+    make_scene: Callable[..., Scene],
+    kind: Kind,
+    data: st.DataObject,
+    run: dict[str, Any],
+    shift: Array,
+    power: int,
+    method: str,
 ) -> None:
-    changed_car(make_scene, car, run, method, np.eye(3), shift * 10.0**power, 1.0)
+    changed_car(
+        make_scene, kind.sample, data.draw(kind.cars), run, method, np.eye(3), shift * 10.0**power, 1.0
+    )
 
 
+@by_kind
 @few
-@given(car=cars(), run=inputs(), power=st.floats(-9.0, 9.0), method=methods)
+@given(data=st.data(), run=inputs(), power=st.floats(-9.0, 9.0), method=methods)
 def test_scaled_car_moves_scaled(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any], power: float, method: str
+    make_scene: Callable[..., Scene],
+    kind: Kind,
+    data: st.DataObject,
+    run: dict[str, Any],
+    power: float,
+    method: str,
 ) -> None:
-    changed_car(make_scene, car, run, method, np.eye(3), np.zeros(3), 10.0**power)
+    changed_car(
+        make_scene, kind.sample, data.draw(kind.cars), run, method, np.eye(3), np.zeros(3), 10.0**power
+    )
 
 
+@by_kind
 @few
-@given(car=cars(), run=inputs())
+@given(data=st.data(), run=inputs())
 def test_right_wheel_is_the_mirror_image_of_the_left(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any]
+    make_scene: Callable[..., Scene], kind: Kind, data: st.DataObject, run: dict[str, Any]
 ) -> None:
     mirror = np.diag([1.0, -1.0, 1.0])
-    left = solve(make_scene(points=car, **run), "newton")
+    sample, car = kind.sample, data.draw(kind.cars)
+    left = solve(make_scene(car=sample, points=car, **run, side="left"), "newton")
     # The car's right stays right: the rack's travel changes its sign, the wheel lies on the other side.
     other_run = dict(run, rack=tuple(-c for c in run["rack"]))
     right = solve(
-        make_scene(points=moved_by(mirror, np.zeros(3), 1.0, car), side="right", **other_run), "newton"
+        make_scene(car=sample, points=moved_by(mirror, np.zeros(3), 1.0, car), side="right", **other_run),
+        "newton",
     )
-    tolerance = Tolerances((left, right), 0.0, 0.0, max(left.unit, right.unit))
+    tolerance = Tolerances(sample, (left, right), 0.0, 0.0, max(left.unit, right.unit))
     compare(left, right, mirror, np.zeros(3), 1.0, tolerance)
 
 
+@by_kind
 @few
-@given(car=cars(), run=inputs(), method=methods)
+@given(data=st.data(), run=inputs(), method=methods)
 def test_inputs_run_backwards_retrace_the_path(
-    make_scene: Callable[..., Scene], car: Car, run: dict[str, Any], method: str
+    make_scene: Callable[..., Scene], kind: Kind, data: st.DataObject, run: dict[str, Any], method: str
 ) -> None:
-    forwards = solve(make_scene(points=car, **run), method)
+    sample, car = kind.sample, data.draw(kind.cars)
+    forwards = solve(make_scene(car=sample, points=car, side="left", **run), method)
     stop = run["stop"]
 
     def backwards(c: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -254,11 +340,14 @@ def test_inputs_run_backwards_retrace_the_path(
 
     other = solve(
         make_scene(
-            points=car, **dict(run, arm_angle=backwards(run["arm_angle"]), rack=backwards(run["rack"]))
+            car=sample,
+            points=car,
+            side="left",
+            **dict(run, arm_angle=backwards(run["arm_angle"]), rack=backwards(run["rack"])),
         ),
         method,
     )
-    tolerance = Tolerances((forwards, other), 0.0, 1e-9 if method == "series" else 0.0, forwards.unit)
+    tolerance = Tolerances(sample, (forwards, other), 0.0, 1e-9 if method == "series" else 0.0, forwards.unit)
     for name in car:
         assert np.abs(other.position[name][::-1] - forwards.position[name]).max() <= tolerance.position
         assert np.abs(other.velocity[name][::-1] + forwards.velocity[name]).max() <= tolerance.velocity
@@ -268,12 +357,13 @@ def test_inputs_run_backwards_retrace_the_path(
     assert np.abs(omega).max() <= tolerance.omega
 
 
+@by_car
 def test_tolerances_of_these_laws_would_see_a_wrong_car(
-    make_scene: Callable[..., Scene], table: dict[str, tuple[float, ...]]
+    make_scene: Callable[..., Scene], car: SampleCar
 ) -> None:
     run = {"arm_angle": (1.5, 0.3, 0.1), "rack": (0.0, 30.0, 10.0), "stop": 0.5, "samples": 5}
-    motion = simulate(make_scene(**run), "newton")
-    tolerance = Tolerances((motion, motion), 0.0, 0.0, motion.unit)
+    motion = simulate(make_scene(car=car, **run), "newton")
+    tolerance = Tolerances(car, (motion, motion), 0.0, 0.0, motion.unit)
     # A millionth of a millimetre, of a rate or of a radian; ten times as much of an acceleration.
     assert tolerance.position < 1e-6
     assert tolerance.velocity < 1e-6 * max(np.abs(v).max() for v in motion.velocity.values())

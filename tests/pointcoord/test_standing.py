@@ -1,7 +1,11 @@
 """Where a drawing stands and how far its inputs go, against closed forms."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from sample_cars import SampleCar, by_drawn_car
+from suspensions_in_closed_form import FORMS, ClosedForm
 
 from pointcoord import Scene, simulate, standing
 
@@ -16,34 +20,36 @@ def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
         assert "rise of lower_ball_joint over lower_arm_front" in end.limits
 
 
-def test_the_rack_reaches_as_far_as_tie_rod_and_steering_arm_lie_in_line() -> None:
-    scene = Scene.load("off-axis-strut")
-    found = standing(scene)
-    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
-    # With the arm held, the tie rod's outer end runs on a circle about the line from ball joint to strut top;
-    # the farthest and the nearest it comes to the inner end is the tie rod's length where it locks.
-    ball, top, outer = (points[name] for name in ("lower_ball_joint", "strut_top", "tie_rod_outer"))
-    along = (top - ball) / np.linalg.norm(top - ball)
-    centre = ball + ((outer - ball) @ along) * along
-    radius = np.linalg.norm(outer - centre)
-    rod = np.linalg.norm(outer - points["tie_rod_inner"])
-    for end in found.reach["rack"]:
-        inner = points["tie_rod_inner"] - end.value * np.array([0.0, 1.0, 0.0])
-        height = (inner - centre) @ along
-        off = np.linalg.norm(inner - centre - height * along)
-        nearest, farthest = np.hypot(off - radius, height), np.hypot(off + radius, height)
-        assert min(abs(nearest - rod), abs(farthest - rod)) <= 1e-8 * rod
-        assert any("tie_rod" in name for name in end.limits)
+@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
+@pytest.mark.parametrize("name", ["arm_angle", "rack"])
+def test_an_input_reaches_as_far_as_the_closed_form_has_an_assembly(
+    make_scene: Callable[..., Scene], form: ClosedForm, name: str
+) -> None:
+    car, inputs = form.sample_car, form.sample.drawn_inputs
+    low, high = standing(make_scene(car=form.sample)).reach[name]
+    for end, outwards in ((low, -1.0), (high, 1.0)):
+        # Both are right to 1e-12 of the way; doubles round the drawn inputs and the car's numbers.
+        near = 1e-9 * (high.value - low.value)
+        inside, outside = (inputs | {name: end.value + side * outwards * near} for side in (-1.0, 1.0))
+        assert car.drawn_pose(inside["arm_angle"], inside["rack"]) is not None
+        assert car.drawn_pose(outside["arm_angle"], outside["rack"]) is None
+        assert end.limits
 
 
-def test_the_drawn_inputs_and_angles_are_those_of_the_motion_there() -> None:
-    scene = Scene.load("off-axis-strut")
+@by_drawn_car
+def test_the_drawn_inputs_and_angles_are_those_of_the_motion_there(
+    make_scene: Callable[..., Scene], car: SampleCar
+) -> None:
+    scene = make_scene(car=car)
     found = standing(scene)
-    assert found.inputs["rack"] == 0.0
-    content = scene.model_dump(exclude_none=True)
-    content["inputs"] = {name: {"constant": value} for name, value in found.inputs.items()}
-    motion = simulate(Scene.from_mapping(content))
-    assert motion.wheel["camber"][0] == pytest.approx(found.angles["camber"], abs=1e-13)
-    assert motion.wheel["kingpin"][0] == pytest.approx(found.angles["kingpin"], abs=1e-13)
-    assert found.angles["camber"] == pytest.approx(-np.arctan(1.0 / 120.0), abs=1e-13)
+    assert found.inputs == pytest.approx(car.drawn_inputs, abs=1e-15)
+    inputs = {name: [value] for name, value in found.inputs.items()}
+    motion = simulate(make_scene(**inputs, car=car, stop=0.0, samples=1))
+    assert found.angles.keys() == motion.wheel.keys()
+    for name, angle in found.angles.items():
+        assert motion.wheel[name][0] == pytest.approx(angle, abs=1e-13)
     assert found.closing == motion.closing
+    p = {name: np.array(place) for name, place in car.points.items()}
+    outboard = np.array([0.0, -1.0 if car.side == "left" else 1.0, 0.0])
+    spindle = p["wheel_centre"] - p["wheel_axis_inner"]
+    assert found.angles["camber"] == pytest.approx(-np.arctan(spindle[2] / (spindle @ outboard)), abs=1e-13)

@@ -12,9 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import mpmath
-from hypothesis import strategies as st
-from mpmath import mpf
-from off_axis_cars import (
+from closed_forms import (
     Points,
     angle,
     cross,
@@ -29,6 +27,8 @@ from off_axis_cars import (
     turned,
     unit,
 )
+from hypothesis import strategies as st
+from mpmath import mpf
 
 Vector = tuple[mpf, mpf, mpf]
 Sides = tuple[int, int, int]
@@ -52,6 +52,14 @@ CARRIED = ("wheel_centre", "wheel_axis_inner")
 
 
 @dataclass(frozen=True)
+class WishbonePose:
+    """An assembly by the closed form; mm. Sides of the lower arm, the upper arm and the tie rod, +1 or -1."""
+
+    points: Points
+    sides: Sides
+
+
+@dataclass(frozen=True)
 class WishboneCar:
     """A drawing that closes, and the car's directions; exact fractions."""
 
@@ -65,6 +73,26 @@ class WishboneCar:
         p, arm = self.points, minus(self.points["lower_ball_joint"], self.points["lower_arm_front"])
         rise = number(dot(arm, self.up)) / mpmath.sqrt(number(dot(arm, arm)))
         return mpmath.acos(rise), number(dot(minus(p["rack_centre"], p["tie_rod_inner"]), self.right))
+
+    def poses(self, theta: object, travel: object, heave: object = 0) -> Iterator[WishbonePose]:
+        """Every assembly: the lower arm, the upper arm and the tie rod have two answers each, or none."""
+        p = {name: numbers(place) for name, place in self.points.items()}
+        up, right = numbers(self.up), numbers(self.right)
+        for sides in itertools.product((1, -1), repeat=3):
+            points = _assembled(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
+            if points is not None:
+                yield WishbonePose(points, sides)
+
+    def drawn_pose(self, theta: object, travel: object, heave: object = 0) -> WishbonePose | None:
+        """The assembly on the sides of the drawing, or none."""
+        wanted = self.drawn_sides
+        return next((pose for pose in self.poses(theta, travel, heave) if pose.sides == wanted), None)
+
+    @property
+    def drawn_sides(self) -> Sides:
+        """The sides on which the drawing lies."""
+        p = {name: numbers(place) for name, place in self.points.items()}
+        return _arm_side(p, numbers(self.up)), _upper_side(p), _tie_rod_side(p)
 
 
 @st.composite
@@ -81,36 +109,6 @@ def wishbone_cars(draw: st.DrawFn) -> WishboneCar:
     return WishboneCar(
         {name: turned(turn, p) for name, p in points.items()}, turned(turn, up), turned(turn, right)
     )
-
-
-@dataclass(frozen=True)
-class WishbonePose:
-    """An assembly by the closed form; mm. Sides of the lower arm, the upper arm and the tie rod, +1 or -1."""
-
-    points: Points
-    sides: Sides
-
-
-def poses(car: WishboneCar, theta: object, travel: object, heave: object = 0) -> Iterator[WishbonePose]:
-    """Every assembly: the lower arm, the upper arm and the tie rod have two answers each, or none."""
-    p = {name: numbers(place) for name, place in car.points.items()}
-    up, right = numbers(car.up), numbers(car.right)
-    for sides in itertools.product((1, -1), repeat=3):
-        points = _assembled(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
-        if points is not None:
-            yield WishbonePose(points, sides)
-
-
-def drawn_pose(car: WishboneCar, theta: object, travel: object, heave: object = 0) -> WishbonePose | None:
-    """The assembly on the sides of the drawing, or none."""
-    wanted = drawn_sides(car)
-    return next((pose for pose in poses(car, theta, travel, heave) if pose.sides == wanted), None)
-
-
-def drawn_sides(car: WishboneCar) -> Sides:
-    """The sides on which the drawing lies."""
-    p = {name: numbers(place) for name, place in car.points.items()}
-    return _arm_side(p, numbers(car.up)), _upper_side(p), _tie_rod_side(p)
 
 
 def _arm_side(p: Points, up: Vector) -> int:

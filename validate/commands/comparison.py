@@ -20,7 +20,7 @@ from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.refusals import Refusal
-from validate.formulations.registry import NAMES, formulation
+from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -32,18 +32,35 @@ FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
 FURTHER = ("pointcoord-newton", "absolute")
 
+_WIDTH = max(map(len, WORDS))
+DESCRIPTION = """\
+Solve each scene by two formulations and compare every number that it asks for. Each
+formulation claims how far off its numbers may be, and a difference is held to the sum of both
+claims. For each quantity the row is printed that comes closest to that.
+
+formulations:
+""" + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
-    parser = commands.add_parser("validate", help="solve scenes by two formulations and compare them")
+    parser = commands.add_parser(
+        "validate",
+        help="solve scenes by two formulations and compare them",
+        description=DESCRIPTION,
+    )
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
     parser.add_argument(
         "--first",
         metavar="NAME",
-        help=f"one of {', '.join(NAMES)}; without --first and --second {FIRST} is held to {SECOND}, and "
-        f"{FURTHER[0]} as well",
+        help=f"a formulation ({FIRST} if not given)",
     )
-    parser.add_argument("--second", metavar="NAME", help="the other one")
+    parser.add_argument(
+        "--second",
+        metavar="NAME",
+        help=f"the one to compare it with ({SECOND} if not given); without --first and --second "
+        f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
+    )
     parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
     add_quiet(parser)
     parser.set_defaults(run=run)

@@ -14,12 +14,23 @@ from validate.output.picture import svg
 
 ENDINGS = (".svg",)
 
+DESCRIPTION = """\
+Draw a scene's hardpoints from behind, from the left and from above, so that a wrong sign,
+axis or side is seen before anything is solved. Where the drawing does not close, it is drawn
+a second time as it is solved."""
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
-    parser = commands.add_parser("draw", help="draw a scene's hardpoints, as drawn and as closed (SVG)")
+    parser = commands.add_parser(
+        "draw",
+        help="make a picture of a scene's hardpoints (SVG)",
+        description=DESCRIPTION,
+    )
     add_scene(parser)
-    parser.add_argument("-o", "--output", metavar="FILE.svg", help="none, or -: standard output")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE.svg", help="where to; standard output if not given, or for -"
+    )
     parser.set_defaults(run=run)
 
 

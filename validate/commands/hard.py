@@ -9,11 +9,18 @@ from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 
+DESCRIPTION = """\
+Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
+in extreme sizes and rates. Every answer is held to a reference that is solved in 60 digits
+and proven: it must be right within what the formulation claims, or refused with a reason."""
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "hard", help="try the cases that are known to be hard, and hold them to the reference"
+        "hard",
+        help="try the cases that are known to be hard",
+        description=DESCRIPTION,
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")

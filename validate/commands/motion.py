@@ -16,20 +16,32 @@ from validate.paper.printed import PRINTED
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 
+DESCRIPTION = """\
+Solve a scene by point coordinates alone and write what it asks for: a row for each instant, a
+column for each number with its unit. A motion that stops halfway is written as far as it
+goes."""
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command with its options."""
-    parser = commands.add_parser("simulate", help="solve a scene by point coordinates only")
+    parser = commands.add_parser(
+        "simulate",
+        help="solve a scene by point coordinates and write its motion",
+        description=DESCRIPTION,
+    )
     add_scene(parser)
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help=f"{' or '.join(ENDINGS)}; none, or -: CSV on standard output"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help=f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
     )
     parser.add_argument(
         "--method",
         choices=tuple(BY_NAME),
         default="series",
-        help="a chain of power series; Newton's method at every instant; or that with the paper's formulas "
-        "as printed, which are wrong in places",
+        help="series (if not given): a chain of power series in time; newton: Newton's method at each "
+        "instant; printed: that with the paper's formulas as printed, some of which are wrong",
     )
     add_quiet(parser)
     parser.set_defaults(run=run)

@@ -21,13 +21,24 @@ from validate.plain_text import shown
 
 SOLVED = ("positions", "positions and velocities", "positions, velocities and accelerations")
 
+DESCRIPTION = """\
+Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
+value of each input, how far each can go from there, the wheel's angles, and how far the
+drawing is from closing. The motion itself is not computed."""
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add both commands."""
-    plan = commands.add_parser("plan", help="say what a scene would compute, what not, and why")
+    plan = commands.add_parser(
+        "plan",
+        help="say what a scene would compute, and where its drawing stands",
+        description=DESCRIPTION,
+    )
     add_scene(plan)
     plan.set_defaults(run=run_plan)
-    scenes = commands.add_parser("scenes", help="list the built-in scenes")
+    scenes = commands.add_parser(
+        "scenes", help="list the built-in scenes", description="List the built-in scenes with their titles."
+    )
     scenes.set_defaults(run=run_scenes)
 
 

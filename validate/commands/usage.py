@@ -31,7 +31,7 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
     """Nothing but what was asked for."""
-    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but errors")
+    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
 
 
 def name_of(scene: str) -> str:
@@ -85,7 +85,7 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
 
 
 def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()) -> None:
-    """Find a target that is no name, or that is one of the scenes, or where the text goes already.
+    """Refuse a target that is no name, that is one of the scenes, or that is standard output by another name.
 
     Raises:
         UsageError: it is.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.formulations.protocol import FormulationError, Solution, shape_of
+from validate.formulations.protocol import Accuracy, FormulationError, Solution, shape_of
 
 Array = NDArray[np.float64]
 Arrays = dict[str, dict[str, Array]]
@@ -55,9 +55,12 @@ def given(solution: Solution, instants: Array) -> Given:
     """What a solution gives at instants, shape (N,).
 
     Raises:
-        FormulationError: it says of no number at which instant it is.
+        FormulationError: it does not say at which instants its numbers are, or nothing of its accuracy.
     """
     who, notes = solution.formulation, []
+    if not isinstance(solution.accuracy, Accuracy):
+        problem = f"its accuracy is a {type(solution.accuracy).__name__}; needed: an Accuracy"
+        raise FormulationError(who, TypeError(problem))
     times = _real(solution.times)
     if isinstance(times, str) or times.ndim != 1:
         problem = times if isinstance(times, str) else f"have the shape {times.shape}"
@@ -71,14 +74,13 @@ def given(solution: Solution, instants: Array) -> Given:
     places = np.array([np.flatnonzero(times == t)[0] for t in instants[found]], dtype=np.intp)
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
     claims: Arrays = {quantity: {} for quantity in QUANTITIES}
-    claimed = _by_name(solution.accuracy.claims, f"{who}: its claims", notes)
     for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", notes).items():
         if quantity not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             notes.append(f"{who}: {quantity!r} is no quantity and is left out; there are: {known}")
             continue
         words, shape = QUANTITIES[quantity].words, shape_of(quantity, len(times))
-        claims_here = _by_name(claimed.get(quantity, {}), f"{who}: the claims of its {words}", notes)
+        claimed = solution.accuracy.claims.get(quantity, {})
         for name, raw in _by_name(given_part, f"{who}: {words}", notes).items():
             what = f"{who}: {words} of {name}"
             array = _shaped(raw, shape)
@@ -90,7 +92,7 @@ def given(solution: Solution, instants: Array) -> Given:
             if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
             numbers[quantity][name] = array[places]
-            claim = _shaped(claims_here[name], shape) if name in claims_here else "is not given"
+            claim = _shaped(claimed[name], shape) if name in claimed else "is not given"
             if isinstance(claim, str):
                 notes.append(f"{what}: its accuracy {claim}")
             else:
@@ -106,7 +108,7 @@ def _by_name(part: object, what: str, notes: list[str]) -> Mapping[str, object]:
     """A mapping as it is; what is none is told and empty."""
     if isinstance(part, Mapping):
         return part
-    notes.append(f"{what} is a {type(part).__name__}; needed: arrays by name")
+    notes.append(f"{what} given as a {type(part).__name__}; needed: arrays by name")
     return {}
 
 

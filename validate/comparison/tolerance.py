@@ -4,17 +4,19 @@ With e1 and e2 the errors that two formulations claim of a number at most (see `
 
     T = e1 + e2 + eps^2 M
 
-is explained by both, and a larger one by neither. M is the largest number of the quantity in the scene: what
-is zero is solved for together with what is not, and a rounding of a rounding of that is left in it. The
-claims are those of each instant and each component: pointcoord's are proven from its own equations in twice
-the working precision, but never more than its method loses where nothing is wrong (`Proof.expected`); the
-absolute model's are what its equations are rounded from.
+is explained by the claims, and a larger one shows that one of them is broken. M is the largest number of the
+quantity in the scene: a number that is zero is solved for together with others that are not, and keeps a
+rounding of a rounding of these. The claims are those of each instant and each component: pointcoord's are
+proven from its own equations in twice the working precision, but never more than its method loses where
+nothing is wrong (`Proof.expected`); the absolute model's are estimated from what its equations are rounded
+from.
 
-A tolerance rests on the formulation that claims the larger part of it. One that is LOOSEST times as wide as
-what the other one alone would give tests nothing that the other one could not be wrong in, and no agreement
-is said of it. What the other one would give is the largest of its claims for a quantity at that instant, so
-that a component that happens to be exact does not count against its partner, and not less than what rounding
-may do to any method: eps times its condition number times the largest number of that quantity.
+A tolerance rests on the formulation that claims the larger part of it. Where that part is more than LOOSEST
+times what the other formulation would claim, a fault of the other one that is so many times larger than its
+own claim would pass: such a row is "not tested" and no agreement. What a formulation would claim is the
+largest of its claims for the quantity at that instant, so that a component that happens to be exact does not
+count against its partner, and not less than what rounding may do to any method: eps times its condition
+number times the largest number of that quantity.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +38,9 @@ class AccuracyError(ValueError):
 class Accuracy:
     """What a formulation says of its own accuracy: how far each of its numbers may be off, at most.
 
-    A comparison holds two formulations to the sum of what they claim (see `tolerance`), so a claim must hold
-    for whatever the formulation rounds and leaves out, and a formulation that claims too much is found out
-    by the other: what its method should reach counts, not how far off its numbers happen to be.
+    A comparison holds the difference of two formulations to the sum of what they claim (see `tolerance`). So
+    a claim must cover all that the formulation rounds and leaves out. It must also be no wider than what the
+    method should reach: a claim that followed the number's own error would let any fault pass.
 
     Attributes:
         condition: condition number of the matrix that gives the rates, shape (N,).
@@ -64,11 +64,17 @@ class Accuracy:
             raise AccuracyError("condition", f"has the shape {np.shape(self.condition)}", "one per instant")
         count = len(self.condition)
         _check_claim("condition", self.condition, (count,))
-        for quantity, claims in self.claims.items():
+        for quantity, claims in _by_name("claims", self.claims).items():
             if quantity not in QUANTITIES:
-                raise AccuracyError(str(quantity), "is no quantity", ", ".join(QUANTITIES))
-            for name, claim in claims.items():
+                raise AccuracyError(f"{quantity!r}", "is of no known quantity", ", ".join(QUANTITIES))
+            for name, claim in _by_name(quantity, claims).items():
                 _check_claim(f"{quantity} of {name}", claim, shape_of(quantity, count))
+
+
+def _by_name(what: str, part: Mapping[str, Any]) -> Mapping[str, Any]:
+    if not isinstance(part, Mapping):
+        raise AccuracyError(what, f"is a {type(part).__name__}", "arrays by quantity and name")
+    return part
 
 
 def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:

@@ -1,4 +1,4 @@
-"""Refusals of scenes: the class of a reason, so that two can be held together, and its data.
+"""Why a formulation refuses a scene: the kind of reason, so that two refusals can be compared, and its data.
 
 A refusal says which formulation refused, with which error, at which instant, for which input, its value and
 its limit; what the error does not know is None.
@@ -26,7 +26,7 @@ FAMILIES = ({DRAWING, HARDPOINTS}, {START, MOTION})
 
 
 def why_refused(error: FormulationError) -> str:
-    """The class of a refusal; an error of no class is its own, by its type's name."""
+    """The kind of reason of a refusal; the name of its error where that is of no kind."""
     return _class_of(error.reason)
 
 
@@ -60,7 +60,7 @@ def _class_of_absolute(reason: Exception) -> str:
 
 
 def same_reason(first: str, second: str) -> bool:
-    """Whether two classes say the same thing about a scene."""
+    """Whether two kinds of reason say the same thing about a scene."""
     return first == second or any({first, second} <= family for family in FAMILIES)
 
 
@@ -70,7 +70,7 @@ class Refusal:
 
     Attributes:
         formulation: its name.
-        error: the class of its error, and what `reason` of ours it is counted under.
+        error: the class of its error. reason: the kind of reason.
         message: in its own words, on one line.
         instant: of the scene, s.
         input: which input, or which key of the scene, is at fault.

@@ -26,7 +26,15 @@ _POINT_COORDINATES: dict[str, Formulation] = {
     )
 }
 
-NAMES = (*_POINT_COORDINATES, "absolute")
+WORDS = {
+    "pointcoord": "point coordinates, by a chain of power series in time",
+    "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
+    "printed": "the same with the paper's formulas as printed, some of which are wrong",
+    "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
+}
+"""Every formulation by its name, in words."""
+
+NAMES = tuple(WORDS)
 
 
 def formulation(name: str) -> Formulation:

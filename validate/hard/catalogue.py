@@ -23,10 +23,12 @@ from validate.hard.cases import (
     numbers,
     reach,
     spans,
+    turned,
 )
 
 CASES: tuple[Case, ...] = (
     *dead_points.CASES,
+    *turned.CASES,
     *flat_strut.CASES,
     *body_rates.CASES,
     *near_points.CASES,
@@ -48,28 +50,31 @@ CASES: tuple[Case, ...] = (
 _WAY = "each value is a whole way up to where it locks, or through a near miss: half a second to three"
 _REFUSAL = "each refusal takes half a second or more"
 _LINKS = "there are no more links"
+_SEARCH = "each value is a search from a thousand starts"
+_SECOND = "the strut is tried at more values; here it is the other suspension, or another car, that counts"
 FEW_VALUES: Mapping[str, str] = {
-    "strut-passes-flat": _WAY,
-    "strut-points-near": _REFUSAL,
-    "knuckle-foot-short": _REFUSAL,
-    "long-sine": "each refusal takes two thousand segments",
-    **dict.fromkeys(("branches-nearly-meet", "branches-nearly-meet-beside"), _WAY),
-    **dict.fromkeys(("branches-met", "branches-met-beside"), _WAY),
-    **dict.fromkeys(("whole-range-arm", "whole-range-rack"), _WAY),
     **{
-        f"reach-{end}{car}": _WAY
-        for end in ("arm-highest", "arm-lowest", "rack-least", "rack-greatest")
-        for car in ("", "-turned")
+        case.name: _SECOND
+        for case in CASES
+        if len(case.values) < 8 and case.name.endswith(("-wishbone", "-turned"))
     },
-    "reach-slide-runs-out": _WAY,
+    **dict.fromkeys(("strut-points-near", "knuckle-foot-short", "strut-drawn-folded"), _REFUSAL),
+    "long-sine": "each refusal takes two thousand segments",
     **dict.fromkeys(("link-missing", "link-twice", "link-twice-for-another"), _LINKS),
     **dict.fromkeys(("link-twice-beside", "link-twice-for-another-beside"), _LINKS),
-    "strut-drawn-folded": _REFUSAL,
-    **dict.fromkeys(("far-start-high", "far-start-rack"), _WAY),
-    **{
-        f"assemblies-counted-{where}": "each value is a search from a thousand starts"
-        for where in ("drawing", "rack", "arm", "meeting")
-    },
+    **{f"assemblies-counted-{where}": _SEARCH for where in ("drawing", "rack", "arm", "meeting")},
+    **dict.fromkeys(
+        (
+            "strut-passes-flat",
+            *("branches-nearly-meet", "branches-nearly-meet-beside", "branches-met", "branches-met-beside"),
+            *("whole-range-arm", "whole-range-rack", "far-start-high", "far-start-rack"),
+            *("reach-arm-highest", "reach-arm-lowest", "reach-rack-least", "reach-rack-greatest"),
+            *("reach-slide-runs-out", "reach-upper-arm-locks", "reach-tie-rod-locks-the-arm"),
+            *("start-beyond-upper-arm-locks", "start-beyond-tie-rod-locks-the-arm"),
+            "upper-arm-locks-moving",
+        ),
+        _WAY,
+    ),
 }
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
-from pointcoord.suspensions.macpherson import DRAWN
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.formulations.input_rates import rates
 from validate.reference import NoReferenceError
@@ -79,7 +78,7 @@ def _bounds(partial: Motion | Kept, scene: Scene) -> dict[str, Array]:
     estimate = ROUNDINGS * EPS * proof.condition * size + scene.tolerance
     return {
         name: np.minimum(proof.carried_bound, estimate * proof.carried_gain) + rounding
-        if name in DRAWN.carried
+        if name in scene.mechanism.topology.carried
         else np.minimum(proof.bound, estimate) + rounding
         for name in position
     }

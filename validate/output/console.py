@@ -29,7 +29,7 @@ class Console:
         self._reader_gone = False
 
     def require(self, what_else: str) -> None:
-        """Find a closed standard output before anything is solved.
+        """Refuse a closed standard output, before anything is solved.
 
         Raises:
             OutputError: it is closed; the message says what else can be done.

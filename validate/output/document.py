@@ -147,7 +147,7 @@ class Journal:
     """
 
     def __init__(self, target: str | None, head: Head, console: Console) -> None:
-        """Find a target that cannot be written, before the run begins.
+        """Refuse a target that cannot be written, before the run begins.
 
         Raises:
             OutputError: it cannot be.

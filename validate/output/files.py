@@ -34,7 +34,7 @@ class UnknownEnding(OutputError):
 
 
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
-    """Find an ending that says nothing.
+    """Refuse a name whose ending does not say how to write the file.
 
     Raises:
         UnknownEnding: it is none of these.
@@ -50,7 +50,7 @@ def unwritable(target: str, error: OSError) -> OutputError:
 
 
 def require_writable(target: str) -> None:
-    """Find out before anything is solved whether a file can be written; what is there stays as it is.
+    """Refuse a file that cannot be written, before anything is solved; what is there stays as it is.
 
     Raises:
         OutputError: it cannot be.
@@ -140,7 +140,7 @@ def _open_beside(target: str) -> tuple[int, Path]:
 
 
 def _require_name(place: Path) -> None:
-    """Find a folder that is not there, and a name that it does not take, such as one that is too long."""
+    """Refuse a folder that is not there, and a name that it does not take, such as one that is too long."""
     if not place.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(place.parent)!r}")
     with suppress(FileNotFoundError):

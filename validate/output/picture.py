@@ -1,7 +1,8 @@
 """A drawing as a picture: three views of the hardpoints, as drawn and as closed, in one SVG file.
 
-Seen by someone who reads the numbers of a scene file: the picture shows whether a sign, an axis or a side was
-mistaken before anything is solved. The views are from behind, from the left and from above.
+For someone who has written hardpoints into a scene file: the picture shows a wrong sign, axis or side before
+anything is solved. The views are from behind, from the left and from above. What is joined to what comes from
+the topology.
 """
 
 from __future__ import annotations

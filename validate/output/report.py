@@ -100,8 +100,8 @@ def agreement_line(outcome: Outcome) -> str:
     worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
     where = worst.name if _of_the_car(worst) else f"{_words(worst)} of {worst.name}"
     return (
-        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} quantities; the largest "
-        f"difference uses {worst.share:.1e} of its tolerance ({where})"
+        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; the difference "
+        f"that comes closest to its tolerance is {worst.share:.1e} of it ({where})"
     )
 
 

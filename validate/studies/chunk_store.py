@@ -27,7 +27,7 @@ class Chunk:
     """What came of the scenes `CHUNK * number` and on.
 
     Attributes:
-        outcomes: how often each strut/kind of scene/outcome was seen; the counts make up CHUNK.
+        outcomes: how often each suspension/kind of scene/outcome was seen; the counts make up CHUNK.
         shares: per quantity, the largest difference / tolerance of the scenes that agreed.
         found: numbers of the scenes with a finding of their own.
         seconds: what it took.

@@ -1,6 +1,6 @@
 """Proven error bounds against poses refined in rational arithmetic, far beyond the bound's own rounding."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isqrt
 
@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from sample_cars import SampleCar, by_car
 
 from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
@@ -21,12 +22,6 @@ from pointcoord.solve.assembly import assemble
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
 BITS = 2**220
-# A strut with its ball joint beside the axis; the test needs the wheel centre as its only carried point.
-OFF_AXIS: Points = {
-    name: place
-    for name, place in Scene.load("off-axis-strut").mechanism.points.items()
-    if name != "wheel_axis_inner"
-}
 N = 17
 plain = settings(deadline=None)
 
@@ -97,9 +92,10 @@ def exact_known(mechanism: Mechanism, points: Points, angle: float, rack: float)
         for i, index in enumerate(layout.vector(name)):
             known[index - first] = (place[name][i] - origin[i]) / unit
     known[layout.vector("up")[2] - first] = known[layout.vector("right")[1] - first] = Fraction(1)
-    arm = root(square(place["lower_ball_joint"], place["lower_arm_front"]))
-    known[layout.scalar("arm rise") - first] = arm * cosine(Fraction(angle)) / unit
-    known[layout.scalar("rack travel") - first] = Fraction(rack) / unit
+    arm, travel = mechanism.topology.drives
+    length = root(square(place[arm.point], place[arm.pivot]))
+    known[layout.scalar(arm.coordinate) - first] = length * cosine(Fraction(angle)) / unit
+    known[layout.scalar(travel.coordinate) - first] = Fraction(rack) / unit
     for start, end in layout.squared_lengths:
         known[layout.squared_length(start, end) - first] = square(place[start], place[end]) / unit**2
     if mechanism.topology.layout.constants:
@@ -150,7 +146,7 @@ def triple(a: list[Fraction], b: list[Fraction], c: list[Fraction]) -> Fraction:
 
 
 def exact_positions(mechanism: Mechanism, points: Points, u: list[Fraction]) -> dict[str, list[Fraction]]:
-    """Moving points and the carried wheel centre, mm."""
+    """Moving points and carried ones, mm."""
     unit = Fraction(float(mechanism.unit))
     result = {
         name: [
@@ -160,28 +156,23 @@ def exact_positions(mechanism: Mechanism, points: Points, u: list[Fraction]) -> 
         for name in mechanism.topology.moving
     }
 
-    def frame(place: Callable[[str], list[Fraction]]) -> list[list[Fraction]]:
-        base, first, second = (place(n) for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower"))
+    def frame(place: Mapping[str, list[Fraction]], carriers: tuple[str, str, str]) -> list[list[Fraction]]:
+        base, first, second = (place[name] for name in carriers)
         e1, e2 = ([a - b for a, b in zip(p, base, strict=True)] for p in (first, second))
         return [e1, e2, cross(e1, e2)]
 
-    def drawn(name: str) -> list[Fraction]:
-        return [Fraction(c) for c in points[name]]
-
-    offset = [a - b for a, b in zip(drawn("wheel_centre"), drawn("lower_ball_joint"), strict=True)]
-    e = frame(drawn)
-
-    weights = components(offset, e)
-    moved = frame(lambda name: result[name])
-    result["wheel_centre"] = [
-        result["lower_ball_joint"][i]
-        + sum((w * v[i] for w, v in zip(weights, moved, strict=True)), Fraction(0))
-        for i in range(3)
-    ]
+    drawn = {name: [Fraction(c) for c in place] for name, place in points.items()}
+    for name, carriers in mechanism.topology.carried.items():
+        offset = [a - b for a, b in zip(drawn[name], drawn[carriers[0]], strict=True)]
+        weights, moved = components(offset, frame(drawn, carriers)), frame(result, carriers)
+        result[name] = [
+            result[carriers[0]][i] + sum((w * v[i] for w, v in zip(weights, moved, strict=True)), Fraction(0))
+            for i in range(3)
+        ]
     return result
 
 
-@pytest.mark.parametrize("closure", ["collinear", "drawn"])
+@by_car
 @settings(deadline=None, max_examples=max(8, settings.default.max_examples // 2))
 @given(
     angle=st.floats(0.6, 2.6),
@@ -190,23 +181,20 @@ def exact_positions(mechanism: Mechanism, points: Points, u: list[Fraction]) -> 
     turn=st.floats(-3.0, 3.0),
 )
 def test_every_point_of_a_pose_lies_within_its_proven_bound(
-    table: Points,
     make_scene: Callable[..., Scene],
-    closure: str,
+    car: SampleCar,
     angle: float,
     rack: float,
     shift: float,
     turn: float,
 ) -> None:
-    table = table if closure == "collinear" else OFF_AXIS
     # Turned about the vertical and moved, so that no coordinate is a round number.
     about = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
-    points = {name: tuple((about @ np.array(p) + shift).tolist()) for name, p in table.items()}
+    points = {name: tuple((about @ np.array(p) + shift).tolist()) for name, p in car.points.items()}
     points["tie_rod_inner"] = points["rack_centre"]
-    side = "left" if points["wheel_centre"][1] < points["strut_top"][1] else "right"
-    scene = make_scene(
-        [angle], [rack], start=0.0, stop=0.0, samples=1, points=points, side=side, closure=closure
-    )
+    inboard, wheel = points[car.topology.inboard], points[car.topology.wheel_centre]
+    side = "left" if wheel[1] < inboard[1] else "right"
+    scene = make_scene([angle], [rack], start=0.0, stop=0.0, samples=1, points=points, side=side, car=car)
     try:
         motion = simulate(scene)
     except AssemblyError:
@@ -220,7 +208,7 @@ def test_every_point_of_a_pose_lies_within_its_proven_bound(
     for name, exact in exact_positions(mechanism, points, u).items():
         for i in range(3):
             error = abs(Fraction(float(motion.position[name][0, i])) - exact[i])
-            assert error <= Fraction(carried if name == "wheel_centre" else solved)
+            assert error <= Fraction(carried if name in car.topology.carried else solved)
     # A bound that is of use: a few thousand roundings of the size of the car and of its distance, unless
     # the pose is near a singular one.
     if float(motion.start.condition) < 1e3:

@@ -5,6 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from sample_cars import SampleCar, by_car
 
 from pointcoord import Scene, simulate
 from pointcoord.bounds.proof import Proof
@@ -13,22 +14,13 @@ SINE = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offs
 HEAVE = {"sine": {"amplitude": 40.0, "angular_frequency": 3.1, "phase": -0.2}}
 
 
-def off_axis() -> Scene:
-    """The built-in strut with its ball joint beside its axis, at 30 instants."""
-    content = Scene.load("off-axis-strut").model_dump(exclude_none=True)
-    content["inputs"]["heave"] = HEAVE
-    content["time"]["samples"] = 30
-    return Scene.from_mapping(content)
-
-
-@pytest.mark.parametrize("closure", ["collinear", "drawn"])
+@by_car
 @pytest.mark.parametrize("block", [7, 1, 30])
 def test_a_proof_in_blocks_is_the_proof_in_one(
-    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, block: int, closure: str
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, block: int, car: SampleCar
 ) -> None:
     # Newton's states are looked up, so that a block changes no bit of them: every array must be the same.
-    made = make_scene(SINE, [0.0, 5.0], heave=HEAVE, samples=30) if closure == "collinear" else off_axis()
-    motion = simulate(made, "newton")
+    motion = simulate(make_scene(SINE, [0.0, 5.0], car=car, heave=HEAVE, samples=30), "newton")
     whole = motion.proof(rates=True)
     monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", block)
     parts = motion.proof(rates=True)

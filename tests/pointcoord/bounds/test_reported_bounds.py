@@ -11,7 +11,7 @@ from pointcoord.bounds.reported_bounds import Numbers
 from pointcoord.results.motion import Motion
 
 Array = NDArray[np.float64]
-SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut")
+SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut", "double-wishbone")
 
 
 def short(name: str, **changes: object) -> Scene:

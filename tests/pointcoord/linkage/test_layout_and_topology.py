@@ -1,16 +1,12 @@
 """The order of coordinates and the topologies: every number has one place and every place one number."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 
 from pointcoord import UnknownName
-from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.method import SERIES
-from pointcoord.suspensions import SUSPENSIONS
 from validate.paper.printed import PRINTED
 
 EVERY = [
@@ -68,38 +64,38 @@ def test_points_of_bodies_and_carriers_are_points_of_the_car(topology: Topology)
 
 
 @by_name
-@pytest.mark.parametrize(
-    ("read", "near", "valid"),
-    [
-        (
-            lambda layout: layout.vector("strut_topp"),
-            "strut_top",
-            lambda layout: (*layout.moving, *layout.chassis),
-        ),
-        (
-            lambda layout: layout.scalar("rack travle"),
-            "rack travel",
-            lambda layout: (*layout.ratios, *layout.driven),
-        ),
-    ],
-    ids=["point", "scalar"],
-)
-def test_unknown_name_raises_with_the_names_that_exist(
-    topology: Topology,
-    read: Callable[[Layout], object],
-    near: str,
-    valid: Callable[[Layout], tuple[str, ...]],
-) -> None:
-    with pytest.raises(UnknownName, match=f"did you mean '{near}'") as caught:
-        read(topology.layout)
-    assert set(valid(topology.layout)) <= set(caught.value.valid)
-    assert all(name in str(caught.value) for name in caught.value.valid)
+def test_unknown_name_raises_with_the_names_that_exist(topology: Topology) -> None:
+    layout = topology.layout
+    for read, near, valid in (
+        (layout.vector, layout.moving[0], (*layout.moving, *layout.chassis)),
+        (layout.scalar, layout.driven[0], (*layout.ratios, *layout.driven)),
+    ):
+        with pytest.raises(UnknownName, match=f"did you mean '{near}'") as caught:
+            read(f"{near}x")
+        assert set(valid) <= set(caught.value.valid)
+        assert all(name in str(caught.value) for name in caught.value.valid)
 
 
-def test_unknown_link_raises_with_the_links_that_exist() -> None:
-    layout = SUSPENSIONS["macpherson"].closures["drawn"].layout
-    with pytest.raises(UnknownName, match="tie_rod_inner"):
-        layout.squared_length("strut_top", "wheel_centre")
+@by_name
+def test_unknown_link_raises_with_the_links_that_exist(topology: Topology) -> None:
+    with pytest.raises(UnknownName, match=topology.drives[-1].point):
+        topology.layout.squared_length(topology.inboard, topology.wheel_centre)
+
+
+@by_name
+def test_the_parts_that_a_topology_names_are_its_own(topology: Topology) -> None:
+    body = topology.bodies[topology.knuckle]
+    riding = {name for name, carriers in topology.carried.items() if set(carriers) <= set(body)}
+    assert {topology.wheel_centre, *topology.wheel_axis} <= riding
+    assert topology.wheel_axis[1] == topology.wheel_centre
+    assert set(topology.steering_axis) & set(body)
+    assert topology.inboard in topology.chassis
+    assert set(topology.input_units) == set(topology.inputs)
+    # What an input drives is a known coordinate, a point moves with it, and along a direction of the chassis.
+    for drive in topology.drives:
+        assert drive.coordinate in topology.layout.driven
+        assert drive.point in topology.moving
+        assert drive.direction in topology.directions
 
 
 def test_inputs_by_name_are_checked(strut: Mechanism) -> None:

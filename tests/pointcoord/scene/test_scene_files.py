@@ -11,7 +11,6 @@ import pytest
 from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import NEWTON, SERIES
-from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.paper.printed import PRINTED
 
 POINTS = "\n".join(
@@ -211,7 +210,7 @@ def test_built_in_scene_loads_and_moves_with_all_its_effects(name: str) -> None:
     newton = simulate(scene, "newton")
     proof = newton.proof()
     assert np.isfinite(proof.bound).all()
-    for point in COLLINEAR.moving:
+    for point in scene.mechanism.topology.moving:
         gap = np.abs(motion.position[point] - newton.position[point]).max(axis=-1)
         assert (gap <= scene.tolerance + 4 * proof.bound).all()
 

@@ -7,20 +7,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from sample_cars import SAMPLES, SampleCar, by_car
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
-from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.solve.assembly import assemble
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.taylor import Chain, Segment, Settings, build_chain
-from pointcoord.suspensions.macpherson import COLLINEAR
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
-N = 17
 # Where the tie rod locks at a level arm, mm; between 130.100768 and 130.100769 by its circle's closed form.
 RACK_END = 130.10076831981567
 BOUNCE: dict[str, TimeFunction] = {"arm_angle": Polynomial((0.8, 0.25, 0.0625)), "rack": Polynomial((0.0,))}
@@ -30,7 +28,9 @@ TABLE: dict[str, TimeFunction] = {
     "rack": Table((0.0, 0.7, 1.1, 2.0), (0.0, 20.0, -10.0, 5.0)),
 }
 MOTIONS = {"bounce": BOUNCE, "both": BOTH, "table": TABLE}
+MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
 by_motion = pytest.mark.parametrize("functions", MOTIONS.values(), ids=MOTIONS.keys())
+by_mechanism = pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS.keys())
 
 
 def chain_of(
@@ -70,29 +70,32 @@ def loop_size(chain: Chain, derivatives: int) -> Array:
     return np.max(sizes, axis=0)
 
 
+@by_mechanism
 @by_motion
 @pytest.mark.parametrize("tolerance", [1e-7, 1e-10, 1e-12])
 def test_segments_follow_on_without_a_gap(
-    strut: Mechanism, functions: dict[str, TimeFunction], tolerance: float
+    mechanism: Mechanism, functions: dict[str, TimeFunction], tolerance: float
 ) -> None:
-    chain = chain_of(strut, functions, tolerance)
+    chain = chain_of(mechanism, functions, tolerance)
     assert chain.segments[0].start == 0.0
     assert chain.stop == 2.0
     for before, after in zip(chain.segments[:-1], chain.segments[1:], strict=True):
         assert before.stop == after.start
 
 
+@by_mechanism
 @by_motion
 @pytest.mark.parametrize("tolerance", [1e-7, 1e-10, 1e-12])
 def test_position_velocity_and_acceleration_are_continuous_across_joints(
-    strut: Mechanism, functions: dict[str, TimeFunction], tolerance: float
+    mechanism: Mechanism, functions: dict[str, TimeFunction], tolerance: float
 ) -> None:
-    chain = chain_of(strut, functions, tolerance)
+    chain = chain_of(mechanism, functions, tolerance)
     assert len(chain.segments) > 1
+    n = mechanism.layout.unknowns
     for before, after in zip(chain.segments[:-1], chain.segments[1:], strict=True):
         single = Chain((before,), Work())
-        left = evaluate(single, [before.coefficients], np.array([before.stop]), 2)[:, 0, :N]
-        right = evaluate(Chain((after,), Work()), [after.coefficients], np.array([after.start]), 2)[:, 0, :N]
+        left = evaluate(single, [before.coefficients], np.array([before.stop]), 2)[:, 0, :n]
+        right = evaluate(Chain((after,), Work()), [after.coefficients], np.array([after.start]), 2)[:, 0, :n]
         # Truncation of position: the tolerance (the unit is the size). Of a derivative: the tolerance
         # relative to its largest term. Rounding: two solves at the joint, condition number below 200,
         # once per derivative more.
@@ -102,8 +105,9 @@ def test_position_velocity_and_acceleration_are_continuous_across_joints(
             assert np.abs(left[d] - right[d]).max() <= tolerance * size[d] + rounding
 
 
-def test_breaks_of_a_table_are_joints_of_the_chain(strut: Mechanism) -> None:
-    chain = chain_of(strut, TABLE, 1e-9)
+@by_mechanism
+def test_breaks_of_a_table_are_joints_of_the_chain(mechanism: Mechanism) -> None:
+    chain = chain_of(mechanism, TABLE, 1e-9)
     starts = [segment.start for segment in chain.segments]
     for function in TABLE.values():
         assert set(function.breaks) <= set(starts)
@@ -113,10 +117,10 @@ def test_breaks_of_a_table_are_joints_of_the_chain(strut: Mechanism) -> None:
         middle = 0.5 * (segment.start + segment.stop)
         s = (middle - segment.start) / segment.scale
         rack = np.polynomial.polynomial.polyval(
-            s, segment.coefficients[:, strut.layout.scalar("rack travel")]
+            s, segment.coefficients[:, mechanism.layout.scalar("rack travel")]
         )
         # A cubic evaluated two ways, values up to 30 mm and steps above 0.3 s.
-        assert abs(rack * float(strut.unit) - TABLE["rack"].series(middle, 0)[0]) <= 1e3 * EPS * 30.0
+        assert abs(rack * float(mechanism.unit) - TABLE["rack"].series(middle, 0)[0]) <= 1e3 * EPS * 30.0
 
 
 @settings(deadline=None, max_examples=max(10, settings.default.max_examples // 5))
@@ -160,17 +164,18 @@ def largest_gap(series: Motion, newton: Motion, quantity: str) -> float:
     return max(float(np.abs(ours[name] - theirs[name]).max()) for name in ours)
 
 
+@by_car
 @pytest.mark.parametrize(
     "arm", [(0.8, 0.25, 0.0625), {"sine": {"amplitude": 0.4, "angular_frequency": 2.0, "offset": 1.5}}]
 )
 def test_error_against_newton_falls_with_the_tolerance_and_stays_below_it(
-    make_scene: Callable[..., Scene], arm: object
+    make_scene: Callable[..., Scene], arm: object, car: SampleCar
 ) -> None:
-    newton = simulate(make_scene(arm, (0.0, 20.0), samples=201), "newton")
+    newton = simulate(make_scene(arm, (0.0, 20.0), samples=201, car=car), "newton")
     bound = float(newton.proof().bound.max())
     gaps = []
     for tolerance in (1e0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
-        series = simulate(make_scene(arm, (0.0, 20.0), samples=201, tolerance=tolerance))
+        series = simulate(make_scene(arm, (0.0, 20.0), samples=201, tolerance=tolerance, car=car))
         gaps.append(largest_gap(series, newton, "position"))
         # Rounding of the series adds to that of Newton's poses: as much again, and its 20 terms.
         assert gaps[-1] <= tolerance + 4 * bound
@@ -213,31 +218,31 @@ def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
     assert np.isfinite(inside).all()
 
 
-def test_motion_that_ends_where_it_starts_has_rates(make_scene: Callable[..., Scene]) -> None:
-    one = simulate(make_scene(rack=(0.0, 40.0), start=0.7, stop=0.7, samples=1))
-    many = simulate(make_scene(rack=(0.0, 40.0), start=0.7, stop=1.4, samples=2))
+@by_car
+def test_motion_that_ends_where_it_starts_has_rates(make_scene: Callable[..., Scene], car: SampleCar) -> None:
+    one = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=0.7, samples=1))
+    many = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=1.4, samples=2))
     for quantity in ("position", "velocity", "acceleration"):
         for name in one.position:
             # The same pose, solved the same way.
             assert np.array_equal(getattr(one, quantity)[name][0], getattr(many, quantity)[name][0])
 
 
-def test_batch_of_cars_shares_its_segments_and_moves_as_each(table: dict[str, tuple[float, ...]]) -> None:
-    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+@by_car
+def test_batch_of_cars_shares_its_segments_and_moves_as_each(car: SampleCar) -> None:
     shifts = np.array([0.0, 3.0, -5.0])
-    points = {name: np.array([p] * 3, dtype=float) for name, p in table.items()}
-    points["strut_top"][:, 1] += shifts
-    cars = build_mechanism(COLLINEAR, points, axes)
+    points = {name: np.array([p] * 3, dtype=float) for name, p in car.points.items()}
+    points[car.topology.inboard][:, 1] += shifts
+    cars, n = car.mechanism(points), car.topology.layout.unknowns
     batch = chain_of(cars, BOUNCE, 1e-9)
     instants = np.linspace(0.0, 2.0, 7)
     together = evaluate(batch, [s.coefficients for s in batch.segments], instants, 2)
     for i in range(3):
-        car = build_mechanism(COLLINEAR, {name: p[i] for name, p in points.items()}, axes)
-        alone = chain_of(car, BOUNCE, 1e-9)
+        alone = chain_of(car.mechanism({name: p[i] for name, p in points.items()}), BOUNCE, 1e-9)
         values = evaluate(alone, [s.coefficients for s in alone.segments], instants, 2)
         # Both chains keep the tolerance, relative to the size of each derivative.
         tolerance = 2e-9 * np.maximum(loop_size(alone, 2), 1.0)[:, None, None]
-        assert (np.abs(together[:, i] - values)[..., :N] <= tolerance).all()
+        assert (np.abs(together[:, i] - values)[..., :n] <= tolerance).all()
 
 
 @pytest.mark.parametrize("tolerance", [1e-9, 1.0, 10.0, 100.0])

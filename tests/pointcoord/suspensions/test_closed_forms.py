@@ -6,21 +6,19 @@ them over 1e-15 s.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 import numpy as np
-import off_axis_cars
 import pytest
 import wishbone_by_points
+from closed_forms import PHASES, cross, dot, minus, number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 from numpy.typing import NDArray
-from off_axis_cars import cross, dot, minus, number, numbers
+from suspensions_in_closed_form import FORMS, ClosedForm, rounded
 
 from pointcoord import AssemblyError, Scene, simulate
 
@@ -30,49 +28,9 @@ Law = tuple[float, float, float]
 DIGITS, STEP = 60, mpf(10) ** -15
 
 
-@dataclass(frozen=True)
-class ClosedForm:
-    """A suspension: random cars of it, and where a car's points are by its closed form."""
-
-    type: str
-    cars: st.SearchStrategy[Any]
-    pose: Callable[..., Any]
-    make: Callable[..., Any]
-    steering_axis: tuple[str, str]
-    knuckle: tuple[str, str, str]
-
-
-FORMS = [
-    ClosedForm(
-        "macpherson",
-        off_axis_cars.off_axis_cars(),
-        off_axis_cars.drawn_pose,
-        off_axis_cars.OffAxisCar,
-        ("lower_ball_joint", "strut_top"),
-        ("lower_ball_joint", "tie_rod_outer", "strut_lower"),
-    ),
-    ClosedForm(
-        "double_wishbone",
-        wishbone_by_points.wishbone_cars(),
-        wishbone_by_points.drawn_pose,
-        wishbone_by_points.WishboneCar,
-        ("lower_ball_joint", "upper_ball_joint"),
-        wishbone_by_points.KNUCKLE,
-    ),
-]
 # Numbers of few bits, so that the laws' values and rates at the instants are doubles.
 coefficients = st.integers(-32, 32).map(lambda n: n / 64)
 laws = st.tuples(coefficients, coefficients)
-
-
-def rounded(car: Any, form: ClosedForm) -> Any:
-    """The car as a scene gives it: every coordinate a double."""
-
-    def double(vector: Any) -> tuple[Fraction, ...]:
-        return tuple(Fraction(float(c)) for c in vector)
-
-    points = {name: double(place) for name, place in car.points.items()}
-    return form.make(points, double(car.up), double(car.right))
 
 
 def scene_of(form: ClosedForm, car: Any, inputs: dict[str, Law], samples: int) -> Scene:
@@ -106,7 +64,7 @@ def exact(form: ClosedForm, car: Any, inputs: dict[str, Law], instant: float) ->
             sum((mpf(c) * t**k for k, c in enumerate(inputs[name])), mpf(0))
             for name in ("arm_angle", "rack", "heave")
         )
-        pose = form.pose(car, theta, travel, heave)
+        pose = car.drawn_pose(theta, travel, heave)
         assert pose is not None
         return dict(pose.points)
 
@@ -166,7 +124,7 @@ def body_rates(form: ClosedForm, place: Points, speed: Points, change: Points) -
 
 @pytest.mark.parametrize("method", ["series", "newton"])
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
-@settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8))
+@settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8), phases=PHASES)
 @given(data=st.data(), arm=laws, rack=laws, heave=laws, away=coefficients)
 def test_every_number_is_within_its_proven_bound_of_the_closed_form(
     form: ClosedForm,
@@ -197,7 +155,7 @@ def test_every_number_is_within_its_proven_bound_of_the_closed_form(
                 assert set(channel) == set(parts)
                 for name, values in parts.items():
                     reported = np.atleast_1d(channel[name][place])
-                    bounds = np.atleast_1d(getattr(proven, quantity)[name][place])
+                    bounds = np.atleast_1d(proven[quantity][name][place])
                     for value, found, bound in zip(values, reported, bounds, strict=True):
                         # The bound takes each law's value rounded once; these laws round nothing. What the
                         # differences leave out is STEP^2 of a rate's own size, far below a double's digits.
@@ -208,11 +166,11 @@ def test_the_closed_form_of_the_wishbone_is_at_home_in_its_drawing() -> None:
     with mpmath.workdps(DIGITS):
         points = {name: tuple(Fraction(c) for c in place) for name, place in wishbone_by_points.BASE.items()}
         car = wishbone_by_points.WishboneCar(points, (0, 0, 1), (0, 1, 0))
-        found = list(wishbone_by_points.poses(car, *car.drawn))
+        found = list(car.poses(*car.drawn))
         assert len({pose.sides for pose in found}) == len(found) > 1
 
         def moved(pose: wishbone_by_points.WishbonePose) -> mpf:
             return max(abs(c) for n, p in pose.points.items() for c in minus(p, numbers(points[n])))
 
         assert [moved(pose) < mpf(10) ** -50 for pose in found].count(True) == 1
-        assert min(found, key=moved).sides == wishbone_by_points.drawn_sides(car)
+        assert min(found, key=moved).sides == car.drawn_sides

@@ -173,21 +173,32 @@ def test_a_motion_that_stops_halfway_keeps_what_was_solved(
     assert last - 0.02 < times[-1] <= last + 1e-4
 
 
-def test_csv_and_npz_give_back_the_same_bits(tmp_path: Path) -> None:
-    motion = simulate(Scene.load("bounce"))
+UNITS = {
+    "position": "mm",
+    "velocity": "mm/s",
+    "acceleration": "mm/s^2",
+    "angular_velocity": "rad/s",
+    "angular_acceleration": "rad/s^2",
+}
+
+
+@pytest.mark.parametrize("scene", ["bounce", "double-wishbone"])
+def test_csv_and_npz_give_back_the_same_bits(scene: str, tmp_path: Path) -> None:
+    motion = simulate(Scene.load(scene))
     for name in ("m.csv", "m.npz"):
-        assert main(["simulate", "bounce", "-o", str(tmp_path / name)]) == 0
+        assert main(["simulate", scene, "-o", str(tmp_path / name)]) == 0
     with (tmp_path / "m.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     arrays = np.load(tmp_path / "m.npz")
-    columns = {
-        "time [s]": motion.times,
-        "position.wheel_centre.x [mm]": motion.position["wheel_centre"][:, 0],
-        "velocity.strut_lower.z [mm/s]": motion.velocity["strut_lower"][:, 2],
-        "acceleration.tie_rod_outer.y [mm/s^2]": motion.acceleration["tie_rod_outer"][:, 1],
-        "angular_velocity.knuckle.x [rad/s]": motion.angular_velocity["knuckle"][:, 0],
-        "wheel.camber [deg]": np.degrees(motion.wheel["camber"]),
-    }
+    columns = {"time [s]": motion.times}
+    for quantity, unit in UNITS.items():
+        for name, array in motion.numbers[quantity].items():
+            for i, axis in enumerate("xyz"):
+                columns[f"{quantity}.{name}.{axis} [{unit}]"] = array[:, i]
+    for name in ("camber", "kingpin"):
+        columns[f"wheel.{name} [deg]"] = np.degrees(motion.wheel[name])
+    assert list(rows[0]) == list(arrays) == list(columns)
+    assert "position.wheel_centre.x [mm]" in columns
     for name, column in columns.items():
         assert [float(row[name]) for row in rows] == column.tolist()
         assert arrays[name].tolist() == column.tolist()

@@ -1,10 +1,11 @@
-"""What is drawn is what is solved: struts whose ball joint lies anywhere beside their axis, by all mechanics.
+"""What is drawn is what is solved: random cars of every suspension, by all mechanics.
 
-The closed form of the strut decides, in many digits; it is no part of any of the three.
+A closed form of each suspension decides, in many digits; it is no part of any of the three.
 """
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -15,10 +16,11 @@ from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.cars.car import Car, any_rotation, as_tuple, mirrored, turned
-from validate.cars.closed_form import ClosedForm
+from validate.cars.car import Car, any_rotation, as_tuple, moved, other_side, scaled, turned
 from validate.cars.input_limits import Linkage
-from validate.cars.strategies import cars, make_scene
+from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
+from validate.cars.scene_content import car_of, scene_content
+from validate.cars.strategies import cars
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, PAPER_CAR
@@ -30,7 +32,9 @@ Places = Mapping[str, Array]
 EPS = float(np.finfo(float).eps)
 MODELS = ("pointcoord", "pointcoord-newton", "absolute")
 SHARES = st.floats(-1.0, 1.0)
-CLOSING = cars(["drawn"], left_over=0.0)
+DRAWN = [variant for variant in VARIANTS if variant.closure == "drawn"]
+PUT_IN_PLACE = [variant for variant in VARIANTS if variant.closure != "drawn"]
+CLOSING = cars(DRAWN, left_over=0.0)
 # A car is solved by three models at one or two places, so the short profile searches briefly.
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
@@ -44,9 +48,7 @@ def digits() -> Iterator[None]:
 
 def scene_at(car: Car, angle: float, rack: float) -> Scene:
     """A single instant of a car."""
-    inputs = {"arm_angle": {"constant": angle}, "rack": {"constant": rack}}
-    axes = {"side": car.side, "up": car.up, "right": car.right, "closure": car.closure}
-    return make_scene(car.points, inputs, samples=1, stop=0.0, effects=(), **axes)
+    return Scene.from_mapping(scene_content(car, angle, rack, effects=()))
 
 
 def solved(name: str, scene: Scene) -> Solution:
@@ -85,8 +87,8 @@ def off(one: Places, two: Places) -> dict[str, float]:
 
 
 def exact_pose(scene: Scene) -> Places:
-    part = scene.mechanism
-    form = ClosedForm.of(part.points, part.up, part.right, part.closure, mpmath.mpf)
+    car = car_of(scene)
+    form = SUSPENSIONS[car.suspension].form.of(car, mpmath.mpf)
     angle, rack = (
         np.array([mpmath.mpf(inputs_at(scene, 0.0)[n][0])], dtype=object) for n in ("arm_angle", "rack")
     )
@@ -115,7 +117,7 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
         assert distance <= rounding, ("reference", point)
 
 
-@given(cars(["drawn"]), SHARES, SHARES)
+@given(cars(DRAWN), SHARES, SHARES)
 def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float, rack: float) -> None:
     note(repr(car))
     linkage = Linkage.of(car)
@@ -133,14 +135,14 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
 
 
 @searched
-@given(cars(["collinear"]), SHARES, SHARES)
-def test_a_collinear_strut_once_closed_and_drawn_so_moves_as_before(
+@given(cars(PUT_IN_PLACE), SHARES, SHARES)
+def test_a_car_that_was_put_in_place_and_is_drawn_so_moves_as_before(
     car: Car, arm: float, rack: float
 ) -> None:
     linkage = Linkage.of(car)
     home = true_places(scene_at(car, linkage.drawn_angle, linkage.drawn_rack))
     points = {name: as_tuple(home[name]) for name in car.points}
-    closed = Car(points, car.side, car.up, car.right, "drawn")
+    closed = replace(car, points=points, closure="drawn")
     inputs = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack
     far = max(float(np.abs(place).max()) for place in home.values())
     for name in MODELS:
@@ -159,22 +161,18 @@ LAWS = ("mirrored", "turned", "moved", "scaled")
 def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
     """The car elsewhere: with the sign and scale of its rack, and the matrix and shift of its points."""
     if law == "mirrored":
-        other = "left" if car.side == "right" else "right"
-        points = mirrored(dict(car.points))
-        across = Car(points, other, car.up, car.right, car.closure)
-        return across, -1.0, 1.0, np.diag([1.0, -1.0, 1.0]), np.zeros(3)
+        return other_side(car), -1.0, 1.0, np.diag([1.0, -1.0, 1.0]), np.zeros(3)
     if law == "turned":
         turn = any_rotation(5)
         return turned(car, turn), 1.0, 1.0, turn, np.zeros(3)
     shift = np.array([4096.0, -8192.0, 2048.0]) if law == "moved" else np.zeros(3)
     scale = 2.0**7 if law == "scaled" else 1.0
-    points = {name: as_tuple(scale * np.array(place) + shift) for name, place in car.points.items()}
-    return Car(points, car.side, car.up, car.right, car.closure), 1.0, scale, scale * np.eye(3), shift
+    return moved(scaled(car, scale), shift), 1.0, scale, scale * np.eye(3), shift
 
 
 @searched
 @pytest.mark.parametrize("law", LAWS)
-@given(cars(["drawn"]), SHARES, SHARES)
+@given(cars(DRAWN), SHARES, SHARES)
 def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: float, rack: float) -> None:
     linkage = Linkage.of(car)
     angle, travel = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack
@@ -189,15 +187,16 @@ def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: f
         rounding = 2.0 * raised * EPS * far
         room = scale * allowed(here) + allowed(there) + rounding
         for point, place in here.numbers["position"].items():
-            moved = place @ matrix.T + shift
-            assert float(np.abs(moved - there.numbers["position"][point]).max()) <= room, (name, point)
+            gap = place @ matrix.T + shift - there.numbers["position"][point]
+            assert float(np.abs(gap).max()) <= room, (name, point)
 
 
-def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner() -> None:
-    points = dict(BESIDE_CAR.points)
-    points["tie_rod_inner"] = points["rack_centre"]
-    whole = Car(points, "left", BESIDE_CAR.up, BESIDE_CAR.right)
-    short = Car({n: p for n, p in points.items() if n != "rack_centre"}, "left", whole.up, whole.right)
+@pytest.mark.parametrize("variant", DRAWN)
+def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner(variant: Variant) -> None:
+    points = dict(variant.base.points)
+    points["rack_centre"] = points["tie_rod_inner"]
+    whole = replace(variant.base, points=points)
+    short = replace(whole, points={n: p for n, p in points.items() if n != "rack_centre"})
     for name in MODELS:
         one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (whole, short))
         for point, place in one.numbers["position"].items():
@@ -206,12 +205,9 @@ def test_a_rack_centre_left_out_is_the_drawn_tie_rod_inner() -> None:
 
 def test_the_two_kinds_of_strut_are_two_cars_where_the_ball_joint_is_off_the_axis() -> None:
     """A check of the checks: 37 mm beside the axis the collinear strut is tens of millimetres elsewhere."""
-    bent = Car(BESIDE_CAR.points, "left", BESIDE_CAR.up, BESIDE_CAR.right, "collinear")
+    bent = replace(BESIDE_CAR, closure="collinear")
     for name in MODELS:
         one, two = (solved(name, scene_at(car, 1.5, 12.0)) for car in (BESIDE_CAR, bent))
-        distance = np.abs(
-            one.numbers["position"]["wheel_centre"] - two.numbers["position"]["wheel_centre"]
-        ).max()
-        assert distance > 5.0, name
-    drawn = Car(PAPER_CAR.points, "left", PAPER_CAR.up, PAPER_CAR.right, "drawn")
-    assert Linkage.of(drawn).drawn_angle == Linkage.of(PAPER_CAR).drawn_angle
+        wheels = (solution.numbers["position"]["wheel_centre"] for solution in (one, two))
+        assert np.abs(np.subtract(*wheels)).max() > 5.0, name
+    assert Linkage.of(replace(PAPER_CAR, closure="drawn")).drawn_angle == Linkage.of(PAPER_CAR).drawn_angle

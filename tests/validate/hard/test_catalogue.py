@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
@@ -92,7 +93,7 @@ def test_a_wrong_number_of_any_quantity_is_wrong(
     assert judged_answer(scene, solution, reference).outcome == "right"
     answer = judged_answer(scene, planted(solution, quantity, name, change), reference)
     assert answer.outcome == "wrong"
-    assert f"{quantity.replace('_', ' ')} of {name}" in answer.reason
+    assert f"{QUANTITIES[quantity].words} of {name}" in answer.reason
 
 
 def test_a_missing_number_is_wrong_unless_a_note_says_so(

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.suspensions.macpherson import KNUCKLE
 from validate.cars.car import Car
 from validate.cars.scene_content import SQUARE, scene_content
@@ -27,6 +28,8 @@ GROUP = "Body rates"
 VALUES = (*decades(-12, -1), 0.0)
 OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
 ALL = OURS | {"printed": FAILS}
+# Of points and bodies; where points are, and angles of the wheel, are no rates.
+RATES = tuple(q.name for q in QUANTITIES.values() if q.of != "car" and q.name != "position")
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
 
 
@@ -46,13 +49,7 @@ def largest_rates(tried: Tried) -> Facts:
     """Largest rate of any point or body, by formulation: of a car at rest it must be 0 to the last bit."""
     facts: dict[str, float | str] = {}
     for name, solution in tried.solutions.items():
-        channels = (
-            solution.velocity,
-            solution.acceleration,
-            solution.angular_velocity,
-            solution.angular_acceleration,
-        )
-        rates = [array for channel in channels for array in channel.values()]
+        rates = [array for q in RATES for array in solution.numbers[q].values()]
         facts[f"largest rate, {name}"] = max(float(np.abs(array).max()) for array in rates)
     return facts
 

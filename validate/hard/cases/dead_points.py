@@ -35,6 +35,7 @@ RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
 ABSOLUTE_FROM = 1e-11
 FULL = decades(-12, -1)
 COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
+SPARSE = (1e-1, 1e-4, 1e-8, 1e-12)  # a motion towards an end takes half a second and more
 OUTSIDE = "refused: there is no pose"
 LAWS = ("held", "moving", "beyond")
 
@@ -136,13 +137,19 @@ def _cases(
             why=why + more[law],
             parameter=DISTANCE + (", beyond it" if law == "beyond" else ""),
             # A motion takes longest; with another car than the first few values must do.
-            values=values or (FULL if law != "moving" or not suffix else COARSE),
+            values=_values(law, suffix, values),
             scene=lambda value: approach.content(value, law),
             expected=expected(law),
             behaviour=OUTSIDE if law == "beyond" else inside(law),
         )
 
     return tuple(case(law) for law in laws)
+
+
+def _values(law: str, suffix: str, values: tuple[float, ...] | None) -> tuple[float, ...]:
+    if law == "moving" and values == COARSE:
+        return SPARSE
+    return values or (COARSE if law == "moving" and suffix else FULL)
 
 
 HIGHEST = ("highest", "lowest")

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import reference_solution
-from validate.cars.car import as_tuple, moved
+from validate.cars.car import moved, scaled
 from validate.cars.scene_content import scene_content
 from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.cars import CARS
@@ -37,7 +38,7 @@ PLACED = 8.0
 # A car at home may happen to be off by less than another by this factor: errors of a few roundings each.
 LUCKY = 16.0
 EPS = float(np.finfo(float).eps)
-RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
+RATES = tuple(quantity for quantity in QUANTITIES if quantity != "position")
 # A thousand times the rest of the car is as mixed as parts of one machine are.
 MIXED = Expected(("right", "refused"), right_from=1e-3)
 
@@ -47,9 +48,7 @@ NEARER = Expected(("right", "refused"), right_from=1e-9)
 
 def moved_car(distance: float, car: str = "paper") -> dict[str, Any]:
     """A car in motion of `CARS`, with its origin some whole millimetres away."""
-    home = CARS[car]
-    points = {n: as_tuple(np.array(p) + distance * np.array(AWAY)) for n, p in home.points.items()}
-    there = replace(home, points=points)
+    there = moved(CARS[car], distance * np.array(AWAY))
     return scene_content(there, (1.5, 0.25, 0.125), (0.0, 30.0, 10.0), stop=0.4)
 
 
@@ -135,9 +134,8 @@ def _held_to(home: Accuracy, rounding: float) -> Accuracy:
 
 def scaled_car(scale: float, car: str = "paper") -> dict[str, Any]:
     """A car in motion of `CARS`, all lengths multiplied."""
-    home = CARS[car]
-    there = replace(home, points={n: as_tuple(scale * np.array(p)) for n, p in home.points.items()})
     rack = (0.0, 30.0 * scale, 10.0 * scale)
+    there = scaled(CARS[car], scale)
     return scene_content(there, (1.5, 0.25, 0.125), rack, tolerance=1e-9 * scale, stop=0.4)
 
 

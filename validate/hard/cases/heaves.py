@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import reference_solution
-from validate.cars.scene_content import SQUARE
+from validate.cars.scene_content import SQUARE, scene_content
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
-from validate.hard.cars import paper_car
-from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
+from validate.hard.cars import CARS, EVERY
+from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial, coarse
 from validate.hard.cases.links import GROUP
 from validate.hard.judged import judged_answer
 from validate.hard.trial import solved, try_scene
@@ -64,17 +64,17 @@ def _each(numbers: tuple[float, ...]) -> tuple[Tried, ...]:
     return tuple((*place, number) for place in PLACES for number in numbers)
 
 
-def content(heave: dict[str, Any] | None) -> dict[str, Any]:
+def content(heave: dict[str, Any] | None, car: str = "paper") -> dict[str, Any]:
     """A scene in which the arm turns and the rack moves; of body rates and angles heave is no part."""
     effects = ("velocity", "acceleration")
-    return paper_car((SQUARE, 0.1), (0.0, 5.0), heave, stop=0.2, samples=2, effects=effects)
+    return scene_content(CARS[car], (SQUARE, 0.1), (0.0, 5.0), heave, stop=0.2, samples=2, effects=effects)
 
 
-def displaced(trial: Trial, heave: dict[str, Any]) -> Trial:
+def displaced(trial: Trial, heave: dict[str, Any], car: str = "paper") -> Trial:
     """The trial, with what the reference could not judge held to that of the car without heave, displaced."""
     if all(answer.outcome != "unjudged" for answer in trial.answers):
         return trial
-    scene, plain = Scene.from_mapping(content(heave)), Scene.from_mapping(content(None))
+    scene, plain = (Scene.from_mapping(content(h, car)) for h in (heave, None))
     law = rates(scene.inputs["heave"], scene.instants)
     reference = added(reference_solution(plain), law, scene.mechanism.up)
     answers = []
@@ -103,44 +103,48 @@ def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], added: Arra
     return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
-def heaving(every: tuple[Tried, ...]) -> Callable[[float], Trial]:
+def heaving(every: tuple[Tried, ...], car: str) -> Callable[[float], Trial]:
     """Tries one of these, counted from 1, while the arm turns and the rack moves."""
 
     def examine(value: float) -> Trial:
         kind, place, number = every[int(value) - 1]
-        trial = displaced(
-            try_scene(value, content(law(kind, place, number)), SOLVERS), law(kind, place, number)
-        )
+        heave = law(kind, place, number)
+        trial = displaced(try_scene(value, content(heave, car), SOLVERS), heave, car)
         where = kind if place is None else f"{kind}.{place}"
         return replace(trial, facts={**trial.facts, "place": where, "number": f"{number:g}"})
 
     return examine
 
 
-def _case(name: str, why: str, every: tuple[Tried, ...], expected: Expected) -> Case:
+def _case(name: str, why: str, every: tuple[Tried, ...], expected: Expected, suffix: str, car: str) -> Case:
+    numbers = tuple(float(n) for n in range(1, len(every) + 1))
     return Case(
-        name=name,
+        name=f"{name}{suffix}",
         group=GROUP,
         why=why,
         parameter="number of the place and what stands there",
-        values=tuple(float(n) for n in range(1, len(every) + 1)),
+        values=coarse(numbers) if suffix else numbers,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour="refused, by all" if expected == REFUSED else "right, or refused with a reason",
-        examine=heaving(every),
+        examine=heaving(every, car),
     )
 
 
-CASES: tuple[Case, ...] = (
-    _case(
-        "heave-not-finite",
-        "A displacement of the whole car that is no number makes none of every place.",
-        _each(NOT_FINITE),
-        REFUSED,
-    ),
-    _case(
-        "heave-huge-or-tiny",
-        "Heave meets no constraint that would refuse it, and its rates overflow before it does.",
-        (*_each(EXTREME), *(("sine", "angular_frequency", number) for number in FREQUENCIES)),
-        RIGHT_OR_REFUSED,
-    ),
+CASES: tuple[Case, ...] = tuple(
+    _case(name, why, every, expected, suffix, car)
+    for suffix, car in EVERY.items()
+    for name, why, every, expected in (
+        (
+            "heave-not-finite",
+            "A displacement of the whole car that is no number makes none of every place.",
+            _each(NOT_FINITE),
+            REFUSED,
+        ),
+        (
+            "heave-huge-or-tiny",
+            "Heave meets no constraint that would refuse it, and its rates overflow before it does.",
+            (*_each(EXTREME), *(("sine", "angular_frequency", number) for number in FREQUENCIES)),
+            RIGHT_OR_REFUSED,
+        ),
+    )
 )

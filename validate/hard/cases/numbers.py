@@ -10,15 +10,17 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 from validate.cars.car import Car
-from validate.cars.macpherson import BESIDE
-from validate.cars.paper_car import PAPER
+from validate.cars.closed_form import FRONT, REAR
+from validate.cars.double_wishbone import UPPER_FRONT, UPPER_REAR
+from validate.cars.macpherson import BESIDE, ROD_END, TOP
 from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR, paper_car
+from validate.hard.cars import BESIDE_CAR, CARS, PAPER_CAR
 from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
-from validate.hard.cases.links import GROUP
+from validate.hard.cases.links import GROUP, links_of
 from validate.hard.trial import try_scene
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
@@ -26,9 +28,10 @@ LEAST = math.ulp(0.0)  # 5e-324
 Place = tuple[str | int, ...]
 
 
-def content() -> dict[str, Any]:
-    """A short motion of the paper's car with a law of every kind, in which every number has a place."""
-    return paper_car(
+def content(car: str = "paper") -> dict[str, Any]:
+    """A short motion of a car with a law of every kind, in which every number has a place."""
+    return scene_content(
+        CARS[car],
         (SQUARE, 0.1, 0.05),
         {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}},
         {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}},
@@ -44,7 +47,10 @@ def _places(part: Any, here: Place = ()) -> list[Place]:
     return [here] if isinstance(part, float | int) and not isinstance(part, bool) else []
 
 
-PLACES = tuple(_places(content()))
+@cache
+def places(car: str = "paper") -> tuple[Place, ...]:
+    """Every place of the scene that holds a number."""
+    return tuple(_places(content(car)))
 
 
 def told(place: Place) -> str:
@@ -52,9 +58,9 @@ def told(place: Place) -> str:
     return ".".join(str(key) for key in place)
 
 
-def with_number(place: Place, number: object) -> dict[str, Any]:
+def with_number(place: Place, number: object, car: str = "paper") -> dict[str, Any]:
     """The scene with another number at one place."""
-    whole = content()
+    whole = content(car)
     part: Any = whole
     for key in place[:-1]:
         part = part[key]
@@ -62,39 +68,28 @@ def with_number(place: Place, number: object) -> dict[str, Any]:
     return whole
 
 
-def everywhere(number: object) -> Callable[[float], Trial]:
+def everywhere(number: object, car: str = "paper") -> Callable[[float], Trial]:
     """Tries a number at the place of a number counted from 1."""
 
     def examine(value: float) -> Trial:
-        place = PLACES[int(value) - 1]
-        trial = try_scene(value, with_number(place, number), SOLVERS)
+        place = places(car)[int(value) - 1]
+        trial = try_scene(value, with_number(place, number, car), SOLVERS)
         return Trial(value, trial.answers, {**trial.facts, "place": told(place)})
 
     return examine
 
 
-PAIRS = tuple(itertools.combinations(PAPER, 2))
 # A rod without length has no answer in the reference: which way its end lies is not drawn.
-PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != ("strut_top", "strut_rod_end"))
-# Pairs that hold each other at a distance, or make a line together: they cannot be in one place.
-APART = frozenset(
-    frozenset(pair)
-    for pair in (
-        ("lower_ball_joint", "lower_arm_front"),
-        ("lower_ball_joint", "lower_arm_rear"),
-        ("lower_arm_front", "lower_arm_rear"),
-        ("tie_rod_outer", "lower_ball_joint"),
-        ("strut_lower", "lower_ball_joint"),
-        ("strut_lower", "tie_rod_outer"),
-        ("strut_rod_end", "strut_top"),
-        ("tie_rod_inner", "tie_rod_outer"),
-    )
-)
+PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != (TOP, ROD_END))
+# Pairs that are no link but make a line together.
+LINES = ((FRONT, REAR), (UPPER_FRONT, UPPER_REAR))
 
 
-def linked(first: bool) -> tuple[tuple[str, str], ...]:
-    """The pairs that cannot be in one place, or all others."""
-    return tuple(pair for pair in PAIRS if (frozenset(pair) in APART) == first)
+def linked(first: bool, car: str = "paper") -> tuple[tuple[str, str], ...]:
+    """The pairs that cannot be in one place, a link or a line, or all others."""
+    apart = {frozenset((link.start, link.end)) for link in links_of(car)} | set(map(frozenset, LINES))
+    pairs = itertools.combinations(CARS[car].points, 2)
+    return tuple(pair for pair in pairs if (frozenset(pair) in apart) == first)
 
 
 def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Callable[[float], Trial]:
@@ -149,26 +144,44 @@ NUMBERS: tuple[tuple[str, str, object, Expected], ...] = (
         REFUSED,
     ),
 )
-EVERYWHERE = _counted(len(PLACES))
 EVERY_PAIR = "number of the pair of points"
 
+
+def _cases(suffix: str, car: str) -> tuple[Case, ...]:
+    def some(count: int, step: int = 1) -> tuple[float, ...]:
+        # Of the second car every fifth place or pair must do.
+        return _counted(count)[:: 5 * step if suffix else step]
+
+    every = len(places(car))
+    return (
+        _case(
+            f"link-without-length{suffix}",
+            "Two points that a link or an axis holds apart are drawn in one place.",
+            coincident(linked(True, car), CARS[car]),
+            _counted(len(linked(True, car))),
+            REFUSED,
+            EVERY_PAIR,
+        ),
+        _case(
+            f"points-in-one-place{suffix}",
+            "Two points without a link are drawn in one place, which may be a mechanism or not.",
+            coincident(linked(False, car), CARS[car]),
+            some(len(linked(False, car))),
+            RIGHT_OR_REFUSED,
+            EVERY_PAIR,
+        ),
+        *(
+            # A scene with a tiny number is solved, which takes time: every third place must do.
+            _case(
+                f"{name}{suffix}", why, everywhere(number, car), some(every, 3 if name == "tiny" else 1), ends
+            )
+            for name, why, number, ends in NUMBERS
+        ),
+    )
+
+
 CASES: tuple[Case, ...] = (
-    _case(
-        "link-without-length",
-        "Two points that a link holds apart are drawn in one place.",
-        coincident(linked(True)),
-        _counted(len(linked(True))),
-        REFUSED,
-        EVERY_PAIR,
-    ),
-    _case(
-        "points-in-one-place",
-        "Two points without a link are drawn in one place, which may be a mechanism or not.",
-        coincident(linked(False)),
-        _counted(len(linked(False))),
-        RIGHT_OR_REFUSED,
-        EVERY_PAIR,
-    ),
+    *_cases("", "paper"),
     _case(
         "points-in-one-place-beside",
         "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
@@ -177,9 +190,5 @@ CASES: tuple[Case, ...] = (
         RIGHT_OR_REFUSED,
         EVERY_PAIR,
     ),
-    *(
-        # A scene with a tiny number is solved, which takes time: every third place must do.
-        _case(name, why, everywhere(number), EVERYWHERE[:: 3 if name == "tiny" else 1], expected)
-        for name, why, number, expected in NUMBERS
-    ),
+    *_cases("-wishbone", "wishbone"),
 )

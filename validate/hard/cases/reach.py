@@ -229,11 +229,12 @@ def _case(drive: Drive, name: str, where: str, values: tuple[float, ...]) -> Cas
     )
 
 
+TIE_ROD = "Tie rod and steering arm lie in line"
 ENDS = {
     ("arm_angle", False): ("arm-highest", "The ball joint is highest on its circle"),
     ("arm_angle", True): ("arm-lowest", "The ball joint is lowest on its circle"),
-    ("rack", False): ("rack-least", "Tie rod and steering arm lie in line"),
-    ("rack", True): ("rack-greatest", "Tie rod and steering arm lie in line"),
+    ("rack", False): ("rack-least", TIE_ROD),
+    ("rack", True): ("rack-greatest", TIE_ROD),
 }
 SLIDE = "The strut's slide has no more way"
 UPPER = "Upper arm and kingpin come to lie in one plane with the upper pivots"
@@ -264,7 +265,12 @@ CASES: tuple[Case, ...] = (
     *_ends("turned", "-turned", BOTH, ENDS_ONLY, TURNED),
     *_ends("short-arm", "-wishbone", ("arm_angle",), ENDS_ONLY),
     *_ends("wishbone", "-wishbone", ("rack",), ENDS_ONLY),
-    *_ends("wishbone-turned", "-wishbone-turned", ("rack",), ENDS_ONLY, TURNED),
+    _case(
+        Drive("wishbone-turned", "rack", True),
+        "reach-rack-greatest-wishbone-turned",
+        TIE_ROD + TURNED,
+        (1e-6,),
+    ),
     *(
         _case(
             Drive("paper", driven, ahead, moving=False),

@@ -8,15 +8,11 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cars.input_limits import Linkage
-from validate.cars.macpherson import BESIDE, STRUT
+from validate.cars.macpherson import BESIDE
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE_CAR, WIDE_CAR
+from validate.hard.cars import BESIDE_CAR
 from validate.hard.case import Case
 from validate.hard.cases import beside
-from validate.hard.catalogue import CASES, FEW_VALUES
-from validate.hard.run import as_expected, examine
-from validate.reference import InfeasibleError, solve_reference
 
 Array = NDArray[np.float64]
 BY_NAME = {case.name: case for case in beside.CASES}
@@ -74,55 +70,6 @@ def test_what_a_case_draws_closes(points: Callable[[float], beside.Points], valu
     for name, place in points(value).items():
         # 1e4 roundings of 1000 mm: steering arms of a hundredth of the car's have a condition number of 1e3.
         assert np.abs(solution.position[name][0] - place).max() < 2e-9, name
-
-
-def test_the_wide_car_ends_where_its_slide_runs_out_and_the_reference_agrees_on_both_sides() -> None:
-    low, high = beside.run_out()
-    assert Linkage.of(WIDE_CAR).end({"arm_angle": 1.65, "rack": 0.0}, "arm_angle", False) == (low, STRUT)
-    step = 1e-12 * (high - low)
-    car = WIDE_CAR
-
-    def pose(angle: float) -> None:
-        inputs = {"arm_angle": (angle, 0, 0), "rack": (0, 0, 0)}
-        solve_reference(car.points, inputs, up=car.up, right=car.right, side=car.side, closure=car.closure)
-
-    pose(low + step)
-    with pytest.raises(InfeasibleError) as refusal:
-        pose(low - step)
-    assert refusal.value.closure == "strut"
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("ball-joint-near-the-axis", (1.0, 1e-6, 0.0)),
-        ("axis-in-the-knuckle-plane", (1e-4, 0.0)),
-        ("axis-across-the-knuckle-plane", (1e-4, 0.0)),
-        ("axis-through-the-tie-rod-end", (1e-4, 0.0)),
-        ("kingpin-through-the-tie-rod-end", (1e-2, 1e-6)),
-        ("rod-end-near-the-top", (1e-2, 1e-12)),
-        ("rod-end-beyond-the-top", (1e-2, 1e-12)),
-        ("rod-end-off-the-axis", (1.0, 1e-6)),
-        ("rack-joint-off-its-line", (1.0, 1e-6)),
-        ("slide-runs-out-held", (1e-2, 1e-8, 1e-12)),
-        ("slide-runs-out-moving", (1e-2, 1e-7)),
-        ("slide-runs-out-beyond", (1e-2, 1e-12)),
-    ],
-)
-def test_what_comes_of_it_is_as_expected(name: str, values: tuple[float, ...]) -> None:
-    result = examine(at(name, *values))
-    assert as_expected([result]), (result.unexpected, result.wrong)
-
-
-def test_the_slide_that_runs_out_is_a_fold() -> None:
-    result = examine(at("slide-runs-out-held", 1e-5, 1e-8, 1e-11))
-    conditions = np.array([answer.condition for _, answer in result.answers("pointcoord")], dtype=float)
-    # A thousandth of the distance makes 1e1.5 of the condition number.
-    assert np.allclose(np.diff(np.log10(conditions)), 1.5, rtol=0, atol=0.1)
-
-
-def test_a_case_with_few_values_is_listed_with_its_reason() -> None:
-    assert {case.name for case in CASES if len(case.values) < 8} == set(FEW_VALUES)
 
 
 def test_the_car_beside_its_ball_joint_is_drawn_in_line_to_the_last_bit() -> None:

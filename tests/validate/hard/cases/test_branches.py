@@ -157,7 +157,7 @@ def test_sides_are_products_of_unit_vectors() -> None:
 
 @pytest.mark.parametrize("pose", [near_greatest_rack, near_lowest_arm, beside_meeting])
 def test_all_assemblies_that_can_exist_are_found_far_from_a_singular_pose(
-    pose: Callable[[float], tuple[float, float]],
+    pose: Callable[[float, str], tuple[float, float]],
 ) -> None:
     facts = counted(0.1, pose).facts
     # The search knows nothing of the closed forms, which allow two assemblies at least: both sides.

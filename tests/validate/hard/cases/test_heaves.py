@@ -8,20 +8,12 @@ import pytest
 from pointcoord import Scene
 from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
-from validate.hard.case import Answer, Trial, unexpected
+from validate.hard.case import Answer, Trial
 from validate.hard.cases import heaves
 from validate.hard.trial import solved
 
 BY_NAME = {case.name: case for case in heaves.CASES}
 NOT_FINITE = BY_NAME["heave-not-finite"]
-
-
-@pytest.mark.parametrize("name", BY_NAME)
-def test_heave_is_never_wrong_without_a_reason(name: str) -> None:
-    case = BY_NAME[name]
-    trials = [case.examine(value) for value in case.values]
-    other = [(dict(trial.facts), found) for trial in trials if (found := unexpected(case, trial))]
-    assert not other
 
 
 def test_every_number_of_every_law_is_tried() -> None:

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.hard.cars import CARS
 from validate.hard.case import Case
 from validate.hard.cases import laws, spans
-from validate.hard.run import as_expected, examine
+from validate.hard.run import examine
 
 BY_NAME = {case.name: case for case in (*laws.CASES, *spans.CASES)}
 
@@ -16,16 +17,6 @@ BY_NAME = {case.name: case for case in (*laws.CASES, *spans.CASES)}
 def at(case: str, *values: float) -> Case:
     """A case at some values of its parameter only."""
     return replace(BY_NAME[case], values=values)
-
-
-SOUND = [name for name in BY_NAME if name != "long-sine"]  # whose refusals take a second each
-
-
-@pytest.mark.parametrize("name", SOUND)
-def test_a_law_is_followed_rightly(name: str) -> None:
-    values = BY_NAME[name].values
-    result = examine(at(name, values[0], values[len(values) // 2], values[-1]))
-    assert as_expected([result]), result.unexpected
 
 
 @pytest.mark.parametrize("name", ["come-to-rest", "seen-at-rest-only", "stop-before-a-lock"])
@@ -51,7 +42,7 @@ def test_the_same_way_at_any_rate_has_the_same_poses() -> None:
     from validate.formulations.registry import formulation
 
     fast, slow = (
-        formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(rate)))
+        formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(CARS["paper"], rate)))
         for rate in (2.0**40, 2.0**-40)
     )
     for name in fast.position:

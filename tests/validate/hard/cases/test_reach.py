@@ -16,7 +16,6 @@ from pointcoord import AssemblyError, Scene, simulate
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.cars import CARS, paper_car
-from validate.hard.case import unexpected, wrong_without_warning
 from validate.hard.cases import blocked_ways
 from validate.hard.cases.reach import CASES, Drive, _refusal
 from validate.hard.kept import fault_of_kept
@@ -73,14 +72,6 @@ def test_a_mirrored_and_turned_car_has_the_same_range() -> None:
         assert plain.reach == pytest.approx(turned.reach, rel=0.0, abs=1e-7)
 
 
-@pytest.mark.parametrize("name", [name for name in BY_NAME if name.startswith(("reach", "start"))])
-def test_every_refusal_says_where_the_end_is(name: str) -> None:
-    case = BY_NAME[name]
-    trial = case.examine(case.values[len(case.values) // 2])
-    assert not unexpected(case, trial)
-    assert not wrong_without_warning(trial)
-
-
 def broken(**changes: Any) -> Callable[[AssemblyError], Any]:
     def change(error: AssemblyError) -> Any:
         kept = {
@@ -126,10 +117,15 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     assert fault_of_kept(caught.value, scene, end, "rack") == ""
     place = {name: array.copy() for name, array in motion.position.items()}
     place["tie_rod_outer"][1, 2] += 1e-6
-    moved: Any = SimpleNamespace(partial=replace(motion, position=place))
+
+    def with_places(places: dict[str, Any]) -> Any:
+        position = motion.position.with_arrays(places)
+        return SimpleNamespace(partial=replace(motion, numbers={**motion.numbers, "position": position}))
+
+    moved = with_places(place)
     assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
     short = {name: array[:-1] for name, array in place.items()}
-    cut: Any = SimpleNamespace(partial=replace(motion, position=short))
+    cut = with_places(short)
     assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
 
 

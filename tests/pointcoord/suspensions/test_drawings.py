@@ -1,0 +1,104 @@
+"""What is drawn is what is solved, of every suspension that takes its drawing as it stands."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sample_cars import Points, SampleCar, by_drawn_car
+
+from pointcoord import Scene, SceneError, simulate
+from pointcoord.results.closing import ALLOWED
+
+EPS = np.finfo(float).eps
+
+
+def off_the_rack(car: SampleCar, by: tuple[float, float, float]) -> Points:
+    """The tie rod drawn beside the line of the rack, which stays where it was."""
+    inner = car.points["tie_rod_inner"]
+    return {**car.points, "rack_centre": inner, "tie_rod_inner": tuple(np.add(inner, by).tolist())}
+
+
+@by_drawn_car
+@settings(deadline=None, max_examples=max(20, settings.default.max_examples // 4))
+@given(seed=st.integers(0, 2**32 - 1))
+def test_at_the_drawn_inputs_every_point_is_where_it_was_drawn(
+    make_scene: Callable[..., Scene], car: SampleCar, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    points = {name: np.add(place, rng.uniform(-20.0, 20.0, 3)) for name, place in car.points.items()}
+    points["rack_centre"] = points["tie_rod_inner"]
+    if "strut_rod_end" in points:  # this point alone is not free: it is drawn on the strut's axis
+        top = points["strut_top"]
+        points["strut_rod_end"] = top + rng.uniform(-0.2, 1.2) * (points["strut_lower"] - top)
+    arm = points["lower_ball_joint"] - points["lower_arm_front"]
+    angle = float(np.arccos(arm[2] / np.linalg.norm(arm)))
+    motion = simulate(make_scene([angle], [0.0], stop=0.0, samples=1, car=car, points=points))
+    proof = motion.proof()
+    # The drawn angle is rounded by 2 u pi, which is an arm of 500 mm times that; the points follow it up
+    # to `condition` times as far. The bound covers what the solver adds.
+    off = 2 * EPS * np.pi * 500.0 * float(proof.condition[0])
+    for name, place in motion.position.items():
+        assert np.abs(place[0] - points[name]).max() <= max(proof.bound[0], proof.carried_bound[0]) + off
+    assert motion.closing.largest < 1e-9
+    assert not motion.closing.noticeable
+
+
+@by_drawn_car
+def test_a_rack_without_a_centre_starts_at_the_drawn_tie_rod(
+    make_scene: Callable[..., Scene], car: SampleCar
+) -> None:
+    without = {name: place for name, place in car.points.items() if name != "rack_centre"}
+    one, other = (
+        simulate(make_scene([1.55], [0.0, 10.0], car=car, points=points, stop=1.0))
+        for points in ({**without, "rack_centre": without["tie_rod_inner"]}, without)
+    )
+    for name in one.position:
+        assert np.array_equal(one.position[name], other.position[name])
+
+
+@by_drawn_car
+def test_a_tie_rod_off_the_line_of_the_rack_turns_the_knuckle(
+    make_scene: Callable[..., Scene], car: SampleCar
+) -> None:
+    points = off_the_rack(car, (3.0, 0.0, 1.0))
+    motion = simulate(make_scene([1.55], [0.0], stop=0.0, samples=1, car=car, points=points))
+    assert motion.closing.misses == {"tie_rod_inner on the rack": pytest.approx(np.sqrt(10.0))}
+    assert motion.closing.movements["tie_rod_inner"] == pytest.approx(np.sqrt(10.0))
+    assert motion.closing.movements["wheel_centre"] > 0.01
+    assert motion.closing.noticeable
+
+
+@by_drawn_car
+def test_a_drawing_that_closing_makes_another_car_of_is_refused(
+    make_scene: Callable[..., Scene], car: SampleCar
+) -> None:
+    with pytest.raises(SceneError, match="closing the drawing moves") as caught:
+        simulate(make_scene([1.55], [0.0], car=car, points=off_the_rack(car, (0.0, 0.0, 20.0))))
+    assert "tie_rod_inner on the rack" in caught.value.problem
+    assert caught.value.key == "mechanism.points"
+    assert f"{ALLOWED:.0%} of the car's size" in caught.value.allowed
+
+
+@by_drawn_car
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wheel_inboard_of_the_chassis_is_refused_with_the_side_to_try(
+    make_scene: Callable[..., Scene], car: SampleCar, side: str
+) -> None:
+    sign = 1.0 if side == car.side else -1.0
+    points = {name: (x, sign * y, z) for name, (x, y, z) in car.points.items()}
+    assert make_scene(car=car, points=points, side=side)
+    other = "right" if side == "left" else "left"
+    inboard, wheel = car.topology.inboard, car.topology.wheel_centre
+    far = abs(car.points[inboard][1] - car.points[wheel][1])
+    with pytest.raises(SceneError, match=f"{far:.6g} mm inboard of {inboard}") as caught:
+        make_scene(car=car, points=points, side=other)
+    assert f"side = '{side}'" in str(caught.value)
+
+
+@by_drawn_car
+def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Scene], car: SampleCar) -> None:
+    inner, outer = car.whole.wheel_axis
+    with pytest.raises(SceneError, match=f"{inner} and {outer} are at the same place"):
+        make_scene(car=car, points={**car.points, inner: car.points[outer]})

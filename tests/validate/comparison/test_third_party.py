@@ -1,0 +1,96 @@
+"""A formulation of somebody else: a class of a few lines that gives arrays by name, right or wrong."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate import Accuracy, FormulationError, Outcome, Solution, compare
+
+SCENE = Scene.load("double-wishbone")
+COUNT = len(SCENE.instants)
+WHEEL = compare(SCENE, "pointcoord", "absolute").solutions[1].numbers["position"]["wheel_centre"]
+
+
+class Mine:
+    """Knows one point of the car, to a millionth of a millimetre."""
+
+    name = "mine"
+
+    def solve(self, scene: Scene) -> Solution:
+        numbers = {"position": {"wheel_centre": np.round(WHEEL, 6)}}
+        claims = {"position": {"wheel_centre": np.full((COUNT, 3), 0.51e-6)}}
+        return Solution("mine", scene.instants, numbers, Accuracy(np.ones(COUNT), claims))
+
+
+def test_what_it_gives_is_compared_and_the_rest_is_told() -> None:
+    outcome = compare(SCENE, "pointcoord", Mine())
+    rows = {row.name: row for row in outcome.rows if row.quantity == "position"}
+    # A millionth of a millimetre is a thousand times what pointcoord claims: it tests nothing of pointcoord.
+    assert rows["wheel_centre"].verdict == "not tested"
+    assert rows["wheel_centre"].share <= 1.0
+    assert rows["wheel_centre"].rests_on == "mine"
+    assert {row.verdict for name, row in rows.items() if name != "wheel_centre"} == {"not given"}
+    assert "mine gives no velocity" in outcome.missing
+    assert any(told.startswith("mine gives no position of lower_arm_front, ") for told in outcome.missing)
+
+
+def with_solution(make: Callable[[Scene], Any]) -> Outcome:
+    class Other:
+        name = "mine"
+
+        def solve(self, scene: Scene) -> Any:
+            return make(scene)
+
+    return compare(SCENE, "pointcoord", Other())
+
+
+SURE = Accuracy(np.ones(COUNT))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ({"speed": {"wheel_centre": WHEEL}}, "mine: 'speed' is no quantity and is left out; there are: pos"),
+        ({"position": [WHEEL]}, "mine: position given as a list; needed: arrays by name"),
+        ([WHEEL], "mine: its numbers given as a list; needed: arrays by name"),
+        (
+            {"wheel": {"camber": WHEEL}},
+            f"wheel angle of camber has the shape ({COUNT}, 3); needed: ({COUNT},)",
+        ),
+    ],
+)
+def test_numbers_that_cannot_be_read_are_told_with_what_is_needed(numbers: Any, said: str) -> None:
+    outcome = with_solution(lambda scene: Solution("mine", scene.instants, numbers, SURE))
+    assert any(said in note for note in outcome.notes), outcome.notes
+    assert not outcome.agreed
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "said"),
+    [
+        (lambda: None, "its accuracy is a NoneType; needed: an Accuracy"),
+        (
+            lambda: Accuracy(np.ones(COUNT), {"speed": {}}),
+            "'speed' is of no known quantity; allowed: position",
+        ),
+        (lambda: Accuracy(np.ones(COUNT), {"position": [1e-9]}), "position is a list; allowed: arrays by"),
+        (lambda: Accuracy(np.ones(COUNT), [1e-9]), "claims is a list; allowed: arrays by quantity and name"),
+    ],
+)
+def test_an_accuracy_that_is_none_is_a_refusal_that_says_what_is_needed(
+    accuracy: Callable[[], Any], said: str
+) -> None:
+    numbers = {"position": {"wheel_centre": WHEEL}}
+    with pytest.raises(FormulationError, match=r"^mine: ") as caught:
+        with_solution(lambda scene: Solution("mine", scene.instants, numbers, accuracy()))
+    assert said in str(caught.value)
+
+
+def test_a_quantity_that_is_not_given_is_no_attribute() -> None:
+    solution = Mine().solve(SCENE)
+    assert np.array_equal(solution.position["wheel_centre"], np.round(WHEEL, 6))
+    with pytest.raises(AttributeError, match="the solution of mine has no 'velocity'"):
+        _ = solution.velocity
