@@ -8,6 +8,7 @@ from pointcoord.effects.acceleration import ACCELERATION
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
+from pointcoord.effects.toe import TOE
 from pointcoord.effects.velocity import VELOCITY
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
 
@@ -21,6 +22,7 @@ EFFECTS: Mapping[str, Effect] = {
         ACCELERATION,
         KNUCKLE_RATES,
         WHEEL_ANGLES,
+        TOE,
     )
 }
 """What a scene may list, by name."""
