@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
+from pointcoord.effects.caster import CASTER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
@@ -23,6 +24,7 @@ EFFECTS: Mapping[str, Effect] = {
         KNUCKLE_RATES,
         WHEEL_ANGLES,
         TOE,
+        CASTER,
     )
 }
 """What a scene may list, by name."""

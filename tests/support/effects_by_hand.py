@@ -87,6 +87,12 @@ def _toe(car: Car) -> Numbers:
     return {"wheel": {"toe": [mp.arg(mpc(dot(spin, car.outboard), dot(spin, forward)))]}}
 
 
+def _caster(car: Car) -> Numbers:
+    """A steering axis that leans rearward at the top goes rearward on its way up."""
+    kingpin, rearward = car.line(car.steering_axis), cross(car.right, car.up)
+    return {"wheel": {"caster": [mp.arg(mpc(dot(kingpin, car.up), dot(kingpin, rearward)))]}}
+
+
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
@@ -94,6 +100,7 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
     "toe": _toe,
+    "caster": _caster,
 }
 
 
