@@ -53,6 +53,20 @@ def solve(
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
+
+    >>> import absolute
+    >>> points = {  # two level arms of one length: the wheel keeps its camber
+    ...     "lower_arm_front": (-100, 0, 0), "lower_arm_rear": (100, 0, 0), "lower_ball_joint": (0, -300, 0),
+    ...     "upper_arm_front": (-100, 0, 200), "upper_arm_rear": (100, 0, 200),
+    ...     "upper_ball_joint": (0, -300, 200),
+    ...     "tie_rod_inner": (-90, 0, 100), "tie_rod_outer": (-90, -300, 100),
+    ...     "wheel_axis_inner": (0, -300, 100), "wheel_centre": (0, -350, 100),
+    ... }
+    >>> model = absolute.suspension_of("double_wishbone")(points)
+    >>> inputs = {"arm_angle": np.array([[1.5, 0.0, 0.0]]), "rack": np.zeros((1, 3))}
+    >>> solution = solve(model, inputs, effects=["camber"])
+    >>> bool(abs(solution.effects["camber"][0]) < 1e-14)
+    True
     """
     asked = effects_of(effects)
     if asked:

@@ -61,6 +61,9 @@ def standing(scene: Scene) -> Standing:
     Raises:
         SceneError: the hardpoints make no mechanism.
         AssemblyError: the drawing cannot be closed.
+
+    >>> standing(Scene.load("double-wishbone")).inputs["rack"]
+    0.0
     """
     require_scene(scene)
     mechanism = scene_mechanism(scene)

@@ -59,7 +59,11 @@ class TimeFunction(Protocol):
 
 @dataclass(frozen=True)
 class Polynomial:
-    """f(t) = sum_j coefficients[j] t^j."""
+    """f(t) = sum_j coefficients[j] t^j.
+
+    >>> Polynomial((1.0, 2.0, 3.0)).series(2.0, 2)  # value, rate and half the acceleration at 2 s
+    array([17., 14.,  3.])
+    """
 
     coefficients: tuple[float, ...]
 

@@ -28,7 +28,7 @@ def orientation(factors: Factors) -> Array:
 
 def on_branch(
     system: QuadraticMap, side: Array, series: Array, s: float, reached: Converged, factors: Factors
-) -> Array:
+) -> NDArray[np.bool_]:
     """Whether a series leads to this end and not to another assembly, shape (...,).
 
     Args:

@@ -32,7 +32,11 @@ PAIRS = 64.0 * UNIT_ROUNDOFF**2
 
 
 def exact_sum(a: Array, b: Array) -> tuple[Array, Array]:
-    """a + b as high and low."""
+    """a + b as high and low.
+
+    >>> exact_sum(np.float64(1.0), np.float64(1e-20))
+    (np.float64(1.0), np.float64(1e-20))
+    """
     high = a + b
     virtual = high - a
     return high, (a - (high - virtual)) + (b - virtual)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,11 +126,10 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         if not active.size:
             break
         left, local = remaining[active], factors.taken(active)
-        tangent = np.zeros((len(active), y.shape[-1]))
-        tangent[:, n:] = change[active] * left[:, None]
+        tangent = _tangent(
+            system, y[active], local, change[active] * left[:, None], offset[active] * left[:, None]
+        )
         with np.errstate(all="ignore"):
-            drive = 2.0 * system.polar(y[active], tangent) + offset[active] * left[:, None]
-            tangent[:, :n] = -local.solve(drive)
             step = np.minimum(SAFETY * proven_step(system, y[active], local, tangent), 1.0)
         # False for a NaN as well; a step that completes the path may be as short as it likes.
         able = (step * left >= SMALLEST_STEP) | (step >= 1.0)
@@ -155,6 +155,19 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         done=(1.0 - remaining).reshape(batch),
         work=work,
     )
+
+
+def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array) -> Array:
+    """What is left of a path if it went on straight, C_u u1 = -(C_w w1 + offset), shape (members, size).
+
+    Args:
+        change: of the known coordinates, w1. offset: residual that is still to be taken back.
+    """
+    tangent = np.zeros_like(y)
+    tangent[:, system.unknowns :] = change
+    with np.errstate(all="ignore"):
+        tangent[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, tangent) + offset)
+    return tangent
 
 
 def as_pose(
@@ -214,7 +227,7 @@ def assemble(
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
     unfinished = path.done < 1.0
     if unfinished.any():
-        raise blocked(mechanism, problem, path.y, target, path.factors, unfinished, instant).error()
+        raise blocked(mechanism, problem, path, target, unfinished, instant).error()
 
 
 def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -> None:
@@ -224,31 +237,46 @@ def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -
     one, other = (" - ".join(piece) for piece in pair)
     problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"
     known = mechanism.drawn[..., mechanism.map.unknowns :]
-    raise blocked(mechanism, problem, drawing.y, known, drawing.factors, bad, instant).error()
+    raise blocked(mechanism, problem, drawing, known, bad, instant).error()
+
+
+class Place(Protocol):
+    """Where a path stands: coordinates y, shape (..., size), and the factors of C_u there."""
+
+    @property
+    def y(self) -> Array:
+        """Coordinates."""
+        ...
+
+    @property
+    def factors(self) -> Factors:
+        """Of C_u."""
+        ...
 
 
 def blocked(
     mechanism: Mechanism,
     problem: str,
-    y: Array,
+    place: Place,
     goal: Array,
-    factors: Factors,
     unfinished: NDArray[np.bool_],
     instant: float | None,
     change: Array | None = None,
 ) -> Blocked:
-    """What stops paths that end at y on their way to `goal`, told for the first unfinished one.
+    """What stops paths that end at a place on their way to `goal`, told for the first unfinished one.
 
     Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
     each other in balance: the rows that take part are what limits the motion.
 
     Args:
-        y: coordinates, shape (..., size).
+        problem: what could not be done, in words.
         goal: known coordinates, shape (..., known coordinates).
         unfinished: shape (...).
-        change: how far each known coordinate would still go, with its sign; from y to the goal unless given.
+        change: how far each known coordinate would still go, with its sign; from the place to the
+            goal unless given.
     """
     member = tuple(np.argwhere(unfinished)[0])
+    y, factors = place.y, place.factors
     known = y[..., mechanism.map.unknowns :]
 
     def told(coordinates: Array) -> dict[str, float]:

@@ -80,7 +80,8 @@ def solve_instants(
             path = follow(system, here, known[i, 0], factors)
             work += path.work
             if path.done < 1.0:
-                status = _unreached(mechanism, path.y, known[i, 0], path.factors, times[i])
+                problem = "the mechanism cannot be assembled"
+                status = blocked(mechanism, problem, path, known[i, 0], path.done < 1.0, float(times[i]))
                 y, known, times = y[:i], known[:i], times[:i]
                 break
             here, factors = path.y, path.factors
@@ -116,8 +117,3 @@ def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadr
     rate[:, system.unknowns :] = driven
     rate[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
     return rate
-
-
-def _unreached(mechanism: Mechanism, y: Array, goal: Array, factors: Factors, instant: float) -> Status:
-    problem, unfinished = "the mechanism cannot be assembled", np.array(True)
-    return blocked(mechanism, problem, y, goal, factors, unfinished, float(instant))

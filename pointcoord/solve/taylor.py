@@ -112,106 +112,174 @@ def build_chain(
         no step follows an input though the mechanism could; its status says which.
     """
     settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
-    breaks = sorted({b for f in functions.values() for b in f.breaks if start < b < stop} | {stop})
-    y, members = pose.y, int(np.prod(pose.y.shape[:-1]))
+    course = _Course(mechanism, functions, start, stop, settings)
     # Newton's factors are of the place before its last step, which may be farther off than the bound.
-    factors, work = factorise(mechanism.map.jacobian(y)), Work(factorisations=members)
-    scale = _power_of_two(stop - start)
+    joint = _Joint(start, pose.y, factorise(mechanism.map.jacobian(pose.y)), _power_of_two(stop - start))
+    side, members = orientation(joint.factors), joint.members
+    work = Work(factorisations=members)
     segments: list[Segment] = []
-    instant, side = start, orientation(factors)
-    # Shorter steps in time than this are lost in the rounding of the instant itself.
-    shortest = max(SHORTEST * (stop - start), 4.0 * EPS * max(abs(start), abs(stop)))
-    while instant < stop or not segments:
+
+    def chain(status: Status) -> Chain:
+        return Chain(tuple(segments), work, status)
+
+    while joint.instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
-            return Chain(tuple(segments), work, TooLong(MOST_SEGMENTS, instant, start, stop))
-        limit = next((b for b in breaks if b > instant), stop)
-        series, scale = _expand(mechanism, functions, y, factors, instant, scale, settings.order)
-        work += Work(
-            segments=1,
-            series_orders=settings.order,
-            rate_solves=settings.order * members,
-        )
-        finite = np.asarray(np.isfinite(series).all(axis=(-2, -1)))
+            return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+        segment = course.segment_from(joint)
+        orders = settings.order
+        work += Work(segments=1, series_orders=orders, rate_solves=orders * members)
+        finite = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
         if not finite.all():
-            status = _cannot_pass(mechanism, functions, y, factors, ~finite, instant, stop, False)
-            return Chain(tuple(segments), work, status)
-        if limit == instant:
-            segments.append(Segment(instant, stop, scale, series))
+            return chain(course.stops_at(joint, ~finite, coarsest=False))
+        if start == stop:
+            segments.append(segment)
             break
-        length = _length(series[..., : mechanism.map.unknowns], settings) * scale
-        good = np.zeros(y.shape[:-1], dtype=bool)
-        while length >= shortest or instant + length >= limit:
-            end = limit if instant + length >= limit else instant + length
-            s = (end - instant) / scale
-            reached = _end(mechanism, functions, series, end, s)
+        step = course.step_along(segment, joint, side)
+        work += step.work
+        if step.end is None:
+            return chain(course.stops_at(joint, ~step.good, coarsest=settings.tolerance >= COARSEST))
+        segments.append(replace(segment, stop=step.end.instant))
+        joint = step.end
+    return chain(COMPLETE)
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """An assembled pose from which a segment starts.
+
+    Attributes:
+        y: coordinates, shape (..., size). factors: of C_u there.
+        scale: a unit of time for the segment, s, as long as the one before it.
+    """
+
+    instant: float
+    y: Array
+    factors: Factors
+    scale: float
+
+    @property
+    def members(self) -> int:
+        """How many poses it is."""
+        return int(np.prod(self.y.shape[:-1]))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """How a segment was cut: its end, or which members of the batch have none, and what that cost."""
+
+    end: _Joint | None
+    good: NDArray[np.bool_]
+    work: Work
+
+
+@dataclass(frozen=True)
+class _Course:
+    """What a chain follows, a mechanism and its inputs over a time, and how finely."""
+
+    mechanism: Mechanism
+    functions: Mapping[str, TimeFunction]
+    start: float
+    stop: float
+    settings: Settings
+
+    @property
+    def shortest(self) -> float:
+        """The shortest segment, s; still shorter ones are lost in the rounding of the instant itself."""
+        largest = max(abs(self.start), abs(self.stop))
+        return max(SHORTEST * (self.stop - self.start), 4.0 * EPS * largest)
+
+    def known(self, instant: float, order: int) -> Array:
+        """Series of the known coordinates about an instant, shape (..., order + 1, known coordinates)."""
+        laws = {name: function.series(instant, order) for name, function in self.functions.items()}
+        return self.mechanism.known_series(laws)
+
+    def next_break(self, instant: float) -> float:
+        """Up to where the inputs are analytic: the next instant at which a derivative of one jumps."""
+        breaks = {b for function in self.functions.values() for b in function.breaks}
+        return min((b for b in breaks if instant < b < self.stop), default=self.stop)
+
+    def segment_from(self, joint: _Joint) -> Segment:
+        """The series about a joint, not yet cut.
+
+        Its unit of time is at most the joint's, or SHORTEST_UNIT, and small enough for no known coefficient
+        to exceed the mechanism's size, so that no product of two series overflows however fast the inputs
+        are.
+        """
+        order = self.settings.order
+        known = self.known(joint.instant, order)
+        scale = max(joint.scale, SHORTEST_UNIT)
+        size = np.abs(known[..., 1:, :]).max(axis=tuple(i for i in range(known.ndim) if i != known.ndim - 2))
+        orders = np.arange(order + 1.0)
+        if size.any():
+            with np.errstate(over="ignore"):
+                fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
+            scale = min(scale, _power_of_two(min(fastest, scale)))
+        # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
+        with np.errstate(over="ignore", invalid="ignore"):
+            scaled = known * (scale**orders)[:, None]
+            series = expand(self.mechanism.map, joint.factors, joint.y, scaled)
+        return Segment(joint.instant, self.stop, scale, series)
+
+    def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
+        """Cut a segment where its last terms say, or shorter: until Newton's method confirms its end.
+
+        Args:
+            side: orientation of the branch, which the end must have.
+        """
+        system, limit = self.mechanism.map, self.next_break(joint.instant)
+        length = _length(segment.coefficients[..., : system.unknowns], self.settings) * segment.scale
+        good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
+        while length >= self.shortest or joint.instant + length >= limit:
+            end = limit if joint.instant + length >= limit else joint.instant + length
+            reached = self.solved_end(segment, end)
             work += reached.work
             # What rounding alone makes of a step is no truncation, however small the tolerance.
-            noise = reached.noise + _law_noise(mechanism, functions, reached, end)
-            good = reached.converged & (reached.first_step <= settings.tolerance + 2.0 * noise)
+            noise = reached.noise + self.law_noise(reached, end)
+            good = reached.converged & (reached.first_step <= self.settings.tolerance + 2.0 * noise)
             if good.all():
-                ahead = factorise(mechanism.map.jacobian(reached.y))
-                work += Work(factorisations=members)
-                good = on_branch(mechanism.map, side, series, s, reached, ahead)
+                ahead = factorise(system.jacobian(reached.y))
+                work += Work(factorisations=joint.members)
+                s = (end - segment.start) / segment.scale
+                good = on_branch(system, side, segment.coefficients, s, reached, ahead)
             if good.all():
-                break
-            length = 0.5 * (end - instant)
-        else:
-            coarsest = settings.tolerance >= COARSEST
-            status = _cannot_pass(mechanism, functions, y, factors, ~good, instant, stop, coarsest)
-            return Chain(tuple(segments), work, status)
-        segments.append(Segment(instant, end, scale, series))
-        instant, y, factors = end, reached.y, ahead
-        scale = _power_of_two(length)
-    return Chain(tuple(segments), work)
+                return _Step(_Joint(end, reached.y, ahead, _power_of_two(length)), good, work)
+            length = 0.5 * (end - joint.instant)
+        return _Step(None, good, work)
 
+    def solved_end(self, segment: Segment, end: float) -> Converged:
+        """The end of a segment, by the series and then by Newton."""
+        s, series = (end - segment.start) / segment.scale, segment.coefficients
+        guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+        guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
+        return polish(self.mechanism.map, guess)
 
-def _expand(
-    mechanism: Mechanism,
-    functions: Mapping[str, TimeFunction],
-    y: Array,
-    factors: Factors,
-    instant: float,
-    scale: float,
-    order: int,
-) -> tuple[Array, float]:
-    """The series about an instant and its unit of time, at most `scale` or SHORTEST_UNIT.
+    def law_noise(self, reached: Converged, end: float) -> Array:
+        """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
+        off = {name: function.rounding(np.array(end)) for name, function in self.functions.items()}
+        if not any(doubt.any() for doubt in off.values()):
+            return np.zeros(reached.y.shape[:-1])
+        _, data = self.mechanism.known_data(reached.y, off)
+        rows = self.mechanism.map.uncertainty(reached.y, data)
+        return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
 
-    The unit is small enough for no known coefficient to exceed the mechanism's size, so that no product
-    of two series overflows however fast the inputs are.
-    """
-    known = mechanism.known_series({name: f.series(instant, order) for name, f in functions.items()})
-    scale = max(scale, SHORTEST_UNIT)
-    size = np.abs(known[..., 1:, :]).max(axis=tuple(i for i in range(known.ndim) if i != known.ndim - 2))
-    orders = np.arange(order + 1.0)
-    if size.any():
-        with np.errstate(over="ignore"):
-            fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-        scale = min(scale, _power_of_two(min(fastest, scale)))
-    # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
-    with np.errstate(over="ignore", invalid="ignore"):
-        return expand(mechanism.map, factors, y, known * (scale**orders)[:, None]), scale
+    def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
+        """Why no segment leads on from a joint.
 
-
-def _end(
-    mechanism: Mechanism, functions: Mapping[str, TimeFunction], series: Array, end: float, s: float
-) -> Converged:
-    """The end of a segment, by the series and then by Newton."""
-    guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
-    known = mechanism.known_series({name: f.series(end, 0) for name, f in functions.items()})
-    guess[..., mechanism.map.unknowns :] = known[..., 0, :]
-    return polish(mechanism.map, guess)
-
-
-def _law_noise(
-    mechanism: Mechanism, functions: Mapping[str, TimeFunction], reached: Converged, end: float
-) -> Array:
-    """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
-    off = {name: f.rounding(np.array(end)) for name, f in functions.items()}
-    if not any(doubt.any() for doubt in off.values()):
-        return np.zeros(reached.y.shape[:-1])
-    _, data = mechanism.known_data(reached.y, off)
-    rows = mechanism.map.uncertainty(reached.y, data)
-    return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
+        Args:
+            unfinished: the members of the batch that have none.
+            coarsest: whether no larger tolerance is left to try.
+        """
+        instant = joint.instant
+        goal = self.known(min(self.stop, instant + 1e-6 * (self.stop - instant)), 0)[..., 0, :]
+        # What is left of the way to that goal may be nothing but rounding; what the laws say is not: the
+        # first of their rates that is not zero.
+        laws = self.known(instant, 4)
+        moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
+        change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
+        problem = "the motion cannot pass a singular pose"
+        status = blocked(self.mechanism, problem, joint, goal, unfinished, instant, change)
+        # Near a lock the condition number has grown as the inverse root of the shortest step.
+        return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 
 
 def _length(series: Array, settings: Settings) -> float:
@@ -249,28 +317,3 @@ def _length(series: Array, settings: Settings) -> float:
 def _power_of_two(length: float) -> float:
     """The power of two at or above a length, so that scaling by it rounds nothing; 1 for zero."""
     return float(np.ldexp(1.0, np.frexp(length)[1])) if length > 0.0 else 1.0
-
-
-def _cannot_pass(
-    mechanism: Mechanism,
-    functions: Mapping[str, TimeFunction],
-    y: Array,
-    factors: Factors,
-    unfinished: NDArray[np.bool_],
-    instant: float,
-    stop: float,
-    coarsest: bool,
-) -> Status:
-    ahead = min(stop, instant + 1e-6 * (stop - instant))
-    goal = mechanism.known_series({name: f.series(ahead, 0) for name, f in functions.items()})[..., 0, :]
-    # What is left of the way to `ahead` may be nothing but rounding; what the laws say is not: the first of
-    # their rates that is not zero.
-    laws = mechanism.known_series({name: f.series(instant, 4) for name, f in functions.items()})
-    moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
-    change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
-    problem = "the motion cannot pass a singular pose"
-    status = blocked(mechanism, problem, y, goal, factors, unfinished, instant, change)
-    # Near a lock the condition number has grown as the inverse root of the shortest step.
-    if status.condition > REGULAR:
-        return status
-    return TooRough(status.reduce, instant, coarsest)

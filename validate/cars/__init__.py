@@ -1,1 +1,1 @@
-"""Cars and scenes to try: the paper's, random ones, and where their inputs end."""
+"""Cars and scenes to try: one of every suspension, random ones, and where their inputs end."""

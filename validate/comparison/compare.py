@@ -106,6 +106,9 @@ def compare(
     Raises:
         FormulationError: one of them refuses the scene, or gives what is no solution.
         SceneError: the scene's own hardpoints make no mechanism.
+
+    >>> compare(Scene.load("steer"), "pointcoord", "absolute").agreed
+    True
     """
     require_scene(scene)
     one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))

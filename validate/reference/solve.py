@@ -73,6 +73,18 @@ def solve_reference(
         InfeasibleError: proven that no such assembly exists.
         AmbiguousAssemblyError: points or guess do not single out an assembly.
         SingularPoseError: no proof with 400 digits.
+
+    >>> points = {  # two level arms of one length: the wheel keeps its camber
+    ...     "lower_arm_front": (-100, 0, 0), "lower_arm_rear": (100, 0, 0), "lower_ball_joint": (0, -300, 0),
+    ...     "upper_arm_front": (-100, 0, 200), "upper_arm_rear": (100, 0, 200),
+    ...     "upper_ball_joint": (0, -300, 200),
+    ...     "tie_rod_inner": (-90, 0, 100), "tie_rod_outer": (-90, -300, 100),
+    ...     "wheel_axis_inner": (0, -300, 100), "wheel_centre": (0, -350, 100),
+    ... }
+    >>> inputs = {"arm_angle": (1.5, 0, 0), "rack": (0, 0, 0)}
+    >>> instant = solve_reference(points, inputs, suspension="double_wishbone")
+    >>> bool(abs(instant.effect("camber")) < 1e-60)
+    True
     """
     design = Design.from_points(points, up, right, side, closure, suspension)
     driven = design.driven(inputs)
