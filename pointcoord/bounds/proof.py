@@ -33,7 +33,7 @@ class Proof:
         pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
             mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
         bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
-            what adding the user's origin and the chassis' motion rounds comes to it. See `certificate`
+            what adding the user's origin and the chassis' motion rounds comes to it. See `kantorovich`
             for what it covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).

@@ -28,6 +28,7 @@ Indices = NDArray[np.intp]
 OF_A_SUM = 4.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
 TINY = 1e-307  # a product loses less to underflow, by some 16 orders
+NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
 CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
@@ -75,9 +76,11 @@ class Enclosed:
         return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
-        """Times powers of two, which rounds nothing."""
+        """Times powers of two, which rounds nothing but what falls below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)
-        return Enclosed(self.high * factor, self.low * factor, self.radius * factor)
+        high, low = self.high * factor, self.low * factor
+        lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
+        return Enclosed(high, low, self.radius * factor + np.where(lost, TINY, 0.0))
 
     def _expecting(self, angle: Enclosed) -> Enclosed:
         expected = 2.0 * UNIT_ROUNDOFF * np.abs(self.high) + angle.radius[1]

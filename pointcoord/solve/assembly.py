@@ -5,7 +5,7 @@ in proportion. One step goes along the tangent y1 to y + s y1, where, because C 
 
     C(y + s y1) - (1 - s) C(y) = s^2 B(y1, y1)      exactly.
 
-So Kantorovich's condition (see `certificate`) along the step needs only three constants at its start,
+So Kantorovich's condition (see `kantorovich`) along the step needs only three constants at its start,
 
     (1 - s z)^2 >= 2 omega q s^2,   z = |X C_u(y1)|,  q = |X B(y1, y1)|,  omega = Lipschitz(X C_u),
 
@@ -55,7 +55,7 @@ class Pose:
         iterations: Newton steps that the last correction took, shape (...,).
         condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
         bound: proven distance of every coordinate of the solved points to the exact assembly, shape
-            (...,), mm; infinite where nothing is proven. See `certificate` for what it covers.
+            (...,), mm; infinite where nothing is proven. See `kantorovich` for what it covers.
         work: what it cost.
     """
 
