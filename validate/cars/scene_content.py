@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
-from validate.cars.paper_car import EFFECTS
 
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
 Law = float | Sequence[float] | Mapping[str, Any]
@@ -25,7 +25,7 @@ def scene_content(
     stop: float | None = None,
     samples: int | None = None,
     tolerance: float = 1e-9,
-    effects: Sequence[str] = EFFECTS,
+    effects: Sequence[str] = tuple(EFFECTS),
     title: str = "",
 ) -> dict[str, Any]:
     """The content of a scene.
@@ -35,6 +35,7 @@ def scene_content(
         start, stop: s; without a stop there is a single instant.
         samples: instants; three of a motion if not given.
         tolerance: mm.
+        effects: all that there are if not given.
     """
     laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
     stop = start if stop is None else stop

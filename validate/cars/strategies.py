@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from pointcoord import Scene
-from validate.cars.car import RIGHT, UP, Car, Closure, as_tuple, as_tuples, other_side
+from validate.cars.car import Car, as_tuples, other_side
 from validate.cars.input_limits import Linkage
 from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
 from validate.cars.scene_content import scene_content
@@ -72,23 +70,3 @@ def _law(draw: st.DrawFn, middle: float, reach: float, rate: float) -> dict[str,
     speed = draw(st.floats(0.5, 8.0))
     wave = {"amplitude": draw(_floats(rate)) / speed, "angular_frequency": speed}
     return {"sine": {**wave, "phase": draw(_floats(3.0)), "offset": offset}}
-
-
-def make_scene(
-    points: Mapping[str, Sequence[float]],
-    inputs: Mapping[str, Any],
-    *,
-    closure: Closure,
-    suspension: str = "macpherson",
-    side: str = "left",
-    up: Sequence[float] = UP,
-    right: Sequence[float] = RIGHT,
-    stop: float = 0.2,
-    samples: int = 5,
-    **settings: Any,
-) -> Scene:
-    """A scene from plain data, checked like a file; see `scene_content` for the settings."""
-    places = {name: np.array(place) for name, place in points.items()}
-    axes = as_tuple(np.array(up)), as_tuple(np.array(right))
-    car = Car(as_tuples(places), side, *axes, closure=closure, suspension=suspension)
-    return Scene.from_mapping(scene_content(car, **inputs, stop=stop, samples=samples, **settings))

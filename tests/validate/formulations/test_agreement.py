@@ -5,10 +5,12 @@ import pytest
 from hypothesis import assume, given, note
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
-from validate.cars.paper_car import PAPER
-from validate.cars.strategies import make_scene, scenes
+from validate.cars.car import moved, turned
+from validate.cars.scene_content import scene_content
+from validate.cars.strategies import scenes
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
+from validate.hard.cars import PAPER_CAR
 from validate.paper.scenes import DEFAULT_SCENES
 
 # Rows that an effect makes beside those of every point.
@@ -100,17 +102,14 @@ def test_the_printed_formulas_fail_where_the_errata_say_and_nowhere_else() -> No
 def test_the_printed_rows_fail_where_the_strut_lies_flat_and_the_slide_does_not() -> None:
     """The whole car turned about x until its strut is horizontal: nothing about the mechanism changes."""
     inputs = {"arm_angle": {"constant": 1.6}, "rack": {"constant": 10.0}}
-    pose = simulate(make_scene(PAPER, inputs, closure="collinear")).position
+    pose = simulate(Scene.from_mapping(scene_content(PAPER_CAR, **inputs))).position
     strut = (pose["strut_top"] - pose["lower_ball_joint"])[0]
     angle = -np.arctan2(strut[2], strut[1])
     turn = np.array(
         [[1.0, 0.0, 0.0], [0.0, np.cos(angle), -np.sin(angle)], [0.0, np.sin(angle), np.cos(angle)]]
     )
     assert abs((turn @ strut)[2]) < 1e-12 * np.linalg.norm(strut)
-    turned = {name: tuple(float(c) for c in turn @ point) for name, point in PAPER.items()}
-    scene = make_scene(
-        turned, inputs, closure="collinear", up=tuple(turn[:, 2].tolist()), right=tuple(turn[:, 1].tolist())
-    )
+    scene = Scene.from_mapping(scene_content(turned(PAPER_CAR, turn), **inputs))
     assert compare(scene, "pointcoord", "absolute").agreed
     with pytest.raises(FormulationError, match="printed"):
         compare(scene, "pointcoord", "printed")
@@ -118,10 +117,7 @@ def test_the_printed_rows_fail_where_the_strut_lies_flat_and_the_slide_does_not(
 
 def test_differences_stay_at_rounding_when_the_car_is_far_away() -> None:
     """At 1e6 mm from the origin a coordinate is rounded to 1e-10 mm; the rates are not."""
-    shift = np.array([1e6, -2e6, 5e5])
-    far = {name: tuple(float(c) for c in np.add(point, shift)) for name, point in PAPER.items()}
-    inputs = {"arm_angle": {"polynomial": [1.2, 0.3]}, "rack": {"polynomial": [0.0, 50.0]}}
-    near = compare(make_scene(PAPER, inputs, closure="collinear"), "pointcoord", "absolute")
-    outcome = compare(make_scene(far, inputs, closure="collinear"), "pointcoord", "absolute")
-    assert near.agreed
-    assert outcome.agreed
+    far = moved(PAPER_CAR, np.array([1e6, -2e6, 5e5]))
+    for car in (PAPER_CAR, far):
+        scene = Scene.from_mapping(scene_content(car, [1.2, 0.3], [0.0, 50.0], stop=0.2, samples=5))
+        assert compare(scene, "pointcoord", "absolute").agreed
