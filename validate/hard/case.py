@@ -98,8 +98,8 @@ def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
 
 
 def coarse(values: tuple[float, ...]) -> tuple[float, ...]:
-    """Every third value and the last: what a case tries of a second suspension."""
-    return tuple(dict.fromkeys((*values[::3], values[-1])))
+    """Every fourth value and the last: what a case tries of a second suspension."""
+    return tuple(dict.fromkeys((*values[::4], values[-1])))
 
 
 def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:

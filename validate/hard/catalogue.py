@@ -71,7 +71,7 @@ FEW_VALUES: Mapping[str, str] = {
             *("reach-arm-highest", "reach-arm-lowest", "reach-rack-least", "reach-rack-greatest"),
             *("reach-slide-runs-out", "reach-upper-arm-locks", "reach-tie-rod-locks-the-arm"),
             *("start-beyond-upper-arm-locks", "start-beyond-tie-rod-locks-the-arm"),
-            "upper-arm-locks-moving",
+            *("upper-arm-locks-held", "upper-arm-locks-moving", "upper-arm-locks-beyond"),
         ),
         _WAY,
     ),

@@ -175,7 +175,7 @@ def _mixed_case(
         why=why,
         parameter=parameter,
         # Where it is refused, each refusal takes a second.
-        values=(*decades(-4), 1e-6, 1e-9, 1e-12),
+        values=(1.0, 1e-3, 1e-6, 1e-12) if car == "wishbone" else (*decades(-4), 1e-6, 1e-9, 1e-12),
         expected=dict.fromkeys(SOLVERS, MIXED),
         behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
         examine=lambda value: try_scene(value, mixed(value, points, shrinking, car), SOLVERS),

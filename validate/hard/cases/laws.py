@@ -142,11 +142,13 @@ def law_cases(
     behaviour: str = "right within the bound",
     expected: Mapping[str, Expected] = OURS,
     measure: Measure | None = None,
+    second: tuple[float, ...] | None = None,
 ) -> tuple[Case, ...]:
     """A case of this group for every suspension; see `trial.scene_case`.
 
     Args:
-        values: tried of the first suspension; of the others every third.
+        values: tried of the first suspension.
+        second: tried of the others; every fourth of the first one's if not given.
         scene: the content at a value, of a car.
     """
     return tuple(
@@ -155,7 +157,7 @@ def law_cases(
             group=GROUP,
             why=why,
             parameter=parameter,
-            values=coarse(values) if suffix else values,
+            values=(second or coarse(values)) if suffix else values,
             scene=partial(scene, CARS[car]),
             expected=expected,
             behaviour=behaviour,
@@ -221,6 +223,7 @@ CASES: tuple[Case, ...] = (
         _long_sine,
         "by series right, or refused as too long; at its instants right",
         BY_STEPS,
+        second=(1e3,),
     ),
     *law_cases(
         "phase-of-many-turns",

@@ -149,8 +149,8 @@ EVERY_PAIR = "number of the pair of points"
 
 def _cases(suffix: str, car: str) -> tuple[Case, ...]:
     def some(count: int, step: int = 1) -> tuple[float, ...]:
-        # Of the second car every fifth place or pair must do.
-        return _counted(count)[:: 5 * step if suffix else step]
+        # Of the second car every seventh place or pair must do.
+        return _counted(count)[:: 7 * step if suffix else step]
 
     every = len(places(car))
     return (
