@@ -3,8 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 from absolute.effects.camber import camber
+from absolute.effects.caster import caster
 from absolute.effects.effect import Effect
 from absolute.effects.kingpin import kingpin
+from absolute.effects.toe import toe
 from absolute.errors import InputError
 from absolute.mapping import ReadOnly
 
@@ -14,6 +16,8 @@ EFFECTS: Mapping[str, Effect] = ReadOnly(
         for effect in (
             camber,
             kingpin,
+            toe,
+            caster,
         )
     }
 )

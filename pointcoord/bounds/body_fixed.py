@@ -4,8 +4,8 @@ p = p_0 + a e1 + b e2 + c e1 x e2 with e_i = p_i - p_0 has the derivatives
 
     K1 = a I - c [e2]x,    K2 = b I + c [e1]x,    K0 = I - K1 - K2,
 
-by the three carriers. With the step e, its uncertainty and the tail of `certificate`, all in a pose where
-every edge is off by at most 2 r,
+by the three carriers. With the step e, its uncertainty and the tail of the certificate (see `kantorovich`),
+all in a pose where every edge is off by at most 2 r,
 
     |p* - p| <= |sum K_i e_i| + sum |K_i| (spread_i + tail) + 8 |c| r^2,
 

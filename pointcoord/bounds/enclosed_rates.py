@@ -124,7 +124,7 @@ def enclosed_coordinates(
 def _tail(system: QuadraticMap, certificate: Certificate, magnitude: Array) -> Array:
     """What is left of the error of each coordinate beside e and its spread, (N, unknowns).
 
-    By the mean value form of `certificate`, with r the error of each coordinate instead of the largest:
+    By the mean value form of `kantorovich`, with r the error of each coordinate instead of the largest:
     |I - X C_u| r + |X| |C_u(y + r) - C_u(y)| r / 2, first for the largest and then for what that gives.
     """
     radius = np.broadcast_to(certificate.radius[:, None], certificate.step.shape)

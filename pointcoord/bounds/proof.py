@@ -12,7 +12,7 @@ from pointcoord.bounds.body_fixed import apart, carried_errors
 from pointcoord.bounds.reported_bounds import Numbers, Proven, Reported, joined, reported_bounds
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import Pair, exact_sum
+from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, Certificate, certify
 from pointcoord.numerics.linear import Factors, factorise
@@ -33,7 +33,7 @@ class Proof:
         pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
             mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
         bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
-            what adding the user's origin and the chassis' motion rounds comes to it. See `certificate`
+            what adding the user's origin and the chassis' motion rounds comes to it. See `kantorovich`
             for what it covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
@@ -125,7 +125,7 @@ def _sharpened(
 
 
 def _local(mechanism: Mechanism, reported: Array, offset: Array) -> Pair:
-    high, low = exact_sum(reported, -offset)
+    high, low = two_sum(reported, -offset)
     return high / mechanism.unit, low / mechanism.unit
 
 

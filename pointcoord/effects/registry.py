@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
+from pointcoord.effects.caster import CASTER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
+from pointcoord.effects.toe import TOE
 from pointcoord.effects.velocity import VELOCITY
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
 
@@ -21,6 +23,8 @@ EFFECTS: Mapping[str, Effect] = {
         ACCELERATION,
         KNUCKLE_RATES,
         WHEEL_ANGLES,
+        TOE,
+        CASTER,
     )
 }
 """What a scene may list, by name."""

@@ -19,7 +19,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import exact_product, exact_sum
+from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
@@ -28,6 +28,7 @@ Indices = NDArray[np.intp]
 OF_A_SUM = 4.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
 TINY = 1e-307  # a product loses less to underflow, by some 16 orders
+NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
 CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
@@ -48,14 +49,14 @@ class Enclosed:
         parts = np.broadcast_arrays(
             *(np.asarray(part, dtype=float) for part in (high, low, proven, expected))
         )
-        total, rest = exact_sum(parts[0], parts[1])
+        total, rest = two_sum(parts[0], parts[1])
         return cls(total, rest, np.stack(parts[2:]))
 
     def __add__(self, other: Enclosed) -> Enclosed:
-        total, carry = exact_sum(self.high, other.high)
+        total, carry = two_sum(self.high, other.high)
         rest = carry + (self.low + other.low)
         rounding = _both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
-        high, low = exact_sum(total, rest)
+        high, low = two_sum(total, rest)
         mine, its = _aligned(self.radius, other.radius)
         return Enclosed(high, low, mine + its + rounding)
 
@@ -66,18 +67,20 @@ class Enclosed:
         return self + -other
 
     def __mul__(self, other: Enclosed) -> Enclosed:
-        product, carry = exact_product(*np.broadcast_arrays(self.high, other.high))
+        product, carry = two_product(*np.broadcast_arrays(self.high, other.high))
         rest = carry + (self.high * other.low + self.low * other.high)
         size = np.abs(product)
         mine, its = _aligned(self.radius, other.radius)
         spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
-        high, low = exact_sum(product, rest)
+        high, low = two_sum(product, rest)
         return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
-        """Times powers of two, which rounds nothing."""
+        """Times powers of two, which rounds nothing but what falls below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)
-        return Enclosed(self.high * factor, self.low * factor, self.radius * factor)
+        high, low = self.high * factor, self.low * factor
+        lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
+        return Enclosed(high, low, self.radius * factor + np.where(lost, TINY, 0.0))
 
     def _expecting(self, angle: Enclosed) -> Enclosed:
         expected = 2.0 * UNIT_ROUNDOFF * np.abs(self.high) + angle.radius[1]

@@ -21,12 +21,12 @@ Every coordinate has its own bound. With e = X C(y) and the mean value form of C
 and a combination J u of coordinates, such as a point that rides on others, is off by at most
 |J e| + |J| tail: its errors cancel as e's do.
 
-Floating point: C(y) is taken in twice the working precision (see `doubled`), about the known coordinates
-that the user's numbers mean (`Mechanism.known_data`). What is left of uncertainty in C(y), d, adds
-|X| d to e; products with X add gamma_n of Higham's book, in z as well. Not covered: the rounding of the
+Floating point: C(y) is taken in twice the working precision (see `double_double`), about the known
+coordinates that the user's numbers mean (`Mechanism.known_data`). What is left of uncertainty in C(y), d,
+adds |X| d to e; products with X add gamma_n of Higham's book, in z as well. Not covered: the rounding of the
 bound's own last operations, made up for by a factor of 1 + 1e-6; it is evaluated in ordinary rounding,
 not in interval arithmetic. Nor is one rounding of an input's value: the bound holds for the double nearest
-to what the law gives; what its computation is off from that is counted (see `inputs`).
+to what the law gives; what its computation is off from that is counted (see `time_functions`).
 """
 
 from __future__ import annotations

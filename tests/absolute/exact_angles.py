@@ -13,6 +13,8 @@ Coordinates = list[Any]
 ANGLES: dict[str, Callable[[Coordinates, Coordinates, int], Any]] = {
     "camber": lambda spin, steer, out: atan2(-spin[2], out * spin[1]),
     "kingpin": lambda spin, steer, out: atan2(-out * steer[1], steer[2]),
+    "toe": lambda spin, steer, out: atan2(-spin[0], out * spin[1]),
+    "caster": lambda spin, steer, out: atan2(steer[0], steer[2]),
 }
 
 

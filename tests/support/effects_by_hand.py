@@ -81,12 +81,26 @@ def _wheel_angles(car: Car) -> Numbers:
     return {"wheel": {"camber": [camber], "kingpin": [lean_in]}}
 
 
+def _toe(car: Car) -> Numbers:
+    """A wheel whose front edge is nearer the middle has a spin axis that goes forward on its way out."""
+    spin, forward = car.line(car.wheel_axis), cross(car.up, car.right)
+    return {"wheel": {"toe": [mp.arg(mpc(dot(spin, car.outboard), dot(spin, forward)))]}}
+
+
+def _caster(car: Car) -> Numbers:
+    """A steering axis that leans rearward at the top goes rearward on its way up."""
+    kingpin, rearward = car.line(car.steering_axis), cross(car.right, car.up)
+    return {"wheel": {"caster": [mp.arg(mpc(dot(kingpin, car.up), dot(kingpin, rearward)))]}}
+
+
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
     "acceleration": _of_points("acceleration", 2),
     "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
+    "toe": _toe,
+    "caster": _caster,
 }
 
 

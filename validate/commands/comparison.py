@@ -118,8 +118,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         formulation(name)  # found before any scene is read
     journal = Journal(options.json, Head.of("validate", options.command), console)
     results = _Results()
-    status, complete = ExitStatus.INTERRUPTED, False
-    try:
+    with journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending:
         for name, scene in _loaded(names, console):
             if isinstance(scene, Scene):
                 _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
@@ -130,16 +129,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         if not options.scenes:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
-        status, complete = combined(results.statuses), True
-    except KeyboardInterrupt:
-        raise
-    except BaseException:
-        status = ExitStatus.NOT_FINISHED
-        raise
-    finally:
-        if complete or results.scenes:
-            journal.close(results.data, status, complete, _finished(results, names))
-    return status
+        ending.status = combined(results.statuses)
+    return ending.status
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:

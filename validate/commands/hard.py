@@ -72,18 +72,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.say(hard_report.case_text(result, bool(options.cases)) + "\n")
         journal.keep(lambda: hard_report.results_data(results), finished())
 
-    status, complete = ExitStatus.INTERRUPTED, False
-    try:
+    with journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending:
         hard_run.run(cases, tell)
         console.say(hard_report.summary_text(results))
-        status = ExitStatus.AGREE if hard_run.as_expected(results) else ExitStatus.DISAGREE
-        complete = True
-    except KeyboardInterrupt:
-        raise
-    except BaseException:
-        status = ExitStatus.NOT_FINISHED
-        raise
-    finally:
-        if results:
-            journal.close(lambda: hard_report.results_data(results), status, complete, finished())
-    return status
+        if not hard_run.as_expected(results):
+            ending.status = ExitStatus.DISAGREE
+    return ending.status

@@ -11,7 +11,8 @@ import os
 import platform
 import shlex
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -140,6 +141,13 @@ def write_json(target: str, data: Any, console: Console) -> None:
     write_whole(target, put)
 
 
+@dataclass
+class Ending:
+    """What a run that comes to its end ends with."""
+
+    status: ExitStatus = ExitStatus.AGREE
+
+
 class Journal:
     """The JSON of a run, written again as its parts are finished, so that a kill loses next to nothing.
 
@@ -181,6 +189,31 @@ class Journal:
         """
         if self.target is not None:
             self._write(self.target, results(), status, complete, what)
+
+    @contextmanager
+    def closing(
+        self, results: Callable[[], Mapping[str, Any]], begun: Callable[[], object], what: Callable[[], str]
+    ) -> Iterator[Ending]:
+        """Close the journal when the block ends, however it ends.
+
+        Args:
+            begun: whether there is anything worth writing of a run that does not come to its end.
+            what: is there, in words.
+        Raises:
+            OutputError: it cannot be written; and whatever ends the block.
+        """
+        ending, complete, status = Ending(), False, ExitStatus.INTERRUPTED
+        try:
+            yield ending
+            complete, status = True, ending.status
+        except KeyboardInterrupt:
+            raise
+        except BaseException:
+            status = ExitStatus.NOT_FINISHED
+            raise
+        finally:
+            if complete or begun():
+                self.close(results, status, complete, what())
 
     def _write(
         self, target: str, results: Mapping[str, Any], status: ExitStatus | None, complete: bool, what: str

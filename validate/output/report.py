@@ -46,6 +46,14 @@ def _with_unit(value: float, unit: str) -> str:
     return f"{value:.1e} {unit}" if math.isfinite(value) else "not a number"
 
 
+def _measured(row: Comparison) -> tuple[str, str, str, str]:
+    """Difference, tolerance, instant, and whose claim the tolerance rests on; dashes of what is not given."""
+    if row.verdict == "not given":
+        return "-", "-", "-", "-"
+    difference, tolerance = (_with_unit(value, row.unit) for value in (row.difference, row.tolerance))
+    return difference, tolerance, f"{row.instant:.4g} s", row.rests_on
+
+
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
@@ -78,10 +86,7 @@ def outcome_text(outcome: Outcome) -> str:
         (
             _words(row),
             "" if _of_the_car(row) else row.name,
-            _with_unit(row.difference, row.unit),
-            _with_unit(row.tolerance, row.unit),
-            f"{row.instant:.4g} s",
-            row.rests_on,
+            *_measured(row),
             f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
         )
         for row in worst_rows(outcome)

@@ -43,7 +43,7 @@ def bump(make_scene: Callable[..., Scene]) -> tuple[Motion, Array]:
     return motion, 0.5 * (low + high)
 
 
-@pytest.mark.parametrize(("angle", "column"), [("camber", 1), ("kingpin", 4)])
+@pytest.mark.parametrize(("angle", "column"), [("camber", 1), ("toe", 2), ("caster", 3), ("kingpin", 4)])
 def test_the_angles_over_bump_are_the_printed_ones_to_the_last_digit(
     bump: tuple[Motion, Array], angle: str, column: int
 ) -> None:

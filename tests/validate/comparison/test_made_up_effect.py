@@ -28,6 +28,7 @@ from pointcoord.linkage.topology import Topology
 from validate.cli import main
 from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
+from validate.output.report import outcome_text
 from validate.paper.scenes import DEFAULT_SCENES
 
 STUB = Quantity("stub", "stub length", "mm", "car")
@@ -154,6 +155,8 @@ def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
     assert set(outcome.missing) == {"absolute gives no stub length", "absolute gives no wheel angle"}
     assert not outcome.disagreements
     assert not outcome.agreed
+    (line,) = (line for line in outcome_text(outcome).splitlines() if line.startswith("stub_axle"))
+    assert line.split() == ["stub_axle", "-", "-", "-", "-", "not", "given"]
 
 
 def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
