@@ -20,7 +20,7 @@ from validate.cars.input_limits import Linkage
 from validate.cars.macpherson import LOWER, ROD_END, TOP
 from validate.cars.scene_content import scene_content
 from validate.hard.cars import CARS, PAPER_CAR, drawn_at
-from validate.hard.case import Case, Expected, coarse, decades
+from validate.hard.case import Case, Expected, decades
 from validate.hard.trial import try_scene
 
 Array = NDArray[np.float64]
@@ -105,7 +105,7 @@ def _case(
         group=GROUP,
         why=why,
         parameter="distance, in parts of what it is in the car",
-        values=coarse(values) if car == "wishbone" else values,
+        values=values[::3] if car == "wishbone" else values,
         expected=dict.fromkeys(SOLVERS, SOLVED),
         behaviour=f"right within the bound, or refused with a reason; right from {RIGHT_FROM:g} up",
         examine=lambda value: try_scene(value, scene(value), SOLVERS),
