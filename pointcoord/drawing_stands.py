@@ -16,7 +16,7 @@ from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.linear import weakest_balance
+from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
@@ -102,7 +102,8 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
         path = follow(mechanism.map, closed.y, target)
         value = float(drive.input_value(path.y[place], mechanism.drawing))
         stopped = float(path.done) < 1.0
-        limits = mechanism.topology.strongest(weakest_balance(path.factors.matrix)) if stopped else ()
+        forces = smallest_left_singular_vector(path.factors.matrix)
+        limits = mechanism.topology.strongest(forces) if stopped else ()
         found.append(End(value, limits))
     low, high = sorted(found, key=lambda end: end.value)
     return low, high

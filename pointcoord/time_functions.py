@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
-from pointcoord.numerics.double_double import exact_product, exact_sum
+from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -79,7 +79,7 @@ class Polynomial:
                 factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
                 terms = np.array(self.coefficients[k:])
                 plain = np.polynomial.polynomial.polyval(t, factors * terms)
-                doubled = _doubled_horner(exact_product(np.array(factors), terms), t)
+                doubled = _doubled_horner(two_product(np.array(factors), terms), t)
                 # Splitting a number above 1e300 overflows; there only the plain sum is left.
                 result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
         return result
@@ -131,8 +131,8 @@ class Sine:
             factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
             result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
             # The offset may all but cancel a large swing: product and sum are rounded once together.
-            swing, rest = exact_product(np.array(self.amplitude), sine)
-            value, carry = exact_sum(swing, np.array(self.offset))
+            swing, rest = two_product(np.array(self.amplitude), sine)
+            value, carry = two_sum(swing, np.array(self.offset))
             exact = value + (carry + rest)
             result[..., 0] = np.where(np.isfinite(exact), exact, swing + self.offset)
         return result
@@ -143,8 +143,8 @@ class Sine:
         A large phase would swallow the digits of time, and the values would no longer change as the rates
         say; a large frequency would swallow the phase.
         """
-        turned, rest = exact_product(np.array(self.angular_frequency), instants)
-        angle, low = exact_sum(turned, np.array(self.phase))
+        turned, rest = two_product(np.array(self.angular_frequency), instants)
+        angle, low = two_sum(turned, np.array(self.phase))
         return angle, *(np.where(np.isfinite(part), part, 0.0) for part in (rest, low))
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
@@ -251,9 +251,9 @@ def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:
     """sum_j (high_j + low_j) t^j, rounded about once."""
     high, low = np.zeros_like(t), np.zeros_like(t)
     for c, c_low in zip(coefficients[0][::-1], coefficients[1][::-1], strict=True):
-        product, rest = exact_product(high, t)
+        product, rest = two_product(high, t)
         rest = rest + low * t
-        high, carry = exact_sum(product, c)
+        high, carry = two_sum(product, c)
         low = carry + (rest + c_low)
     return high + low
 

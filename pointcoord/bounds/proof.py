@@ -12,7 +12,7 @@ from pointcoord.bounds.body_fixed import apart, carried_errors
 from pointcoord.bounds.reported_bounds import Numbers, Proven, Reported, joined, reported_bounds
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import Pair, exact_sum
+from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, Certificate, certify
 from pointcoord.numerics.linear import Factors, factorise
@@ -125,7 +125,7 @@ def _sharpened(
 
 
 def _local(mechanism: Mechanism, reported: Array, offset: Array) -> Pair:
-    high, low = exact_sum(reported, -offset)
+    high, low = two_sum(reported, -offset)
     return high / mechanism.unit, low / mechanism.unit
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.numerics.double_double import exact_product, exact_square
+from pointcoord.numerics.double_double import exact_square, two_product
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine
@@ -133,7 +133,7 @@ class ArmAngle:
         """The drawn length and the part of it that it lacks."""
         length = drawing.distance(self.pivot, self.point)
         square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
-        own, own_rest = exact_product(length, length)
+        own, own_rest = two_product(length, length)
         return length, ((square - own) + (rest - own_rest)) / (2.0 * length * length)
 
     def drawn(self, drawing: Drawing) -> Array:

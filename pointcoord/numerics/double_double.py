@@ -31,10 +31,10 @@ LEFT_OUT = 600.0
 PAIRS = 64.0 * UNIT_ROUNDOFF**2
 
 
-def exact_sum(a: Array, b: Array) -> tuple[Array, Array]:
+def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """a + b as high and low.
 
-    >>> exact_sum(np.float64(1.0), np.float64(1e-20))
+    >>> two_sum(np.float64(1.0), np.float64(1e-20))
     (np.float64(1.0), np.float64(1e-20))
     """
     high = a + b
@@ -42,7 +42,7 @@ def exact_sum(a: Array, b: Array) -> tuple[Array, Array]:
     return high, (a - (high - virtual)) + (b - virtual)
 
 
-def exact_product(a: Array, b: Array) -> tuple[Array, Array]:
+def two_product(a: Array, b: Array) -> tuple[Array, Array]:
     """a b as high and low; magnitudes between 1e-140 and 1e140, or zero."""
     high = a * b
     a_high, b_high = _upper_half(a), _upper_half(b)
@@ -57,23 +57,23 @@ def _upper_half(a: Array) -> Array:
 
 def exact_square(a: Array, b: Array) -> tuple[Array, Array]:
     """|a - b|^2 over the last dimension as high and low, to some 100 u^2 of itself."""
-    difference, rest = exact_sum(a, -b)
-    square, square_rest = exact_product(difference, difference)
+    difference, rest = two_sum(a, -b)
+    square, square_rest = two_product(difference, difference)
     square_rest = square_rest + 2.0 * difference * rest
-    total, carry = exact_sum(square[..., 0], square[..., 1])
-    total, last = exact_sum(total, square[..., 2])
+    total, carry = two_sum(square[..., 0], square[..., 1])
+    total, last = two_sum(total, square[..., 2])
     return total, carry + last + square_rest.sum(axis=-1)
 
 
 def pair_product(a: Pair, b: Pair) -> Pair:
     """a b, to the working precision of the low part."""
-    high, low = exact_product(*np.broadcast_arrays(a[0], b[0]))
+    high, low = two_product(*np.broadcast_arrays(a[0], b[0]))
     return high, low + (a[0] * b[1] + a[1] * b[0])
 
 
 def pair_sum(a: Pair, b: Pair) -> Pair:
     """a + b, to the working precision of the low part."""
-    high, low = exact_sum(*np.broadcast_arrays(a[0], b[0]))
+    high, low = two_sum(*np.broadcast_arrays(a[0], b[0]))
     return high, low + (a[1] + b[1])
 
 
@@ -92,7 +92,7 @@ def pair_cross(a: Pair, b: Pair) -> Pair:
     ]
     high, low = (np.stack([part[i] for part in parts], axis=-1) for i in (0, 1))
     # The sums of products may cancel, so their low parts are brought below the high ones again.
-    return exact_sum(high, low)
+    return two_sum(high, low)
 
 
 def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:
@@ -110,8 +110,8 @@ def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) ->
     (f, f_low, f_doubt), (g, g_low, g_doubt) = (
         _difference(y, low, data, first, second) for first, second in factors
     )
-    high, rest = exact_product(f, g)
-    scaled, scaled_rest = exact_product(high, np.broadcast_to(coefficients, high.shape))
+    high, rest = two_product(f, g)
+    scaled, scaled_rest = two_product(high, np.broadcast_to(coefficients, high.shape))
     rest = (rest + f * g_low + f_low * g) * coefficients + scaled_rest
     total, carry = _row_sums(scaled, starts)
     value = total + (carry + np.add.reduceat(rest, starts, axis=-1))
@@ -127,7 +127,7 @@ def _difference(
     y: Array, low: Array, data: Array, first: NDArray[np.intp], second: NDArray[np.intp]
 ) -> tuple[Array, Array, Array]:
     """y_first - y_second as high and low, and its uncertainty."""
-    high, rest = exact_sum(y.take(first, axis=-1), -y.take(second, axis=-1))
+    high, rest = two_sum(y.take(first, axis=-1), -y.take(second, axis=-1))
     rest = rest + (low.take(first, axis=-1) - low.take(second, axis=-1))
     return high, rest, data.take(first, axis=-1) + data.take(second, axis=-1)
 
@@ -139,6 +139,6 @@ def _row_sums(terms: Array, starts: NDArray[np.intp]) -> tuple[Array, Array]:
     carry = np.zeros_like(total)
     for place in range(1, int(lengths.max())):
         rows = np.flatnonzero(lengths > place)
-        total[..., rows], rest = exact_sum(total[..., rows], terms.take(starts[rows] + place, axis=-1))
+        total[..., rows], rest = two_sum(total[..., rows], terms.take(starts[rows] + place, axis=-1))
         carry[..., rows] += rest
     return total, carry

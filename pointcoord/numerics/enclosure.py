@@ -19,7 +19,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import exact_product, exact_sum
+from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
@@ -49,14 +49,14 @@ class Enclosed:
         parts = np.broadcast_arrays(
             *(np.asarray(part, dtype=float) for part in (high, low, proven, expected))
         )
-        total, rest = exact_sum(parts[0], parts[1])
+        total, rest = two_sum(parts[0], parts[1])
         return cls(total, rest, np.stack(parts[2:]))
 
     def __add__(self, other: Enclosed) -> Enclosed:
-        total, carry = exact_sum(self.high, other.high)
+        total, carry = two_sum(self.high, other.high)
         rest = carry + (self.low + other.low)
         rounding = _both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
-        high, low = exact_sum(total, rest)
+        high, low = two_sum(total, rest)
         mine, its = _aligned(self.radius, other.radius)
         return Enclosed(high, low, mine + its + rounding)
 
@@ -67,12 +67,12 @@ class Enclosed:
         return self + -other
 
     def __mul__(self, other: Enclosed) -> Enclosed:
-        product, carry = exact_product(*np.broadcast_arrays(self.high, other.high))
+        product, carry = two_product(*np.broadcast_arrays(self.high, other.high))
         rest = carry + (self.high * other.low + self.low * other.high)
         size = np.abs(product)
         mine, its = _aligned(self.radius, other.radius)
         spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
-        high, low = exact_sum(product, rest)
+        high, low = two_sum(product, rest)
         return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:

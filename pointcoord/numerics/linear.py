@@ -117,6 +117,6 @@ def null_directions(matrix: Array) -> tuple[Array, Array]:
     return right[rank:], left[:, rank:].T
 
 
-def weakest_balance(matrix: Array) -> Array:
+def smallest_left_singular_vector(matrix: Array) -> Array:
     """The unit combination of rows that nearly vanishes, for a nearly singular matrix (n, n); shape (n,)."""
     return np.asarray(np.linalg.svd(matrix)[0][:, -1])

@@ -47,7 +47,7 @@ class Converged:
     work: Work
 
 
-def polish(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Converged:
+def newton_refine(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Converged:
     """Solve C(u, w) = offset for the unknowns of y, starting from them.
 
     Args:

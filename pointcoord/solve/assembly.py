@@ -27,8 +27,8 @@ from pointcoord.bounds.proof import pose_bound
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise, weakest_balance
-from pointcoord.numerics.newton import polish
+from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.status import Blocked
 
@@ -140,7 +140,7 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         guess[:, n:] = np.where((left == 0.0)[:, None], target[active], ahead)
         if not active.size:
             break
-        reached = polish(system, guess, offset[active] * left[:, None])
+        reached = newton_refine(system, guess, offset[active] * left[:, None])
         work = work + reached.work
         # In exact arithmetic every correction converges; one that does not has run out of digits.
         good = reached.converged
@@ -283,7 +283,7 @@ def blocked(
         values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
         return {name: float(value[member]) for name, value in values.items()}
 
-    balance = weakest_balance(factors.matrix[member])
+    balance = smallest_left_singular_vector(factors.matrix[member])
     left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
     pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
     return Blocked(

@@ -19,7 +19,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import Converged, polish
+from pointcoord.numerics.newton import Converged, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
@@ -251,7 +251,7 @@ class _Course:
         s, series = (end - segment.start) / segment.scale, segment.coefficients
         guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
-        return polish(self.mechanism.map, guess)
+        return newton_refine(self.mechanism.map, guess)
 
     def law_noise(self, reached: Converged, end: float) -> Array:
         """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""

@@ -88,7 +88,7 @@ def test_points_near_each_other_keep_their_vector_in_the_body_that_holds_them(
                 assert error_of(vector / length, exact_unit(car[fixed], car[moved])) <= 4 * EPS
 
 
-def exact_product(car: dict[str, Array], sign: absolute.BranchSign) -> tuple[Fraction, float]:
+def two_product(car: dict[str, Array], sign: absolute.BranchSign) -> tuple[Fraction, float]:
     """The product of a branch sign's vectors from the coordinates given, and the product of their lengths."""
     vectors = []
     for vector in sign.vectors:
@@ -112,7 +112,7 @@ def test_branch_signs_of_short_lines_are_those_of_the_coordinates_given(
         signs = mechanism.branch_signs
         placed = mechanism.stack.place(*mechanism.poses(mechanism.drawn)).world
         for name, sign in model.branch_signs.items():
-            product, lengths = exact_product(car, sign)
+            product, lengths = two_product(car, sign)
             number = signs.names.index(name)
             # Nine roundings at most in the drawing; placed, points of two bodies far apart are
             # rounded as the size, a few hundred mm.

@@ -26,11 +26,11 @@ from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
-    exact_sum,
     minus_pair,
     pair_cross,
     pair_product,
     pair_sum,
+    two_sum,
 )
 from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
@@ -106,7 +106,7 @@ class AxisInBody(Constraint):
         body = self.normal
         direction = scaled_axis(drawing, self.tail, self.head)
         base, first, second = (drawing.vectors[name] for name in (body.base, body.first, body.second))
-        edges = (exact_sum(first, -base), exact_sum(second, -base))
+        edges = (two_sum(first, -base), two_sum(second, -base))
         columns = (*edges, pair_cross(*edges))
         frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
         lengths = np.linalg.norm(edges[0][0], axis=-1) * np.linalg.norm(edges[1][0], axis=-1)
@@ -124,7 +124,7 @@ class AxisInBody(Constraint):
         rest, size = _unexplained(direction, columns, weights)
         weights = weights + _applied(inverse, rest)
         rest, size = _unexplained(direction, columns, weights)
-        values, lacks = exact_sum(weights, _applied(inverse, rest))
+        values, lacks = two_sum(weights, _applied(inverse, rest))
         spread = np.abs(inverse)
         again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
         doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
@@ -139,7 +139,7 @@ def scaled_axis(drawing: Drawing, tail: str, head: str) -> Pair:
         MechanismError: both points are in one place.
     """
     scale = axis_scale(drawing, tail, head)[..., None]
-    high, low = exact_sum(drawing.vectors[head], -drawing.vectors[tail])
+    high, low = two_sum(drawing.vectors[head], -drawing.vectors[tail])
     return high * scale, low * scale
 
 

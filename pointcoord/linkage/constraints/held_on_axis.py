@@ -11,7 +11,7 @@ from pointcoord.linkage.constraints.constraint import Constraint, per_axis
 from pointcoord.linkage.constraints.on_axis import OnAxis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
-from pointcoord.numerics.double_double import PAIRS, exact_product, exact_square
+from pointcoord.numerics.double_double import PAIRS, exact_square, two_product
 from pointcoord.numerics.quadratic import Row
 
 
@@ -66,8 +66,8 @@ class HeldOnAxis(Constraint):
         square, square_rest = square * scale * scale, square_rest * scale * scale
         side = np.where(np.sum((far - near) * (head - tail), axis=-1) < 0.0, -1.0, 1.0)
         place = np.sqrt(reach / square)
-        own, own_rest = exact_product(place, place)
-        held, held_rest = exact_product(own, square)
+        own, own_rest = two_product(place, place)
+        held, held_rest = two_product(own, square)
         rest = (reach - held) + (reach_rest - held_rest - own * square_rest - own_rest * square)
         with np.errstate(divide="ignore", invalid="ignore"):
             lacks = np.where(place > 0.0, rest / (2.0 * place * square), 0.0)

@@ -15,7 +15,7 @@ from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.kantorovich import certify
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.newton import polish
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import assemble
 
@@ -266,7 +266,7 @@ def test_two_assemblies_never_lie_in_one_ball_of_uniqueness(strut: Mechanism) ->
     rng = np.random.default_rng(8)
     starts = np.repeat(pose.y[None], 400, axis=0)
     starts[:, :N] += rng.normal(size=(400, N))
-    reached = polish(strut.map, starts)
+    reached = newton_refine(strut.map, starts)
     found = reached.y[reached.converged]
     certificate = certify(strut.map, found, factorise(strut.map.jacobian(found)), np.zeros_like(found))
     found, radius, within = (

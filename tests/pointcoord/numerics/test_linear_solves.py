@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.numerics.linear import factorise, null_directions, weakest_balance
+from pointcoord.numerics.linear import factorise, null_directions, smallest_left_singular_vector
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -140,7 +140,7 @@ def test_null_directions_span_the_null_spaces(seed: int, rows: int, columns: int
 def test_weakest_balance_of_rows_is_shortened_the_most(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     matrix = graded(rng, n, 1e6)
-    balance = weakest_balance(matrix)
+    balance = smallest_left_singular_vector(matrix)
     # The smallest stretch is 1e-6; rounding of the product is n eps.
     assert abs(np.linalg.norm(balance) - 1.0) <= 4 * n * EPS
     assert np.linalg.norm(balance @ matrix) <= 1e-6 + 16 * n * EPS

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
-from pointcoord.numerics.newton import polish
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.solve.assembly import Pose, assemble
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ def test_error_of_a_step_is_the_square_of_the_error_before(
     for power in range(8, 14):
         start = displaced(pose, seed, 2.0**-power / omega)
         before.append(np.abs(start - pose.y).max())
-        after.append(np.abs(polish(strut.map, start).y - pose.y).max())
+        after.append(np.abs(newton_refine(strut.map, start).y - pose.y).max())
     # Newton and Kantorovich: e' <= omega e^2 / (2 (1 - omega e)), here with 1 - omega e > 1/2.
     assert omega * before[0] < 0.5
     assert (np.array(after) <= omega * np.array(before) ** 2).all()
@@ -51,7 +51,7 @@ def test_error_of_a_step_is_the_square_of_the_error_before(
 def test_it_stops_at_rounding_wherever_it_starts_nearby(
     strut: Mechanism, pose: Pose, seed: int, power: float
 ) -> None:
-    reached = polish(strut.map, displaced(pose, seed, 10.0**power))
+    reached = newton_refine(strut.map, displaced(pose, seed, 10.0**power))
     assert reached.converged
     # The pose's points lie within their proven bound of the one assembly nearby, the other's within what
     # rounding makes of a Newton step, the condition number times eps of coordinates near 1.
@@ -63,7 +63,7 @@ def test_it_stops_at_rounding_wherever_it_starts_nearby(
 
 
 def test_polishing_a_polished_pose_takes_one_step_of_noise(strut: Mechanism, pose: Pose) -> None:
-    again = polish(strut.map, pose.y)
+    again = newton_refine(strut.map, pose.y)
     assert again.converged
     assert again.iterations == 1
     assert again.first_step <= float(pose.bound / strut.unit)
@@ -71,7 +71,7 @@ def test_polishing_a_polished_pose_takes_one_step_of_noise(strut: Mechanism, pos
 
 def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:
     offset = 1e-4 * np.random.default_rng(2).uniform(-1.0, 1.0, size=17)
-    reached = polish(strut.map, pose.y, offset)
+    reached = newton_refine(strut.map, pose.y, offset)
     assert reached.converged
     # The residual is as far off as rounding of the coordinates makes it: below 16 eps of products up to 4.
     assert np.abs(strut.map.residual(reached.y) - offset).max() <= 16 * EPS * 4
@@ -87,10 +87,10 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
 ) -> None:
     batch = np.stack([displaced(pose, seed, 1e-3) for seed in range(4)]).reshape(2, 2, -1)
     batch[0, 1, :17] = value
-    reached = polish(strut.map, batch)
+    reached = newton_refine(strut.map, batch)
     assert not reached.converged[0, 1]
     for member in ((0, 0), (1, 0), (1, 1)):
-        alone = polish(strut.map, batch[member])
+        alone = newton_refine(strut.map, batch[member])
         assert reached.converged[member]
         assert reached.iterations[member] == alone.iterations
         # The same operations on each member: at most the order of a sum differs.
@@ -99,13 +99,13 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
 
 def test_work_counts_every_member_at_every_step(strut: Mechanism, pose: Pose) -> None:
     batch = np.stack([displaced(pose, 1, 1e-3), pose.y, pose.y])
-    reached = polish(strut.map, batch)
+    reached = newton_refine(strut.map, batch)
     assert reached.work.factorisations == reached.work.residuals == int(reached.iterations.sum())
 
 
 def test_known_coordinates_stay_as_they_are(strut: Mechanism, pose: Pose) -> None:
     start = displaced(pose, 3, 1e-3)
     kept = start.copy()
-    reached = polish(strut.map, start)
+    reached = newton_refine(strut.map, start)
     assert np.array_equal(start, kept)
     assert np.array_equal(reached.y[17:], kept[17:])

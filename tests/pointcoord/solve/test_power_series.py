@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.newton import polish
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import cross_series, expand
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.time_functions import Polynomial, Sine
@@ -79,10 +79,10 @@ def test_truncated_error_decays_geometrically_and_twice_as_fast_in_half_the_time
     for s in (reach, 0.5 * reach):
         end = pose.y + series[1] * s
         end[N:] = known_at(strut, t + s, 0)[0]
-        exact = polish(strut.map, np.polynomial.polynomial.polyval(s, series) * 1.0)
+        exact = newton_refine(strut.map, np.polynomial.polynomial.polyval(s, series) * 1.0)
         y = exact.y.copy()
         y[N:] = end[N:]
-        exact = polish(strut.map, y)
+        exact = newton_refine(strut.map, y)
         assert exact.converged
         errors = [
             np.abs(np.polynomial.polynomial.polyval(s, series[: order + 1]) - exact.y)[:N].max()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pointcoord import Motion, Scene, UnknownName, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON, SERIES, Method
-from pointcoord.numerics.newton import polish
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.solve.pointwise import square_velocity_term
 from validate.paper.printed import PRINTED
 
@@ -78,7 +78,7 @@ def test_newton_at_every_instant_ends_at_rounding(make_scene: Callable[..., Scen
     proof = motion.proof()
     # eps times the condition number times the size of the car, with a margin of the row sums.
     assert (proof.bound <= 64 * EPS * proof.condition * float(strut.unit)).all()
-    again = polish(strut.map, motion.start.y)
+    again = newton_refine(strut.map, motion.start.y)
     assert again.first_step <= motion.start.bound
 
 

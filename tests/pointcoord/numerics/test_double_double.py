@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import doubled_residual, exact_product, exact_square, exact_sum
+from pointcoord.numerics.double_double import doubled_residual, exact_square, two_product, two_sum
 
 U = Fraction(1, 2**53)
 numbers = st.floats(-1e100, 1e100, allow_nan=False, allow_subnormal=False).filter(
@@ -18,8 +18,8 @@ numbers = st.floats(-1e100, 1e100, allow_nan=False, allow_subnormal=False).filte
 @given(a=numbers, b=numbers)
 def test_high_and_low_are_exactly_the_sum_and_the_product(a: float, b: float) -> None:
     for pair, exact in (
-        (exact_sum(np.array(a), np.array(b)), Fraction(a) + Fraction(b)),
-        (exact_product(np.array(a), np.array(b)), Fraction(a) * Fraction(b)),
+        (two_sum(np.array(a), np.array(b)), Fraction(a) + Fraction(b)),
+        (two_product(np.array(a), np.array(b)), Fraction(a) * Fraction(b)),
     ):
         assert Fraction(float(pair[0])) + Fraction(float(pair[1])) == exact
 
