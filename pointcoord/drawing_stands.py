@@ -102,11 +102,8 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
         path = follow(mechanism.map, closed.y, target)
         value = float(drive.input_value(path.y[place], mechanism.drawing))
         stopped = float(path.done) < 1.0
-        limits = (
-            mechanism.topology.strongest(smallest_left_singular_vector(path.factors.matrix))
-            if stopped
-            else ()
-        )
+        forces = smallest_left_singular_vector(path.factors.matrix)
+        limits = mechanism.topology.strongest(forces) if stopped else ()
         found.append(End(value, limits))
     low, high = sorted(found, key=lambda end: end.value)
     return low, high

@@ -195,8 +195,8 @@ def test_csv_and_npz_give_back_the_same_bits(scene: str, tmp_path: Path) -> None
         for name, array in motion.numbers[quantity].items():
             for i, axis in enumerate("xyz"):
                 columns[f"{quantity}.{name}.{axis} [{unit}]"] = array[:, i]
-    for name in ("camber", "kingpin"):
-        columns[f"wheel.{name} [deg]"] = np.degrees(motion.wheel[name])
+    for name, angle in motion.wheel.items():
+        columns[f"wheel.{name} [deg]"] = np.degrees(angle)
     assert list(rows[0]) == list(arrays) == list(columns)
     assert "position.wheel_centre.x [mm]" in columns
     for name, column in columns.items():
