@@ -65,7 +65,7 @@ class AbsoluteCoordinates:
                 effects=_effects(asked),
             )
         except absolute.AbsoluteError as error:
-            if isinstance(error.partial, absolute.Solution):
+            if error.partial is not None:
                 error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
             raise FormulationError(self.name, error) from error
         numbers: dict[str, Arrays] = {}

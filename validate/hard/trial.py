@@ -19,7 +19,7 @@ from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
-from validate.hard.judged import judged_answer
+from validate.hard.classify import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
 Facts = Mapping[str, float | str]

@@ -17,7 +17,7 @@ from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.cars import paper_car
 from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial, decades
-from validate.hard.judged import judged_answer
+from validate.hard.classify import judged_answer
 from validate.hard.report import case_text, results_data, summary_text
 from validate.hard.run import as_expected, examine
 from validate.hard.trial import scene_case, try_scene

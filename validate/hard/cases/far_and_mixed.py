@@ -24,7 +24,7 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.cars import CARS
 from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, coarse, decades
 from validate.hard.cases.near_points import assembled, drawn_angle, nearer
-from validate.hard.judged import judged_answer
+from validate.hard.classify import judged_answer
 from validate.hard.trial import Tried, solved, try_scene
 
 Array = NDArray[np.float64]

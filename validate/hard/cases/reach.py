@@ -24,8 +24,8 @@ from validate.formulations.registry import formulation
 from validate.hard.cars import CARS, EVERY
 from validate.hard.case import RIGHT, Answer, Case, Trial, coarse, decades
 from validate.hard.cases.blocked_ways import blocked_way
-from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import LastValue, home, last_value
+from validate.hard.partial_motion import fault_of_kept
 from validate.hard.trial import scene_case
 from validate.reference import InfeasibleError, NoReferenceError
 

@@ -18,8 +18,8 @@ from validate.formulations.registry import formulation
 from validate.hard.cars import CARS, paper_car
 from validate.hard.cases import blocked_ways
 from validate.hard.cases.reach import CASES, Drive, _refusal
-from validate.hard.kept import fault_of_kept
 from validate.hard.last_values import home, last_value, reachable
+from validate.hard.partial_motion import fault_of_kept
 
 BY_NAME = {case.name: case for case in CASES}
 PAPER_RACK = Drive("paper", "rack", True)

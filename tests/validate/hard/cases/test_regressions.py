@@ -7,7 +7,7 @@ import pytest
 
 import pointcoord.solve.taylor
 from validate.hard.case import Case
-from validate.hard.cases.found import CASES
+from validate.hard.cases.regressions import CASES
 
 BY_NAME = {case.name: case for case in CASES}
 

@@ -26,7 +26,7 @@ from validate.formulations.protocol import Solution
 from validate.hard.cars import CARS, EVERY
 from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial, coarse
 from validate.hard.cases.links import GROUP
-from validate.hard.judged import judged_answer
+from validate.hard.classify import judged_answer
 from validate.hard.trial import solved, try_scene
 
 Array = NDArray[np.float64]
