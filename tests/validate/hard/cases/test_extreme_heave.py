@@ -9,6 +9,7 @@ from pointcoord import Scene
 from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.hard.case import Answer, Trial
+from validate.hard.cases import extreme_heave
 from validate.hard.trial import solved
 
 BY_NAME = {case.name: case for case in extreme_heave.CASES}
