@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
+import lotus_front
 import mpmath
 from closed_forms import (
     Points,
@@ -33,20 +34,8 @@ from mpmath import mpf
 Vector = tuple[mpf, mpf, mpf]
 Sides = tuple[int, int, int]
 
-# The front suspension of a printed report of Lotus Suspension Analysis (SHARK v4.03); a right wheel, mm.
-BASE: Points = {
-    "lower_arm_front": (-110, 257, 69),
-    "lower_arm_rear": (90, 257, 78),
-    "upper_arm_front": (-91, 388, 255),
-    "upper_arm_rear": (109, 388, 255),
-    "rack_centre": (-10, 0, 154),
-    "lower_ball_joint": (-10, 673, 95),
-    "upper_ball_joint": (9, 646, 315),
-    "tie_rod_outer": (-120, 650, 225),
-    "tie_rod_inner": (-10, 178, 154),
-    "wheel_centre": (0, 718, 210),
-    "wheel_axis_inner": (0, 658, 210),
-}
+# A right wheel, mm; the rack passes through the car's middle.
+BASE: Points = {**lotus_front.POINTS, "rack_centre": (-10, 0, 154)}
 KNUCKLE = ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer")
 CARRIED = ("wheel_centre", "wheel_axis_inner")
 
