@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
@@ -24,7 +25,6 @@ from validate.reference.candidates import CLEAR_SIGN
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
 
-UNIT_ROUNDOFF = float(np.finfo(float).eps) / 2
 # The reference is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest"
 # means.
 DUST = 1e-50

@@ -26,9 +26,10 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.rounding import EPS
+
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(float).eps)
 LOOSEST = 1000.0
 
 

@@ -16,12 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.numerics.rounding import EPS
 from validate.formulations.asked_numbers import per_second
 
 Array = NDArray[np.float64]
 Arrays = Mapping[str, Array]
-
-EPS = float(np.finfo(float).eps)
 
 
 def claims(quantity: str, numbers: Arrays, estimates: Arrays, chassis: Array | None) -> dict[str, Array]:

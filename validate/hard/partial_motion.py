@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
+from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.formulations.input_rates import rates
 from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(float).eps)
 ROUNDINGS = 8.0  # of the estimate ROUNDINGS * eps * condition * size of a model without proven bounds
 
 

@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.registry import VARIANTS, Variant
@@ -47,7 +48,6 @@ from validate.reference.exact import as_fraction
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
-EPS = float(np.finfo(float).eps)
 DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
 INSTANTS = 4  # per motion
 LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.cars.car import Car
 from validate.cars.scene_content import SQUARE, Law, scene_content
 from validate.hard.case import RIGHT, Case, Expected
@@ -20,7 +21,6 @@ AMPLITUDES = tuple(float(f"1e{k}") for k in range(10))
 ORDINARY = {"arm_angle": (SQUARE, 0.1), "rack": (10.0, 20.0), "heave": (10.0, 20.0)}
 POWERS = (4, 6)
 MOST = 20
-U = 2.0**-53  # unit roundoff
 
 
 def cancelling_sine(driven: str) -> Content:
@@ -64,7 +64,7 @@ def right_from(power: int) -> float:
     16 (2 start)^power: that must stay below a rounding of 16 mm.
     """
     count = power + 1
-    latest = 0.5 * (1.0 / (4.0 * count**2 * U)) ** (1.0 / power)
+    latest = 0.5 * (1.0 / (4.0 * count**2 * UNIT_ROUNDOFF)) ** (1.0 / power)
     return 2.0 ** -math.floor(math.log2(latest))
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
 from validate.cars.scene_content import SQUARE, scene_content
 from validate.formulations.input_rates import rates
@@ -31,7 +32,6 @@ from validate.hard.trial import solved, try_scene
 
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(float).eps)
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
 LAWS: dict[str, dict[str, Any]] = {
     "constant": {"constant": 10.0},

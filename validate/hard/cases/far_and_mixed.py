@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
 from validate.cars.car import moved, scaled
 from validate.cars.scene_content import scene_content
@@ -37,7 +38,6 @@ AWAY = (1.0, -1.0, 3.0)
 PLACED = 8.0
 # A car at home may happen to be off by less than another by this factor: errors of a few roundings each.
 LUCKY = 16.0
-EPS = float(np.finfo(float).eps)
 RATES = tuple(quantity for quantity in QUANTITIES if quantity != "position")
 # A thousand times the rest of the car is as mixed as parts of one machine are.
 MIXED = Expected(("right", "refused"), right_from=1e-3)
