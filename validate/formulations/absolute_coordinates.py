@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,7 @@ class AbsoluteCoordinates:
         unit = slow_unit(inputs, chassis)
         origin = near_origin(part)
         near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
+        reading = _Reading(scene.instants, asked, unit, origin, chassis)
         try:
             model = absolute.suspension_of(part.type)(
                 near, up=part.up, right=part.right, side=part.side, closure=part.closure
@@ -65,23 +66,59 @@ class AbsoluteCoordinates:
                 effects=_effects(asked),
             )
         except absolute.AbsoluteError as error:
-            if error.partial is not None:
-                error.partial = replace(error.partial, position=_moved(error.partial.position, origin))
+            raise FormulationError(self.name, error, reading.partial(self.name, error)) from error
+        try:
+            return reading.solution(self.name, solved)
+        except AccuracyError as error:
             raise FormulationError(self.name, error) from error
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """How the model's answer is read as a solution.
+
+    Attributes:
+        instants: at which it was asked, (N,), s.
+        asked: names by quantity.
+        unit: of time in which the model was told rates, (N,), s.
+        origin: from which it measures, (3,), mm.
+        chassis: displacement, velocity and acceleration, (N, 3, 3), mm and s; None at rest.
+    """
+
+    instants: Array
+    asked: Mapping[str, Sequence[str]]
+    unit: Array
+    origin: Array
+    chassis: Array | None
+
+    def solution(self, who: str, solved: absolute.Solution) -> Solution:
+        """All that was asked for, at the instants that were solved.
+
+        Raises:
+            AccuracyError: the model does not know the error of a number.
+        """
+        count = len(solved.residual)
+        unit, chassis = self.unit[:count], None if self.chassis is None else self.chassis[:count]
         numbers: dict[str, Arrays] = {}
         accuracy: dict[str, Arrays] = {}
-        for quantity, names in asked.items():
+        for quantity, names in self.asked.items():
             found, estimates = (
-                _per_second(unit, quantity, arrays) for arrays in _told(solved, quantity, origin)
+                _per_second(unit, quantity, arrays) for arrays in _told(solved, quantity, self.origin)
             )
             claimed = claims(quantity, found, estimates, chassis)
             numbers[quantity] = {name: found[name] for name in names if name in found}
             accuracy[quantity] = {name: claimed[name] for name in names if name in claimed}
-        condition = np.ones(len(scene.instants)) if solved.condition is None else solved.condition
+        condition = np.ones(count) if solved.condition is None else solved.condition
+        return Solution(who, self.instants[:count], numbers, Accuracy(condition, accuracy))
+
+    def partial(self, who: str, error: absolute.AbsoluteError) -> Solution | None:
+        """What was solved before an error, as far as the model knows its errors."""
+        if error.partial is None:
+            return None
         try:
-            return Solution(self.name, scene.instants, numbers, Accuracy(condition, accuracy))
-        except AccuracyError as error:
-            raise FormulationError(self.name, error) from error
+            return self.solution(who, error.partial)
+        except AccuracyError:
+            return None
 
 
 def _chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:

@@ -37,7 +37,19 @@ class PointCoordinates:
         except SceneError:
             raise
         except PointcoordError as error:
-            raise FormulationError(self.name, error) from error
+            raise FormulationError(self.name, error, self._partial(scene, error)) from error
+        return self._solution(scene, motion)
+
+    def _partial(self, scene: Scene, error: PointcoordError) -> Solution | None:
+        """What was solved before an error, as far as its errors are bounded."""
+        if error.partial is None:
+            return None
+        try:
+            return self._solution(scene, error.partial)
+        except FormulationError:
+            return None
+
+    def _solution(self, scene: Scene, motion: Motion) -> Solution:
         proof = motion.proof(rates=True)
         # Numbers that nothing is known of would agree with anything: they are no answer here.
         _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
@@ -62,7 +74,7 @@ class PointCoordinates:
         own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong; but
         where an input's terms cancel until few of its digits are left, only the proof knows what that does.
         """
-        uncertain = _uncertain_laws(scene)
+        uncertain = _uncertain_laws(scene, motion.times)
         claims: dict[str, Array] = {}
         expected = proof.expected[quantity]
         for name, proven in proof.proven[quantity].items():
@@ -75,12 +87,12 @@ class PointCoordinates:
         return claims
 
 
-def _uncertain_laws(scene: Scene) -> NDArray[np.bool_]:
-    """At which instants fewer than nine digits are known of an input, in parts of its largest value, (N,)."""
-    uncertain = np.zeros(len(scene.instants), dtype=bool)
+def _uncertain_laws(scene: Scene, times: Array) -> NDArray[np.bool_]:
+    """At which times fewer than nine digits are known of an input, in parts of its largest value, (N,)."""
+    uncertain = np.zeros(len(times), dtype=bool)
     for function in scene.functions.values():
         largest = float(np.abs(function.series(scene.instants, 0)).max())
-        uncertain |= function.rounding(scene.instants) > UNKNOWN * largest
+        uncertain |= function.rounding(times) > UNKNOWN * largest
     return uncertain
 
 

@@ -145,9 +145,14 @@ class Formulation(Protocol):
 
 
 class FormulationError(Exception):
-    """A formulation refused a scene, with its own reason as the cause."""
+    """A formulation refused a scene, with its own reason as the cause.
 
-    def __init__(self, formulation: str, reason: Exception) -> None:
+    Attributes:
+        partial: what it solved before, at the first of the scene's instants; None if nothing.
+    """
+
+    def __init__(self, formulation: str, reason: Exception, partial: Solution | None = None) -> None:
         self.formulation = formulation
         self.reason = reason
+        self.partial = partial
         super().__init__(f"{formulation}: {reason}")

@@ -107,7 +107,7 @@ def examine(drive: Drive, overshoot: float) -> Trial:
         try:
             formulation(name).solve(scene)
         except FormulationError as error:
-            answers.append(_refusal(name, error.reason, scene, drive))
+            answers.append(_refusal(error, scene, drive))
             if name == "absolute":
                 said = (
                     "names" if _shown(error.reason, drive.driven, _reached(error.reason)) else "does not name"
@@ -137,8 +137,9 @@ def _answered(name: str, scene: Scene) -> Answer:
     return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
 
 
-def _refusal(name: str, reason: Exception, scene: Scene, drive: Drive) -> Answer:
+def _refusal(refusal: FormulationError, scene: Scene, drive: Drive) -> Answer:
     """A refusal held to the true end."""
+    name, reason = refusal.formulation, refusal.reason
     reached = _reached(reason)
     if drive.driven not in reached:
         return Answer(name, "wrong", f"does not say how far it came: {type(reason).__name__}: {reason}")
@@ -149,7 +150,7 @@ def _refusal(name: str, reason: Exception, scene: Scene, drive: Drive) -> Answer
         faults.insert(
             0, f"stops at {drive.driven} = {reached[drive.driven]!r}, not {float(drive.end.value)!r}"
         )
-    if drive.moving and (fault := fault_of_kept(reason, scene, float(drive.end.value), drive.driven)):
+    if drive.moving and (fault := fault_of_kept(refusal, scene, float(drive.end.value), drive.driven)):
         faults.append(fault)
     return Answer(
         name,

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, Scene, simulate
-from validate.formulations.protocol import FormulationError
+from pointcoord import AssemblyError, Scene
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import CARS, paper_car
 from validate.hard.cases import blocked_ways
@@ -72,16 +71,21 @@ def test_a_mirrored_and_turned_car_has_the_same_range() -> None:
         assert plain.reach == pytest.approx(turned.reach, rel=0.0, abs=1e-7)
 
 
-def broken(**changes: Any) -> Callable[[AssemblyError], Any]:
-    def change(error: AssemblyError) -> Any:
-        kept = {
-            n: getattr(error, n) for n in ("reached", "wanted", "limits", "reduce", "partial", "condition")
-        }
-        told = AssemblyError("no way on", **{n: v for n, v in kept.items() if n != "partial"})
-        told.partial = kept["partial"]
+def refused(scene: Scene) -> FormulationError:
+    """What Newton's method says of a scene that it refuses."""
+    with pytest.raises(FormulationError) as caught:
+        formulation("pointcoord-newton").solve(scene)
+    return caught.value
+
+
+def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
+    def change(refusal: FormulationError) -> FormulationError:
+        error: Any = refusal.reason
+        said = {n: getattr(error, n) for n in ("reached", "wanted", "limits", "reduce", "condition")}
+        told = AssemblyError("no way on", **said)
         for attribute, edit in changes.items():
-            setattr(told, attribute, edit(kept[attribute]))
-        return told
+            setattr(told, attribute, edit(said[attribute]))
+        return FormulationError(refusal.formulation, told, refusal.partial)
 
     return change
 
@@ -94,38 +98,42 @@ def broken(**changes: Any) -> Callable[[AssemblyError], Any]:
         (broken(wanted=lambda w: w | {"rack": 100.0}), "lies before the end"),
         (broken(reduce=lambda _: "arm_angle"), "'arm_angle' is to be reduced"),
         (broken(limits=lambda limits: limits[3:]), "not what lies in line"),
-        (broken(partial=lambda _: None), "is not kept"),
-        (lambda _: ValueError("no way on"), "does not say how far"),
+        (lambda refusal: FormulationError(refusal.formulation, refusal.reason), "is not kept"),
+        (
+            lambda refusal: FormulationError(refusal.formulation, ValueError("no way on")),
+            "does not say how far",
+        ),
     ],
 )
-def test_a_refusal_that_says_something_wrong_is_wrong(change: Callable[[Any], Any], says: str) -> None:
+def test_a_refusal_that_says_something_wrong_is_wrong(
+    change: Callable[[FormulationError], FormulationError], says: str
+) -> None:
     scene = PAPER_RACK.scene(1e-3)
-    with pytest.raises(AssemblyError) as caught:
-        simulate(scene, "newton")
-    assert _refusal("pointcoord-newton", caught.value, scene, PAPER_RACK).outcome == "right"
-    answer = _refusal("pointcoord-newton", change(caught.value), scene, PAPER_RACK)
+    refusal = refused(scene)
+    assert _refusal(refusal, scene, PAPER_RACK).outcome == "right"
+    answer = _refusal(change(refusal), scene, PAPER_RACK)
     assert answer.outcome == "wrong"
     assert says in answer.reason
 
 
-def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
+@pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton", "absolute"])
+def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
     scene = PAPER_RACK.scene(1e-3)
-    with pytest.raises(AssemblyError) as caught:
-        simulate(scene, "newton")
     end = float(PAPER_RACK.end.value)
-    motion: Any = caught.value.partial
+    with pytest.raises(FormulationError) as caught:
+        formulation(solver).solve(scene)
+    kept = caught.value.partial
+    assert kept is not None
     assert fault_of_kept(caught.value, scene, end, "rack") == ""
-    place = {name: array.copy() for name, array in motion.position.items()}
-    place["tie_rod_outer"][1, 2] += 1e-6
 
-    def with_places(places: dict[str, Any]) -> Any:
-        position = motion.position.with_arrays(places)
-        return SimpleNamespace(partial=replace(motion, numbers={**motion.numbers, "position": position}))
+    def with_kept(solution: Solution) -> FormulationError:
+        return FormulationError(solver, caught.value.reason, solution)
 
-    moved = with_places(place)
+    places = {name: array.copy() for name, array in kept.position.items()}
+    places["tie_rod_outer"][1, 2] += 1e-6
+    moved = with_kept(kept.with_numbers({"position": places}))
     assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
-    short = {name: array[:-1] for name, array in place.items()}
-    cut = with_places(short)
+    cut = with_kept(replace(kept, times=kept.times[:-1]))
     assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
 
 
