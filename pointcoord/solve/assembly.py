@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from pointcoord.bounds.proof import pose_bound
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.branch import orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.numerics.newton import newton_refine
@@ -121,6 +122,7 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         factors = factorise(system.jacobian(y))
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
+    side = orientation(factors)
     active = np.flatnonzero(~factors.singular)
     for _ in range(STEPS):
         if not active.size:
@@ -142,11 +144,15 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
             break
         reached = newton_refine(system, guess, offset[active] * left[:, None])
         work = work + reached.work
-        # In exact arithmetic every correction converges; one that does not has run out of digits.
-        good = reached.converged
+        # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
+        # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding. The
+        # factors at hand are of the place before the last step, which may lie on the other side.
+        there = factorise(system.jacobian(reached.y))
+        work += Work(factorisations=len(active))
+        good = reached.converged & (orientation(there) == side[active])
         active, left = active[good], left[good]
         y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
-        factors = factors.replaced(active, reached.factors.taken(np.flatnonzero(good)))
+        factors = factors.replaced(active, there.taken(np.flatnonzero(good)))
         active = active[left > 0.0]
     return Path(
         y=y.reshape(*batch, -1),

@@ -113,7 +113,7 @@ def build_chain(
     """
     settings = replace(settings, tolerance=min(max(settings.tolerance, FINEST), COARSEST))
     course = _Course(mechanism, functions, start, stop, settings)
-    # Newton's factors are of the place before its last step, which may be farther off than the bound.
+    # Of the pose itself, whatever place its own factors are of.
     joint = _Joint(start, pose.y, factorise(mechanism.map.jacobian(pose.y)), _power_of_two(stop - start))
     side, members = orientation(joint.factors), joint.members
     work = Work(factorisations=members)

@@ -1,0 +1,92 @@
+"""A drawing that lies on a fold, to within rounding, is closed on its own side or not at all."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sample_cars import SAMPLES, SampleCar
+from scipy.spatial.transform import Rotation
+
+import pointcoord.solve.assembly
+from pointcoord import AssemblyError, MechanismError
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.solve.assembly import close_drawing
+
+Array = NDArray[np.float64]
+# Only a drawing that closes says by itself on which side it stands.
+CLOSING = [car for car in SAMPLES if car.closure == "drawn"]
+
+
+def steering_side(car: SampleCar, points: Mapping[str, Array]) -> int:
+    """The exact sign of (k x inner end of the tie rod) . outer end, from the lower end of the kingpin k."""
+    lower, upper = car.topology.steering_axis
+    exact = {name: [Fraction(float(x)) for x in place] for name, place in points.items()}
+    k, inner, outer = (
+        [x - y for x, y in zip(exact[name], exact[lower], strict=True)]
+        for name in (upper, "tie_rod_inner", "tie_rod_outer")
+    )
+    crossed = (k[i - 2] * inner[i - 1] - k[i - 1] * inner[i - 2] for i in range(3))
+    product = sum(c * x for c, x in zip(crossed, outer, strict=True))
+    return (product > 0) - (product < 0)
+
+
+def drawn_with_a_dead_tie_rod(car: SampleCar, sine: float, turn: Rotation) -> dict[str, Array]:
+    """The car turned, its tie rod drawn out of the plane of kingpin and steering arm by an angle."""
+    points = {name: np.array(place, float) for name, place in car.points.items()}
+    lower, upper = (points[name] for name in car.topology.steering_axis)
+    outer = points["tie_rod_outer"]
+    normal = np.cross(upper - lower, outer - lower)
+    normal /= np.linalg.norm(normal)
+    rod = points["tie_rod_inner"] - outer
+    flat = rod - (rod @ normal) * normal
+    points["tie_rod_inner"] = outer + flat + sine * np.linalg.norm(flat) * normal
+    points.pop("rack_centre", None)
+    return {name: turn.apply(place) for name, place in points.items()}
+
+
+def plain(vectors: Mapping[str, Array]) -> dict[str, tuple[float, ...]]:
+    return {name: tuple(vector.tolist()) for name, vector in vectors.items()}
+
+
+def sides(car: SampleCar, sine: float, count: int) -> list[bool]:
+    """Of some turned cars, whether the closed drawing is on the side of the drawing; none that is refused."""
+    found = []
+    for turn in Rotation.random(count, rng=np.random.default_rng(1)):
+        points = drawn_with_a_dead_tie_rod(car, sine, turn)
+        axes = {"up": turn.apply([0.0, 0.0, 1.0]), "right": turn.apply([0.0, 1.0, 0.0])}
+        try:
+            mechanism = build_mechanism(car.whole, plain(points), plain(axes))
+            closed = close_drawing(mechanism).y
+        except (AssemblyError, MechanismError):
+            continue
+        places = {
+            n: closed[list(mechanism.layout.vector(n))]
+            for n in (*mechanism.topology.chassis, *mechanism.topology.moving)
+        }
+        found.append(steering_side(car, places) == steering_side(car, points))
+    return found
+
+
+@pytest.mark.parametrize("car", CLOSING, ids=lambda car: car.name)
+@pytest.mark.parametrize("power", [-12, -10, -9, -8, -7, -6])
+def test_a_drawing_with_a_tie_rod_all_but_at_its_dead_point_keeps_its_side(
+    car: SampleCar, power: int
+) -> None:
+    for sine in (5.0 * 10.0**power, -5.0 * 10.0**power):
+        assert all(sides(car, sine, 20))
+
+
+@pytest.mark.parametrize("car", CLOSING, ids=lambda car: car.name)
+def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> None:
+    assert len(sides(car, 1e-5, 20)) == 20
+
+
+def test_without_the_sign_of_the_determinant_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        pointcoord.solve.assembly, "orientation", lambda factors: np.ones(factors.matrix.shape[:-2])
+    )
+    assert not all(
+        side for car in CLOSING for power in (-9, -8) for side in sides(car, 5.0 * 10.0**power, 40)
+    )
