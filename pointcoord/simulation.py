@@ -155,15 +155,10 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
 def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
     """What the user should know: of the drawing, of how it was solved, and of single numbers."""
     closed = (task.closing.words,) if task.closing.noticeable else ()
-    mechanism, axes, plan = solved.readout.mechanism, solved.readout.axes, solved.readout.plan
-    cautions = (
-        effect.caution(mechanism.topology, mechanism.drawing.vectors, axes) for effect in plan.computed
-    )
     return (
         *closed,
         *task.scene.mechanism.doubts,
         *solved.states.notes,
-        *(caution for caution in cautions if caution),
         *_missing_numbers(solved, samples),
     )
 

@@ -54,6 +54,13 @@ class Proof:
     proven: Numbers = field(default_factory=dict)
     expected: Numbers = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """In a line: how many instants, and the largest bounds."""
+        largest = (float(np.max(each, initial=0.0)) for each in (self.bound, self.carried_bound))
+        solved, carried = (f"{bound:.2g} mm" for bound in largest)
+        count = len(self.times)
+        return f"<Proof of {count} instants: solved points within {solved}, carried ones within {carried}>"
+
 
 def prove(
     mechanism: Mechanism,

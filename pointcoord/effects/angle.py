@@ -92,6 +92,12 @@ class WheelAngles(Effect):
         """The axes whose angles they are."""
         return tuple(dict.fromkeys(angle.line for angle in self.angles))
 
+    @property
+    def lengthwise(self) -> tuple[str, ...]:
+        """The angles that are measured from the front or the rear."""
+        along = {"forward", "rearward"}
+        return tuple(angle.words for angle in self.angles if along & {angle.sine, angle.cosine})
+
     def needs(self, topology: Topology) -> Collection[str]:
         """The points on these axes."""
         return {point for angle in self.angles for point in angle.ends(topology)}
@@ -125,18 +131,6 @@ class WheelAngles(Effect):
                 )
         return ""
 
-    def caution(self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes) -> str:
-        """An angle that counts forwards needs right-handed axes, and nothing but the drawing tells."""
-        lengthwise = [a.words for a in self.angles if {a.sine, a.cosine} & {"forward", "rearward"}]
-        front, rear = topology.front_and_rear
-        if not lengthwise or axes.component(drawn[front] - drawn[rear], "forward") >= 0.0:
-            return ""
-        forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
-        return (
-            f"{' and '.join(lengthwise)} may have the wrong sign: by up and right the car's front lies "
-            f"towards {forward.tolist()}, as in right-handed axes, but {front} is drawn behind {rear}"
-        )
-
     def doubts(
         self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
     ) -> tuple[str, ...]:
@@ -149,7 +143,7 @@ class WheelAngles(Effect):
             if angle.line not in told and abs(degrees) > limit:
                 found.append(
                     f"the drawn {angle.words} is {degrees:.4g} deg, that of the line from {start} to {end}: "
-                    "is one of them misdrawn?"
+                    f"{'are they swapped' if abs(degrees) > 90.0 else 'is one of them misdrawn'}?"
                 )
         return tuple(found)
 

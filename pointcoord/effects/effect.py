@@ -89,6 +89,11 @@ class Effect(ABC):
         return ()
 
     @property
+    def lengthwise(self) -> tuple[str, ...]:
+        """Those of its numbers, in words, whose sign depends on where the car's front is."""
+        return ()
+
+    @property
     def no_number(self) -> str:
         """Why a number that it gives may be none, in words; empty if each always is one."""
         return ""
@@ -112,14 +117,6 @@ class Effect(ABC):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
         """Why a drawing does not have it and what to do, in words; empty if it does."""
-        return ""
-
-    def caution(self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes) -> str:
-        """Why its numbers may not be what the user means by them, in words; empty if nothing says so.
-
-        Args:
-            drawn: the points, each (3,), mm.
-        """
         return ""
 
     def doubts(

@@ -125,10 +125,11 @@ def _check_determined(mechanism: Mechanism) -> None:
         rows = [topology.labels[i] for i in _dominant(redundant)]
         names += rows
         problems.append(f"redundant or contradictory at the drawing: {', '.join(rows)}")
+    advice = "; draw the points named here apart, and off one line or plane" if equations == unknowns else ""
     state = "over" if equations > unknowns else "under" if equations < unknowns else "not"
     raise MechanismError(
         f"{topology.name} is {state}{'-' if state != 'not' else ' '}determined: {unknowns} unknowns, "
-        f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}",
+        f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}{advice}",
         names,
     )
 

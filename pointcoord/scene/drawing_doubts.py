@@ -5,13 +5,14 @@ No rule here refuses anything: a car may be odd. Each says what is odd, with its
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.topology import Topology
 
 Array = NDArray[np.float64]
@@ -30,6 +31,7 @@ def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxe
     size = float(np.ptp(np.array(list(points.values())), axis=0).max())
     if not SMALLEST <= size <= LARGEST:
         doubts.append(f"the car is {size:.3g} mm long: points are in mm; are these in another unit?")
+    doubts += [*_front_behind_rear(topology, points, axes), *_racks_outboard(topology, points, axes)]
     inner, centre = topology.wheel_axis
     if float(axes.component(points[centre] - points[inner], "outboard")) <= 0.0:
         doubts.append(f"{inner} lies outboard of {centre}, so the spin axis points inboard")
@@ -37,3 +39,30 @@ def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxe
     for effect in EFFECTS.values():
         doubts += effect.doubts(topology, points, axes, told)
     return tuple(doubts)
+
+
+def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[str]:
+    """A front that lies behind a rear: axes that are not right-handed, or names mistaken."""
+    front, rear = topology.front_and_rear
+    ahead = float(axes.component(points[front] - points[rear], "forward"))
+    if ahead < 0.0:
+        forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
+        lengthwise = [words for effect in EFFECTS.values() for words in effect.lengthwise]
+        yield (
+            f"{front} is drawn {-ahead:.4g} mm behind {rear}: by up and right the car's front lies towards "
+            f"{forward.tolist()}, as in right-handed axes; are these two swapped, is right turned round, or "
+            f"are your axes left-handed? {' and '.join(lengthwise)} may have the wrong sign"
+        )
+
+
+def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[str]:
+    """What is driven by a travel and lies farther out than what it pushes: two ends mistaken."""
+    links = [ends for constraint in topology.constraints for ends in constraint.squared_lengths]
+    for drive in topology.drives:
+        if isinstance(drive, Travel):
+            for ends in links:
+                if drive.point in ends:
+                    (other,) = set(ends) - {drive.point}
+                    out = float(axes.component(points[drive.point] - points[other], "outboard"))
+                    if out > 0.0:
+                        yield f"{drive.point} lies {out:.4g} mm outboard of {other}: are they swapped?"

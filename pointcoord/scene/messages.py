@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 import numpy as np
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
@@ -36,6 +39,12 @@ def shown(value: object) -> str:
         # Whole numbers of thousands of digits, and lists in lists hundreds deep, have no text in Python.
         return f"something too long to show ({type(value).__name__})"
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """A name that was perhaps misspelt, in words that follow it; empty if none is near."""
+    near = get_close_matches(name.lower(), tuple(known), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""
 
 
 def shown_key(key: int | str) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from difflib import get_close_matches
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
@@ -23,7 +22,7 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.even_instants import even_instants
-from pointcoord.scene.messages import plain_number, shown
+from pointcoord.scene.messages import meant, plain_number, shown
 from pointcoord.scene.scene_part import Part
 from pointcoord.scene.scene_text import parsed, read_file, read_stream
 from pointcoord.suspensions import SUSPENSIONS
@@ -59,7 +58,10 @@ class MechanismPart(Part):
     @classmethod
     def _known_type(cls, type: str) -> str:
         if type not in SUSPENSIONS:
-            raise ValueError(f"no suspension is called {shown(type)}; allowed: {', '.join(SUSPENSIONS)}")
+            hint = meant(type, SUSPENSIONS)
+            raise ValueError(
+                f"no suspension is called {shown(type)}{hint}; allowed: {', '.join(SUSPENSIONS)}"
+            )
         return type
 
     @field_validator("closure")
@@ -83,10 +85,14 @@ class MechanismPart(Part):
         extra = [name for name in points if name not in topology.points]
         missing = [name for name in topology.required_points if name not in points]
         if extra:
-            near = get_close_matches(extra[0], topology.points, n=1)
-            meant = f" (did you mean {near[0]!r}?)" if near else ""
+            type = others.data["type"]
+            elsewhere = [one for one, kind in SUSPENSIONS.items() if extra[0] in kind.points]
+            hint = (
+                f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], topology.points)
+            )
             raise ValueError(
-                f"no point is called {shown(extra[0])}{meant}; allowed: {', '.join(topology.points)}"
+                f"no point of a {type} is called {shown(extra[0])}{hint}; "
+                f"allowed: {', '.join(topology.points)}"
             )
         if missing:
             needed = ", ".join(topology.required_points)
@@ -261,7 +267,9 @@ class Scene(Part):
     def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
         for name in effects:
             if name not in EFFECTS:
-                raise ValueError(f"no effect is called {shown(name)}; allowed: {', '.join(EFFECTS)}")
+                givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
+                hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
+                raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
         return effects
 
     @model_validator(mode="after")
@@ -278,7 +286,10 @@ class Scene(Part):
         topology = self.mechanism.topology
         for name in self.inputs:
             if name not in topology.inputs:
-                raise ValueError(f"no input is called {shown(name)}; allowed: {', '.join(topology.inputs)}")
+                hint = meant(name, topology.inputs)
+                raise ValueError(
+                    f"no input is called {shown(name)}{hint}; allowed: {', '.join(topology.inputs)}"
+                )
         for name in topology.required_inputs:
             if name not in self.inputs:
                 raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")

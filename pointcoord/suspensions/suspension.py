@@ -20,3 +20,8 @@ class Suspension:
 
     type: str
     closures: Mapping[str, Topology]
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Every point that a car of this type may have, whatever its closure."""
+        return tuple(dict.fromkeys(name for topology in self.closures.values() for name in topology.points))

@@ -144,7 +144,7 @@ def _told(value: float, unit: str) -> str:
 
 
 def _end(end: End, unit: str) -> str:
-    held = f", where it is held by {end.limits[0]}" if end.limits else ""
+    held = f", where it is held by {', '.join(end.limits[:3])}" if end.limits else ""
     return _told(end.value, unit) + held
 
 

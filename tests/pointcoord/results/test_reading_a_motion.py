@@ -129,3 +129,11 @@ def test_chassis_points_move_with_the_heave_and_nothing_else(
             expected = place + up[:, None] * [0.0, 0.0, 1.0]
             # A sine, a product and a sum, of numbers up to 600.
             assert np.abs(getattr(motion, quantity)[name] - expected).max() <= 8 * EPS * 600
+
+
+@pytest.mark.parametrize("rates", [False, True])
+def test_a_proof_prints_in_one_line(motion: Motion, rates: bool) -> None:
+    proof = motion.proof(rates=rates)
+    assert f"solved points within {proof.bound.max():.2g} mm" in repr(proof)
+    assert f"of {len(motion.times)} instants" in repr(proof)
+    assert len(repr(proof)) < 120

@@ -1,6 +1,8 @@
 """What looks wrong with a drawing is said, with its value, and nothing is said of a sound one."""
 
+import re
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,6 +69,76 @@ def test_a_misdrawn_axis_is_doubted_with_its_angle(
     assert any(words in doubt for doubt in doubts)
 
 
+def swapped(car: Car, one: str, other: str) -> Car:
+    return {**car, one: car[other], other: car[one]}
+
+
+WISHBONE = dict(Scene.load("double-wishbone").mechanism.points)
+
+
+@pytest.mark.parametrize(
+    ("car", "type", "side", "pair", "words"),
+    [
+        (
+            CAR,
+            "macpherson",
+            "left",
+            ("lower_arm_front", "lower_arm_rear"),
+            "drawn 300 mm behind lower_arm_rear",
+        ),
+        (
+            CAR,
+            "macpherson",
+            "left",
+            ("tie_rod_inner", "tie_rod_outer"),
+            "tie_rod_inner lies 360 mm outboard of",
+        ),
+        (
+            WISHBONE,
+            "double_wishbone",
+            "right",
+            ("lower_arm_front", "lower_arm_rear"),
+            "drawn 200 mm behind lower_arm_rear",
+        ),
+        (
+            WISHBONE,
+            "double_wishbone",
+            "right",
+            ("tie_rod_inner", "tie_rod_outer"),
+            "tie_rod_inner lies 472 mm outboard of",
+        ),
+        (
+            WISHBONE,
+            "double_wishbone",
+            "right",
+            ("lower_ball_joint", "upper_ball_joint"),
+            "from lower_ball_joint to upper_ball_joint: are they swapped?",
+        ),
+    ],
+)
+def test_two_points_that_are_swapped_are_doubted(
+    car: Car, type: str, side: str, pair: tuple[str, str], words: str
+) -> None:
+    content = Scene.load("double-wishbone").model_dump(mode="json", exclude_none=True)
+    content["effects"] = []
+    content["mechanism"] |= {"type": type, "side": side, "points": swapped(car, *pair)}
+    scene = Scene.from_mapping(content)
+    assert any(words in doubt for doubt in scene.mechanism.doubts)
+    content["mechanism"]["points"] = car
+    assert Scene.from_mapping(content).mechanism.doubts == ()
+
+
+def test_a_car_drawn_forwards_is_doubted_whatever_side_it_is_said_to_be() -> None:
+    """x forward and y to the left, and `side` changed instead of `right`: front and rear are mistaken."""
+    content = Scene.load("double-wishbone").model_dump(mode="json", exclude_none=True)
+    turned = {name: (-x, -y, z) for name, (x, y, z) in WISHBONE.items()}
+    content["mechanism"] |= {"points": turned, "side": "left"}
+    (doubt,) = Scene.from_mapping(content).mechanism.doubts
+    assert "toe and caster may have the wrong sign" in doubt
+    content["mechanism"] |= {"right": [0.0, -1.0, 0.0], "side": "right"}
+    assert Scene.from_mapping(content).mechanism.doubts == ()
+
+
 def test_mirrored_axes_are_told_how_to_say_so(make_scene: Callable[..., Scene]) -> None:
     mirrored = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
     with pytest.raises(SceneError, match=r"right = \[0.0, -1.0, 0.0\]"):
@@ -108,3 +180,43 @@ def test_a_misspelt_point_and_a_short_one_are_told(make_scene: Callable[..., Sce
         make_scene(points=misspelt, closure="drawn")
     with pytest.raises(SceneError, match="a number is missing: there are 2 where three belong"):
         make_scene(points={**CAR, "strut_top": (1.0, 2.0)}, closure="drawn")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"effects": ["camber"]}, "no effect is called 'camber' ('wheel_angles' gives it)"),
+        ({"effects": ["Toe"]}, "no effect is called 'Toe' (did you mean 'toe'?)"),
+        ({"mechanism": {"type": "double wishbone"}}, "(did you mean 'double_wishbone'?)"),
+        (
+            {"mechanism": {"type": "macpherson"}},
+            "no point of a macpherson is called 'upper_arm_front', which is a point of a double_wishbone",
+        ),
+        ({"inputs": {"rock": {"constant": 0.0}}}, "no input is called 'rock' (did you mean 'rack'?)"),
+    ],
+)
+def test_a_name_that_is_meant_otherwise_is_told_what_was_meant(change: dict[str, Any], words: str) -> None:
+    content = Scene.load("double-wishbone").model_dump(mode="json", exclude_none=True)
+    for key, value in change.items():
+        content[key] = content[key] | value if isinstance(value, dict) else value
+    with pytest.raises(SceneError, match=re.escape(words)):
+        Scene.from_mapping(content)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        {"upper_arm_rear": WISHBONE["upper_arm_front"]},
+        {"upper_arm_rear": tuple(2.0 * np.array(WISHBONE["upper_ball_joint"]) - WISHBONE["upper_arm_front"])},
+    ],
+    ids=["at one place", "in line with the ball joint"],
+)
+def test_pivots_that_do_not_hold_their_arm_are_named_with_what_to_do(points: Car) -> None:
+    content = Scene.load("double-wishbone").model_dump(mode="json", exclude_none=True)
+    content["mechanism"]["points"] = {**WISHBONE, **{name: list(at) for name, at in points.items()}}
+    with pytest.raises(SceneError) as caught:
+        simulate(Scene.from_mapping(content))
+    assert "link upper_ball_joint - upper_arm_front, link upper_ball_joint - upper_arm_rear" in str(
+        caught.value
+    )
+    assert "draw the points named here apart, and off one line or plane" in str(caught.value)

@@ -241,7 +241,15 @@ def test_plan_says_which_points_are_evaluated_further_than_others(
                 "from strut_lower (the default of wheel_axis_inner) to wheel_centre",
             ],
         ),
-        ("double-wishbone", ["kingpin is 6.997 deg", "from wheel_axis_inner to wheel_centre", "closes"]),
+        (
+            "double-wishbone",
+            [
+                "to   127.45 mm, where it is held by link tie_rod_inner - tie_rod_outer, link ",
+                "kingpin is 6.997 deg",
+                "from wheel_axis_inner to wheel_centre",
+                "closes",
+            ],
+        ),
     ],
 )
 def test_plan_says_where_the_drawing_stands(
