@@ -43,6 +43,11 @@ class Drive(Protocol):
         """Unit of the input, rad or mm."""
         ...
 
+    @property
+    def pushes(self) -> str:
+        """The point that it slides, inboard of what is linked to it; empty if it slides none."""
+        ...
+
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The coordinate's series from the input's."""
         ...
@@ -93,6 +98,11 @@ class ArmAngle:
     def unit(self) -> str:
         """Radians."""
         return "rad"
+
+    @property
+    def pushes(self) -> str:
+        """None: an arm turns."""
+        return ""
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """d cos of the angle's series.
@@ -165,6 +175,11 @@ class Travel:
     def unit(self) -> str:
         """Millimetres."""
         return "mm"
+
+    @property
+    def pushes(self) -> str:
+        """The point that slides."""
+        return self.point
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The displacement in the mechanism's units."""

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.topology import Topology
 
 Array = NDArray[np.float64]
@@ -57,12 +56,9 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
 
 def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[str]:
     """What is driven by a travel and lies farther out than what it pushes: two ends mistaken."""
-    links = [ends for constraint in topology.constraints for ends in constraint.squared_lengths]
-    for drive in topology.drives:
-        if isinstance(drive, Travel):
-            for ends in links:
-                if drive.point in ends:
-                    (other,) = set(ends) - {drive.point}
-                    out = float(axes.component(points[drive.point] - points[other], "outboard"))
-                    if out > 0.0:
-                        yield f"{drive.point} lies {out:.4g} mm outboard of {other}: are they swapped?"
+    pushed = {drive.pushes for drive in topology.drives}
+    links = (ends for constraint in topology.constraints for ends in constraint.squared_lengths)
+    for inner, outer in ((one, two) for a, b in links for one, two in ((a, b), (b, a)) if one in pushed):
+        out = float(axes.component(points[inner] - points[outer], "outboard"))
+        if out > 0.0:
+            yield f"{inner} lies {out:.4g} mm outboard of {outer}: are they swapped?"
