@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.scene.messages import meant, shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from validate.comparison.given import Given, given
@@ -168,6 +169,10 @@ def _missing(quantity: str, parts: Sequence[str], one: Given, two: Given) -> Ite
             yield f"{side.formulation} gives no {words}"
         elif lacking:
             yield f"{side.formulation} gives no {words} of {', '.join(lacking)}"
+        for name in side.numbers[quantity]:
+            hint = "" if name in parts else meant(name, lacking)
+            if hint:
+                yield f"{side.formulation} gives {words} of {shown(name)}, which is left out{hint}"
 
 
 def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Array) -> Comparison:

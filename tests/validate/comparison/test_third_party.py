@@ -50,6 +50,14 @@ def with_solution(make: Callable[[Scene], Any]) -> Outcome:
 SURE = Accuracy(np.ones(COUNT))
 
 
+def test_a_misspelt_point_is_told_what_was_meant() -> None:
+    numbers = {"position": {"wheel_center": WHEEL, "brake": WHEEL}}
+    outcome = with_solution(lambda scene: Solution("mine", scene.instants, numbers, SURE))
+    told = "mine gives position of 'wheel_center', which is left out (did you mean 'wheel_centre'?)"
+    assert told in outcome.missing
+    assert not any("brake" in line for line in outcome.missing)
+
+
 @pytest.mark.parametrize(
     ("numbers", "said"),
     [
