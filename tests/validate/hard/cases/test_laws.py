@@ -8,10 +8,10 @@ import pytest
 from pointcoord import Scene
 from validate.hard.cars import CARS
 from validate.hard.case import Case
-from validate.hard.cases import laws, spans
+from validate.hard.cases import extreme_durations, laws
 from validate.hard.run import examine
 
-BY_NAME = {case.name: case for case in (*laws.CASES, *spans.CASES)}
+BY_NAME = {case.name: case for case in (*laws.CASES, *extreme_durations.CASES)}
 
 
 def at(case: str, *values: float) -> Case:
