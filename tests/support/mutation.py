@@ -19,7 +19,14 @@ from mutated_content import CONTENT_CHANGES, Content, anything, size, word
 from pointcoord.scene.scene_file import MOST_SAMPLES
 
 # Named here, so that a further built-in scene does not change what a number means.
-SCENES = ("bounce", "off-axis-strut", "bounce-and-steer", "bounce-on-a-heaving-chassis", "steer")
+SCENES = (
+    "bounce",
+    "off-axis-strut",
+    "bounce-and-steer",
+    "double-wishbone",
+    "bounce-on-a-heaving-chassis",
+    "steer",
+)
 # More instants than this take honest seconds to write, which would hide a hang.
 MOST_INSTANTS = 20_000
 # What a number of a file may be replaced by, as text that no writer of TOML would make.
