@@ -6,6 +6,8 @@ spheres.
 
 from __future__ import annotations
 
+import itertools
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -20,6 +22,7 @@ from validate.reference.linkage import Known, Linkage
 from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 Points = dict[str, Vector]
+Sides = tuple[int, ...]
 
 # Without shrinking: a failure is told in seconds, and a car of round numbers explains no more.
 PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
@@ -41,7 +44,7 @@ class Pose:
 
 
 @dataclass(frozen=True)
-class ClosedFormCar:
+class ClosedFormCar(ABC):
     """A drawing that closes, and the car's directions; exact fractions.
 
     Attributes:
@@ -59,12 +62,21 @@ class ClosedFormCar:
     bodies: ClassVar[Mapping[str, tuple[str, ...]]]
 
     def poses(self, theta: object, travel: object, heave: object = 0) -> Iterator[Pose]:
-        """Every assembly: each step of the closed form has two answers, or none."""
-        raise NotImplementedError
+        """Every assembly: each of the three steps of the closed form has two answers, or none."""
+        p = {name: numbers(place) for name, place in self.points.items()}
+        up, right = numbers(self.up), numbers(self.right)
+        for sides in itertools.product((1, -1), repeat=3):
+            pose = self.assembled(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
+            if pose is not None:
+                yield pose
 
+    @abstractmethod
+    def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
+        """The assembly whose steps take these answers; None where one of them has none."""
+
+    @abstractmethod
     def shape(self, p: Points) -> Points:
         """What the equations need of the knuckle, mm."""
-        raise NotImplementedError
 
     @property
     def frame(self) -> dict[str, Vector]:

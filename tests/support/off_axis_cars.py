@@ -6,8 +6,7 @@ equations for direction cosines.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
@@ -17,8 +16,8 @@ from closed_forms import (
     ClosedFormCar,
     Points,
     Pose,
+    Sides,
     lower_ball_joint,
-    numbers,
     rational_turn,
     size,
     steered,
@@ -66,14 +65,8 @@ class OffAxisCar(ClosedFormCar):
         "lower_arm": ("lower_arm_front", "lower_arm_rear", "lower_ball_joint"),
     }
 
-    def poses(self, theta: object, travel: object, heave: object = 0) -> Iterator[Pose]:
-        """Every assembly: arm, slide and tie rod have two answers each, or none."""
-        p = {name: numbers(place) for name, place in self.points.items()}
-        up, right = numbers(self.up), numbers(self.right)
-        for sides in itertools.product((1, -1), repeat=3):
-            pose = _pose(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
-            if pose is not None:
-                yield pose
+    def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
+        return _pose(p, up, right, sides, inputs)
 
     def shape(self, p: Points) -> Points:
         """The knuckle in its own frame, its axis from strut_lower to strut_top and the rod as drawn."""

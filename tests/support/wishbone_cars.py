@@ -7,8 +7,7 @@ package intersects spheres.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
@@ -19,9 +18,9 @@ from closed_forms import (
     ClosedFormCar,
     Points,
     Pose,
+    Sides,
     angle,
     lower_ball_joint,
-    numbers,
     rational_turn,
     steered,
     tie_rod,
@@ -49,14 +48,8 @@ class WishboneCar(ClosedFormCar):
         "upper_arm": ("upper_arm_front", "upper_arm_rear", "upper_ball_joint"),
     }
 
-    def poses(self, theta: object, travel: object, heave: object = 0) -> Iterator[Pose]:
-        """Every assembly: lower arm, upper arm and tie rod have two answers each, or none."""
-        p = {name: numbers(place) for name, place in self.points.items()}
-        up, right = numbers(self.up), numbers(self.right)
-        for sides in itertools.product((1, -1), repeat=3):
-            pose = _pose(p, up, right, sides, (mpf(theta), mpf(travel), mpf(heave)))
-            if pose is not None:
-                yield pose
+    def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
+        return _pose(p, up, right, sides, inputs)
 
     def shape(self, p: Points) -> Points:
         """Nothing: the knuckle's triangle is in the lengths."""
