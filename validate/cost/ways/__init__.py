@@ -1,0 +1,1 @@
+"""The ways that are raced, one family a file; `registry` lists them."""
