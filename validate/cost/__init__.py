@@ -1,1 +1,1 @@
-"""What accuracy costs in time: every way to solve a scene, over its settings, timed and held to the reference."""
+"""What accuracy costs in time: every way to solve a scene, timed and held to the reference."""

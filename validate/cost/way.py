@@ -36,7 +36,7 @@ class LeftOut(Exception):
 
 
 class Ready(Protocol):
-    """A scene made ready by a way: making it is the set-up. Its phases follow each other and are timed apart."""
+    """A scene made ready by a way, which is the set-up. Its phases follow each other, timed apart."""
 
     def solve(self, instants: Array) -> Any:
         """Find the positions at increasing instants, (N,), s; the first may lie after the scene's start."""
