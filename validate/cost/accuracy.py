@@ -68,7 +68,7 @@ class Effort:
 
 
 FULL = Effort(repeats=9, least=0.02, most=2.0, settings=None)
-QUICK = Effort(repeats=7, least=0.002, most=0.2, settings=3)
+QUICK = Effort(repeats=7, least=0.002, most=0.5, settings=3)
 FEWEST = 8  # instants that even the slowest way gets
 
 

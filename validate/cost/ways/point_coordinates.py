@@ -37,7 +37,12 @@ TOLERANCES = tuple(10.0**-digits for digits in range(2, 14))
 
 def tolerance_settings(tolerances: tuple[float, ...] = TOLERANCES) -> tuple[Setting, ...]:
     """A setting for each tolerance of positions."""
-    return tuple(Setting(f"{tolerance:.0e} mm", tolerance) for tolerance in tolerances)
+    return tuple(Setting(f"{short(tolerance)} mm", tolerance) for tolerance in tolerances)
+
+
+def short(number: float) -> str:
+    """A power of ten in tables, such as `1e-9`."""
+    return f"{number:.0e}".replace("e-0", "e-")
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,11 @@ from collections.abc import Iterable
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
-from validate.cost.ways import absolute, point_coordinates, printed
+from validate.cost.ways import absolute, differences, point_coordinates, printed
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
+    *differences.WAYS,
     *printed.WAYS,
     *absolute.WAYS,
 )
