@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -400,29 +401,15 @@ def crossovers(rows: Sequence[Row], accuracies: Sequence[float] = ACCURACIES) ->
     """Of each scene whose growth in instants was measured: each of ours against each of the others."""
     found = []
     grown = [row for row in rows if row.part == "growth" and row.against == "instants"]
-    for scene in scenes_of(grown):
+    for scene, quantity, accuracy in product(scenes_of(grown), ("position", "acceleration"), accuracies):
         known = {(r.way, r.setting): r for r in accuracy_rows(rows) if r.scene == scene}
         here = [row for row in grown if row.scene == scene]
-        for quantity in ("position", "acceleration"):
-            for accuracy in accuracies:
-                lines = _lines(here, known, quantity, accuracy)
-                ours = [one for one in lines if one.way in OURS]
-                for other in (one for one in lines if one.way not in OURS):
-                    for one in ours:
-                        measured = min(one.largest, other.largest)
-                        found += [
-                            Crossover(
-                                scene,
-                                quantity,
-                                accuracy,
-                                one,
-                                other,
-                                counted,
-                                *crossing(one, other, counted),
-                                measured,
-                            )
-                            for counted in (False, True)
-                        ]
+        lines = _lines(here, known, quantity, accuracy)
+        ours, others = ([one for one in lines if (one.way in OURS) == mine] for mine in (True, False))
+        for other, one, counted in product(others, ours, (False, True)):
+            measured = min(one.largest, other.largest)
+            cross = crossing(one, other, counted)
+            found.append(Crossover(scene, quantity, accuracy, one, other, counted, *cross, measured))
     return found
 
 

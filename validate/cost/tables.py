@@ -5,10 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from textwrap import fill
-from typing import Any
 
 from validate.cost.findings import (
     ACCURACIES,
@@ -251,11 +250,13 @@ def radius_notes(here: Sequence[Row]) -> list[str]:
 
 
 def absences(here: Sequence[Row]) -> list[str]:
-    """Failures, omissions and quantities that are not given, each reason once with its ways."""
+    """Failures, omissions, what was measured otherwise, and what is not given: each reason with its ways."""
     reasons: dict[str, list[str]] = {}
     for row in here:
         if row.status != "measured":
             reasons.setdefault(f"{row.status}: {row.reason or 'without a reason'}", []).append(name_of(row))
+        elif row.reason:
+            reasons.setdefault(row.reason, []).append(name_of(row))
         for quantity, reason in row.not_given.items():
             told = f"{words_of(quantity)} not given: {reason}"
             if row.way not in reasons.setdefault(told, []):
@@ -406,16 +407,3 @@ def _time_cells(time: Time | None) -> list[str]:
 def _cell(value: object) -> str:
     """A number with all its digits; nothing for what is not there."""
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
-
-
-def row_data(row: Row) -> dict[str, Any]:
-    """A row as plain data."""
-    return asdict(row)
-
-
-def rows_by_part(rows: Iterable[Row]) -> Mapping[str, int]:
-    """How many rows each part of the study has."""
-    counts: dict[str, int] = {}
-    for row in rows:
-        counts[row.part] = counts.get(row.part, 0) + 1
-    return counts

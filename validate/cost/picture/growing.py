@@ -26,7 +26,7 @@ KEY = (
 
 
 def figure(growths: Sequence[Growth], dense: frozenset[str]) -> Figure:
-    """Of all growths against one thing; `dense` are the ways whose one solve serves any instant."""
+    """Of one scene against one thing; `dense` are the ways whose one solve serves any instant."""
     against = growths[0].against
     kinds = [kind for kind in UNITS if any(g.of == kind and g.points for g in growths)]
     stopped = dict.fromkeys(
@@ -41,8 +41,7 @@ def figure(growths: Sequence[Growth], dense: frozenset[str]) -> Figure:
     high = 0.75 + HIGH + foot
     with mpl.rc_context(SETTINGS):
         page = Figure(figsize=(wide, high))
-        scenes = ", ".join(dict.fromkeys(g.scene for g in growths))
-        title = f"Growth in {against}: {scenes}"
+        title = f"Growth in {against}: {growths[0].scene}"
         page.text(0.15 / wide, 1.0 - 0.15 / high, title, fontsize=12, va="top")
         for i, kind in enumerate(kinds):
             left = LEFT + i * cell
@@ -62,7 +61,6 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
     axes.set_title(of, loc="left")
     axes.set_xlabel(against, labelpad=2)
     axes.set_ylabel(words)
-    several = len({g.scene for g in growths}) > 1
     settings = {growth.way: {g.setting for g in growths if g.way == growth.way} for growth in growths}
     found = looks(g.way for g in growths)
     ends = []
@@ -80,7 +78,6 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
             axes.plot(reach, law, "--", color=look.colour, linewidth=1.2, zorder=2)
         name = growth.way + ("*" if growth.way in dense else "")
         name += f" {growth.setting}" if len(settings[growth.way]) > 1 else ""
-        name = f"{growth.scene}: {name}" if several else name
         ends.append((sizes[-1], values[-1], look, name + (_exponent(growth.fit) if exponents else "")))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: _count(size)))
     axes.minorticks_off()

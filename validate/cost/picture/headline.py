@@ -16,7 +16,10 @@ SCENE = "bounce"
 QUANTITIES = ("position", "acceleration")
 WIDE, HIGH, LEFT, RIGHT, TOP, BELOW = 2.55, 2.5, 0.7, 0.95, 0.35, 1.2  # inches
 COLUMNS = 6  # of the legend
-KEY = "* and filled: one solve serves any instant. Down is more accurate, left is quicker. Dotted: a way's floor."
+KEY = (
+    "* and filled: one solve serves any instant. Down is more accurate, left is quicker. "
+    "Dotted: a way's floor."
+)
 
 
 def figure(rows: Sequence[Row], found: Findings) -> Figure | None:
