@@ -19,13 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.results.closing import ALLOWED
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, FormulationError, Numbers, Solution
-from validate.peers.linkage import Linkage, PeerError, linkage_of
+from validate.peers.linkage import Inputs, Linkage, PeerError, linkage_of
 from validate.peers.motion import Poses, Rates
+from validate.peers.motion import numbers as numbers_of
 
 Array = NDArray[np.float64]
 
@@ -40,7 +42,11 @@ SEED = 20261122
 class Engine(Protocol):
     """A linkage in somebody's program."""
 
-    def poses(self, driven: Array, tolerance: float) -> Poses:
+    def closed(self, tolerance: float) -> Poses:
+        """The drawing, closed: one pose."""
+        ...
+
+    def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
         """Poses at turns of the arm and travels of the rack, (N, 2), each solved from the one before."""
         ...
 
@@ -49,127 +55,45 @@ class Engine(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Inputs:
-    """What is told to a program, and how far it may be off by rounding; in its unit of length.
+def linkage_in(scene: Scene, shift: Mapping[str, Array] | None = None) -> Linkage:
+    """The car of a scene, or one whose hardpoints are shifted, (3,), mm.
 
-    Attributes:
-        driven, doubt: turn of the arm and travel of the rack with two time derivatives, (N, 3, 2).
-        chassis: displacement, velocity and acceleration of the chassis, (N, 3, 3), mm.
+    Raises:
+        PeerError: its points make no linkage.
     """
+    part = scene.mechanism
+    points = {n: np.array(place) + (0.0 if shift is None else shift[n]) for n, place in part.points.items()}
+    return linkage_of(part.type, points, part.up, part.right, part.closure, part.side)
 
-    driven: Array
-    doubt: Array
-    chassis: Array
 
+def require_the_drawn_car(scene: Scene, linkage: Linkage, closed: Poses) -> None:
+    """Refuse a drawing that the program's own closing makes another car of.
 
-@dataclass(frozen=True)
-class Car:
-    """A scene's car as a linkage, and how its motion is reported.
-
-    Attributes:
-        asked: names by quantity.
+    Raises:
+        SceneError: a point moves by more than is allowed.
     """
+    if scene.mechanism.topology.puts_in_place:
+        return
+    limit = ALLOWED * float(np.max(np.ptp(np.array(list(linkage.drawn.values())), axis=0)))
+    moved = {n: float(np.linalg.norm(place - linkage.drawn[n])) for n, place in closed.places.items()}
+    point = max(moved, key=lambda name: moved[name])
+    if moved[point] > limit:
+        raise SceneError(
+            scene.title or "scene",
+            "mechanism.points",
+            f"closing the drawing moves {point} by {moved[point] * linkage.unit:.3g} mm: that is another car",
+            f"at most {ALLOWED:.0%} of the car's size, {limit * linkage.unit:.3g} mm; draw the points that "
+            "miss where they belong",
+        )
 
-    scene: Scene
-    linkage: Linkage
-    asked: Mapping[str, tuple[str, ...]]
 
-    @classmethod
-    def of(cls, scene: Scene, shift: Mapping[str, Array] | None = None) -> Car:
-        """The car of a scene, or one whose hardpoints are shifted, (3,), mm.
-
-        Raises:
-            PeerError: its points make no linkage.
-        """
-        part = scene.mechanism
-        points = {
-            n: np.array(place) + (0.0 if shift is None else shift[n]) for n, place in part.points.items()
-        }
-        linkage = linkage_of(part.type, points, part.up, part.right, part.closure)
-        return cls(scene, linkage, asked_numbers(scene))
-
-    def inputs(self, laws: Mapping[str, Array]) -> Inputs:
-        """What drives the program, from the inputs' values, rates and accelerations, each (N, 3).
-
-        Raises:
-            PeerError: the arm does not reach what it is driven to.
-        """
-        turn, off = self.linkage.turns(laws["arm_angle"])
-        travel = laws["rack"] / self.linkage.unit
-        chassis = np.zeros((*turn.shape, 3))
-        directions = {"up": self.scene.mechanism.up, "right": self.scene.mechanism.right}
-        for name, direction in self.scene.mechanism.topology.chassis_motion.items():
-            if name in laws:
-                chassis += laws[name][..., None] * np.array(directions[direction])
-        doubt = np.stack([off, UNIT_ROUNDOFF * np.abs(travel)], axis=-1)
-        return Inputs(np.stack([turn, travel], axis=-1), doubt, chassis)
-
-    def require_the_drawn_car(self, poses: Poses) -> None:
-        """Refuse a drawing that the program's own closing makes another car of.
-
-        Raises:
-            SceneError: a point moves by more than is allowed.
-        """
-        if self.scene.mechanism.topology.puts_in_place:
-            return
-        corners = np.array(list(self.linkage.drawn.values()))
-        limit = ALLOWED * float(np.max(np.ptp(corners, axis=0)))
-        moved = {n: float(np.linalg.norm(place - self.linkage.drawn[n])) for n, place in poses.closed.items()}
-        point = max(moved, key=lambda name: moved[name])
-        if moved[point] > limit:
-            unit = self.linkage.unit
-            raise SceneError(
-                self.scene.title or "scene",
-                "mechanism.points",
-                f"closing the drawing moves {point} by {moved[point] * unit:.3g} mm: that is another car",
-                f"at most {ALLOWED:.0%} of the car's size, {limit * unit:.3g} mm; draw the points that miss "
-                "where they belong",
-            )
-
-    def numbers(self, inputs: Inputs, poses: Poses, rates: Rates | None) -> Numbers:
-        """What the scene asks for, in its axes and units; rates where they are there."""
-        unit, linkage, asked = self.linkage.unit, self.linkage, self.asked
-        near = linkage.with_chassis(poses.places)
-        shift = linkage.origin + inputs.chassis[:, 0]
-        found: dict[str, dict[str, Array]] = {
-            "position": {name: near[name] * unit + shift for name in asked["position"]}
-        }
-        if "wheel" in asked:
-            found["wheel"] = {name: self._angle(name, near) for name in asked["wheel"]}
-        if rates is not None:
-            for order, (quantity, moving) in enumerate(
-                (("velocity", rates.velocity), ("acceleration", rates.acceleration)), 1
-            ):
-                added = inputs.chassis[:, order]
-                found[quantity] = {
-                    name: moving[name] * unit + added if name in moving else added
-                    for name in asked.get(quantity, ())
-                }
-            for quantity, spin in (
-                ("angular_velocity", rates.spin),
-                ("angular_acceleration", rates.spin_rate),
-            ):
-                found[quantity] = dict.fromkeys(asked.get(quantity, ()), spin)
-        return {quantity: arrays for quantity, arrays in found.items() if arrays}
-
-    def _line(self, angle: str) -> tuple[str, str]:
-        topology = self.scene.mechanism.topology
-        return topology.wheel_axis if angle in ("camber", "toe") else topology.steering_axis
-
-    def _angle(self, name: str, places: Mapping[str, Array]) -> Array:
-        """A wheel angle by its definition, (N,), rad."""
-        part = self.scene.mechanism
-        up, outboard = np.array(part.up), part.outboard
-        rearward = np.cross(np.array(part.right), up)
-        start, end = (places[point] for point in self._line(name))
-        line = end - start
-        if name == "camber":
-            return np.asarray(np.arctan2(-line @ up, line @ outboard))
-        if name == "toe":
-            return np.asarray(np.arctan2(-line @ rearward, line @ outboard))
-        across = -outboard if name == "kingpin" else rearward
-        return np.asarray(np.arctan2(line @ across, line @ up))
+def asked_of(found: Mapping[str, Mapping[str, Array]], scene: Scene) -> Numbers:
+    """What a scene asks for, of all that was found."""
+    return {
+        quantity: {name: found[quantity][name] for name in names if name in found[quantity]}
+        for quantity, names in asked_numbers(scene).items()
+        if quantity in found
+    }
 
 
 @dataclass(frozen=True)
@@ -192,35 +116,36 @@ class OutsideProgram:
         """
         laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
         try:
-            car = Car.of(scene)
-            inputs = car.inputs(laws)
-            numbers, last_step = self._numbers(car, inputs)
-            accuracy = self._accuracy(car, inputs, laws, numbers, last_step)
+            linkage = linkage_in(scene)
+            inputs = linkage.inputs(laws)
+            numbers, last_step = self._numbers(scene, linkage, inputs)
+            accuracy = self._accuracy(scene, laws, numbers, last_step)
         except (PeerError, SceneError) as error:
             raise FormulationError(self.name, error) from error
         return Solution(self.name, scene.instants, numbers, accuracy)
 
-    def _numbers(self, car: Car, inputs: Inputs) -> tuple[Numbers, Array]:
+    def _numbers(self, scene: Scene, linkage: Linkage, inputs: Inputs) -> tuple[Numbers, Array]:
         """What the scene asks for, and Newton's last correction at each instant, (N,)."""
-        engine = self.engine(car.linkage)
-        poses = engine.poses(inputs.driven[:, 0], TOLERANCE)
-        car.require_the_drawn_car(poses)
-        moving = engine.rates(poses, inputs.driven[:, 1], inputs.driven[:, 2])
-        return car.numbers(inputs, poses, moving), poses.last_step
+        engine = self.engine(linkage)
+        value, rate, bend = inputs.driven.swapaxes(0, 1)
+        closed = engine.closed(TOLERANCE)
+        require_the_drawn_car(scene, linkage, closed)
+        poses = engine.poses(value, TOLERANCE, closed)
+        found = numbers_of(linkage, inputs.chassis, poses, engine.rates(poses, rate, bend))
+        return asked_of(found, scene), poses.last_step
 
     def _accuracy(
-        self, car: Car, inputs: Inputs, laws: Mapping[str, Array], numbers: Numbers, last_step: Array
+        self, scene: Scene, laws: Mapping[str, Array], numbers: Numbers, last_step: Array
     ) -> Accuracy:
         """How far each number may be off: see the top of this file."""
-        rng, scene = np.random.default_rng(SEED), car.scene
+        rng, unit = np.random.default_rng(SEED), linkage_in(scene).unit
         changes = {q: {n: np.zeros(len(last_step)) for n in arrays} for q, arrays in numbers.items()}
         for _ in range(PROBES):
-            size = SHIFT * car.linkage.unit
-            shift = {name: size * rng.standard_normal(3) for name in scene.mechanism.points}
-            other = Car.of(scene, shift)
+            shift = {name: SHIFT * unit * rng.standard_normal(3) for name in scene.mechanism.points}
+            other = linkage_in(scene, shift)
             told = other.inputs(laws)
             off = rng.standard_normal(told.doubt.shape) * told.doubt * (SHIFT / ROUNDING)
-            found, _ = self._numbers(other, replace(told, driven=told.driven + off))
+            found, _ = self._numbers(scene, other, replace(told, driven=told.driven + off))
             for quantity, arrays in numbers.items():
                 for name, array in arrays.items():
                     change = (found[quantity][name] - array).reshape(len(array), -1) / (SHIFT * PROBES**0.5)
@@ -235,8 +160,8 @@ class OutsideProgram:
                 + 2.0 * UNIT_ROUNDOFF * np.abs(array)
                 for name, array in arrays.items()
             }
-        condition = _largest(changes["position"]) / car.linkage.unit
-        return Accuracy(condition, claims)
+        places = next(q for q in changes if QUANTITIES[q].of == "point" and not per_second(q))
+        return Accuracy(_largest(changes[places]) / unit, claims)
 
 
 def _largest(arrays: Mapping[str, Array]) -> Array:

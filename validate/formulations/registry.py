@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 from pointcoord.method import NEWTON, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
+
+if TYPE_CHECKING:
+    from validate.formulations.outside_programs import Engine
+    from validate.peers.linkage import Linkage
 
 
 class UnknownFormulation(Exception):
@@ -66,8 +73,17 @@ def formulation(name: str) -> Formulation:
 def _outside(name: str) -> Formulation:
     from validate.formulations.outside_programs import OutsideProgram
 
+    return OutsideProgram(name, engine_of(name))
+
+
+def engine_of(name: str) -> Callable[[Linkage], Engine]:
+    """What makes a linkage a model of one of the programs in `OUTSIDE`.
+
+    Raises:
+        MissingPackage: the program is not installed, or does not load.
+    """
     try:
         from validate.peers.in_mujoco import InMujoco
     except ImportError as error:
         raise MissingPackage(name, error, "peers") from error
-    return OutsideProgram(name, InMujoco)
+    return InMujoco

@@ -59,47 +59,68 @@ class InMujoco:
         self.unknown = np.array([dof for dof in range(model.nv) if dof not in (*self.driven, idle)])
         self._residuals = self._steps = 0
 
-    def poses(self, driven: Array, tolerance: float) -> Poses:
-        """Solve from the drawing on, each pose from the one before.
+    def closed(self, tolerance: float) -> Poses:
+        """The drawing, closed at its own inputs: one pose.
+
+        Args:
+            tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
+        Raises:
+            PeerError: it cannot be closed, or only as another assembly.
+        """
+        mujoco.mj_resetData(self.model, self.data)
+        for joint in self.linkage.joints:
+            if joint.kind == "slide":
+                self.data.joint(joint.child).qpos[0] = joint.drawn
+        self._residuals = self._steps = 0
+        driven = self.linkage.drawn_inputs
+        step = self._newton(driven, tolerance, shorten=True)
+        if step is None:
+            raise PeerError("the drawing cannot be closed")
+        places = self.data.site_xpos[None, list(self.sites.values())]
+        poses = self._solved(driven[None], self.data.qpos[None].copy(), places, np.array([step]))
+        if self.linkage.on_other_side(self.linkage.with_chassis(poses.places)).any():
+            raise PeerError("closing the drawing leads to another assembly than is drawn")
+        return poses
+
+    def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
+        """Solve at driven inputs, each pose from the one before.
 
         Args:
             driven: turn of the arm and travel of the rack, (N, 2).
-            tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
+            tolerance: see `closed`.
+            start: whose last pose the first one is solved from.
         Raises:
             PeerError: a pose is not reached, or is one of another assembly.
         """
-        data, linkage = self.data, self.linkage
+        data, count = self.data, len(driven)
         self._residuals = self._steps = 0
-        mujoco.mj_resetData(self.model, data)
-        for joint in linkage.joints:
-            if joint.kind == "slide":
-                data.joint(joint.child).qpos[0] = joint.drawn
-        here = linkage.drawn_inputs
-        if self._newton(here, tolerance, shorten=True) is None:
-            raise PeerError("the drawing cannot be closed")
-        closed = {name: data.site_xpos[site].copy() for name, site in self.sites.items()}
-        if linkage.on_other_side(linkage.with_chassis(closed)):
-            raise PeerError("closing the drawing leads to another assembly than is drawn")
-        count = len(driven)
         coordinates = np.empty((count, self.model.nq))
-        found = np.empty((count, len(self.sites), 3))
+        places = np.empty((count, len(self.sites), 3))
         steps = np.empty(count)
-        order = list(self.sites.values())
+        sites = list(self.sites.values())
+        here, data.qpos[:] = start.driven[-1], start.coordinates[-1]
         for i in range(count):
             step = self._go(here, driven[i], tolerance)
             if step is None:
                 raise PeerError("no pose is reached from the one before", i)
             here, steps[i] = driven[i], step
             coordinates[i] = data.qpos
-            found[i] = data.site_xpos[order]
-        places = {name: found[:, k] for k, name in enumerate(self.sites)}
-        other = linkage.on_other_side(linkage.with_chassis(places))
+            places[i] = data.site_xpos[sites]
+        poses = self._solved(driven, coordinates, places, steps)
+        other = self.linkage.on_other_side(self.linkage.with_chassis(poses.places))
         if other.any():
-            raise PeerError(
-                "Newton's method came to another assembly than the drawing's", int(np.argmax(other))
-            )
-        counts = {"newton_steps": self._steps, "jacobians": self._steps, "residuals": self._residuals}
-        return Poses(coordinates, places, closed, steps, counts)
+            raise PeerError("Newton's method came to another assembly than is drawn", int(np.argmax(other)))
+        return poses
+
+    def _solved(self, driven: Array, coordinates: Array, places: Array, steps: Array) -> Poses:
+        counts = {
+            "newton_steps": self._steps,
+            "factorisations": self._steps,
+            "jacobians": self._residuals,
+            "residuals": self._residuals,
+        }
+        named = {name: places[:, k] for k, name in enumerate(self.sites)}
+        return Poses(driven, coordinates, named, steps, counts)
 
     def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
         """Velocities and accelerations of poses.

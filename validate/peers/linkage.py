@@ -84,6 +84,20 @@ class Loop:
 
 
 @dataclass(frozen=True)
+class Inputs:
+    """What is told to a program, and how far it may be off by rounding; in the linkage's unit.
+
+    Attributes:
+        driven, doubt: turn of the arm and travel of the rack with two time derivatives, (N, 3, 2).
+        chassis: displacement of the chassis and two time derivatives, (N, 3, 3), mm.
+    """
+
+    driven: Array
+    doubt: Array
+    chassis: Array
+
+
+@dataclass(frozen=True)
 class Linkage:
     """A suspension; every place is (3,), from `origin` in `unit`.
 
@@ -91,17 +105,22 @@ class Linkage:
         drawn: every hardpoint as drawn.
         joints: parents first.
         points: the body of each moving point, and its place there.
-        kingpin: the two points of the steering axis, the lower one first.
+        kingpin: the two points of the steering axis, the lower one first; its angles are those of `leaning`.
+        spin_axis: the two points of the wheel's axis, the inner one first.
         origin: mm. unit: mm.
     """
 
     drawn: Mapping[str, Array]
     up: Array
+    right: Array
+    outboard: Array
     joints: tuple[Joint, ...]
     loops: tuple[Loop, ...]
     points: Mapping[str, tuple[str, Array]]
     knuckle: tuple[str, str, str]
     kingpin: tuple[str, str]
+    leaning: tuple[str, str]
+    spin_axis: tuple[str, str]
     origin: Array
     unit: float
 
@@ -109,6 +128,20 @@ class Linkage:
     def drawn_inputs(self) -> Array:
         """Turn of the arm and travel of the rack at the drawing, (2,)."""
         return np.array([0.0, next(joint.drawn for joint in self.joints if joint.child == RACK)])
+
+    def inputs(self, laws: Mapping[str, Array]) -> Inputs:
+        """What is told to a program.
+
+        Args:
+            laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
+        Raises:
+            PeerError: the arm does not reach what it is driven to.
+        """
+        turn, off = self.turns(laws["arm_angle"])
+        travel = laws["rack"] / self.unit
+        doubt = np.stack([off, UNIT_ROUNDOFF * np.abs(travel)], axis=-1)
+        heave = laws["heave"] if "heave" in laws else np.zeros_like(travel)
+        return Inputs(np.stack([turn, travel], axis=-1), doubt, heave[..., None] * self.up)
 
     def turns(self, theta: Array) -> tuple[Array, Array]:
         """The arm's turn from its drawing with two time derivatives, and how far rounding may put them off.
@@ -194,7 +227,12 @@ class Linkage:
 
 
 def linkage_of(
-    suspension: str, points: Mapping[str, ArrayLike], up: ArrayLike, right: ArrayLike, closure: str = "drawn"
+    suspension: str,
+    points: Mapping[str, ArrayLike],
+    up: ArrayLike,
+    right: ArrayLike,
+    closure: str = "drawn",
+    side: str = "left",
 ) -> Linkage:
     """The bodies and joints of a suspension.
 
@@ -203,6 +241,7 @@ def linkage_of(
         points: hardpoints, mm.
         closure: of a strut: `drawn` has its axis through strut_lower and strut_top as drawn, `collinear`
             through the ball joint and strut_lower.
+        side: of the car, `left` or `right`.
     Raises:
         PeerError: there is no such suspension here, or two points coincide that must not.
     """
@@ -241,7 +280,21 @@ def linkage_of(
     steering = Loop("tie_rod_outer", TIE_ROD, p["tie_rod_outer"], KNUCKLE, p["tie_rod_outer"])
     top = "strut_top" if suspension == "macpherson" else "upper_ball_joint"
     kingpin = ("lower_ball_joint", top)
-    return Linkage(p, up, joints, (loop, steering), riding, knuckle, kingpin, origin, unit)
+    return Linkage(
+        drawn=p,
+        up=up,
+        right=right,
+        outboard=-right if side == "left" else right,
+        joints=joints,
+        loops=(loop, steering),
+        points=riding,
+        knuckle=knuckle,
+        kingpin=kingpin,
+        leaning=("lower_ball_joint", "strut_lower") if closure == "collinear" else kingpin,
+        spin_axis=("wheel_axis_inner" if "wheel_axis_inner" in p else "strut_lower", "wheel_centre"),
+        origin=origin,
+        unit=unit,
+    )
 
 
 Riding = dict[str, tuple[str, Array]]

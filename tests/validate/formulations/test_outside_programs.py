@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import assume, given, note, settings
+from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError, built_in_scenes
 from validate.adjudication.reference_solution import reference_solution, told_by
@@ -22,6 +23,7 @@ from validate.peers.in_mujoco import InMujoco
 from validate.peers.linkage import PeerError
 from validate.peers.motion import Poses, Rates
 
+Array = NDArray[np.float64]
 QUANTITIES = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
 
 # Each scene is solved seven times, and a search is short.
@@ -79,12 +81,12 @@ def test_what_a_program_claims_covers_its_error_against_the_reference(who: str) 
 class Faulty(InMujoco):
     """Off by a nanometre in a place, and by a billionth in a rate."""
 
-    def poses(self, driven: np.ndarray, tolerance: float) -> Poses:
-        poses = super().poses(driven, tolerance)
+    def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
+        poses = super().poses(driven, tolerance, start)
         off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.linkage.unit, 0.0])
         return replace(poses, places={**poses.places, "tie_rod_outer": off})
 
-    def rates(self, poses: Poses, rate: np.ndarray, bend: np.ndarray) -> Rates:
+    def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
         return replace(rates := super().rates(poses, rate, bend), spin_rate=rates.spin_rate * (1.0 + 1e-9))
 
 
