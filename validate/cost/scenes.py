@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import resources
 
@@ -16,6 +15,9 @@ NEAR_TOGGLE = "near-toggle"
 
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
 """Those that are measured if none is named."""
+
+QUICK_SCENES = ("bounce-and-steer", "double-wishbone")
+"""Those of a quick study: one of each suspension, both inputs moving."""
 
 RATES = ("velocity", "acceleration", "knuckle_rates")
 
@@ -58,6 +60,6 @@ def own_scene(name: str) -> Scene:
     return Scene.load(name)
 
 
-def own_scenes(names: Sequence[str] = STUDY_SCENES) -> tuple[StudyScene, ...]:
+def own_scenes(*, quick: bool = False) -> tuple[StudyScene, ...]:
     """Those that are measured if none is named."""
-    return tuple(study_scene(name, own_scene(name)) for name in names)
+    return tuple(study_scene(name, own_scene(name)) for name in (QUICK_SCENES if quick else STUDY_SCENES))

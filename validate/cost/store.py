@@ -1,13 +1,13 @@
 """The rows of the study of cost in a file: written when measured, and found again when a run goes on.
 
 The file is lines of JSON that are only appended, each synchronised to the disk when it is written: first a
-header, then what was measured. A process killed at any moment leaves at most one torn line, which is no JSON
-object because its closing brace is missing; what it spoke of is measured again. What is kept is one sample,
-which is all phases of one way with one setting, so a kill costs one sample, or the first run of a way with
-its errors: some seconds at most.
+header, then what was measured. A process killed at any moment leaves at most one torn line, which is no
+JSON object because its closing brace is missing; what it spoke of is measured again. What is kept is one
+sample, which is all phases of one way with one setting, so a kill costs one sample, or the first run of a
+way with its errors: some seconds at most.
 
-Times of two programs, machines or numbers of threads do not belong into one table, so a file is only gone on
-with where it was begun. To read it, anyone may.
+Times of two programs, machines or numbers of threads do not belong into one table, so a file is only gone
+on with where it was begun. To read it, anyone may.
 """
 
 from __future__ import annotations
