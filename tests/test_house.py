@@ -38,6 +38,7 @@ ROOMS = {
         "closed_drawing",
         "reference",
         "paper",
+        "relative",
         "formulations",
         "comparison",
         "cars",

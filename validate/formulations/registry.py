@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from pointcoord.method import NEWTON, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
@@ -31,6 +33,7 @@ WORDS = {
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
+    "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
 }
 """Every formulation by its name, in words."""
 
@@ -38,7 +41,7 @@ NAMES = tuple(WORDS)
 
 
 def formulation(name: str) -> Formulation:
-    """A formulation by its name. Only the absolute model needs Pinocchio, and only when it is used.
+    """A formulation by its name. Only the models in Pinocchio need it, and only when they are used.
 
     Raises:
         UnknownFormulation: no formulation has this name.
@@ -46,12 +49,26 @@ def formulation(name: str) -> Formulation:
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
-    if name != "absolute":
+    if name not in _IN_PINOCCHIO:
         raise UnknownFormulation(name)
     try:
-        from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+        return _IN_PINOCCHIO[name]()
     except MissingPackage:
         raise
     except ImportError as error:
         raise MissingPackage(name, error) from error
+
+
+def _absolute() -> Formulation:
+    from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+
     return AbsoluteCoordinates()
+
+
+def _relative() -> Formulation:
+    from validate.formulations.relative_coordinates import RelativeCoordinates
+
+    return RelativeCoordinates()
+
+
+_IN_PINOCCHIO: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "relative": _relative}
