@@ -39,6 +39,7 @@ ROOMS = {
         "reference",
         "paper",
         "peers",
+        "relative",
         "formulations",
         "comparison",
         "cars",
