@@ -38,6 +38,7 @@ ROOMS = {
         "closed_drawing",
         "reference",
         "paper",
+        "peers",
         "formulations",
         "comparison",
         "cars",

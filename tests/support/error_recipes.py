@@ -22,6 +22,11 @@ from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
+from validate.cost.errors import errors_of, truth_of
+from validate.cost.store import Header
+from validate.cost.store import Store as RowStore
+from validate.cost.way import Setting
+from validate.cost.ways.registry import ways_named
 from validate.formulations.protocol import Accuracy
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
@@ -238,6 +243,16 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.studies.chunk_store.StoreError": Recipe(
         lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
+    ),
+    "validate.cost.store.StoreError": Recipe(
+        lambda folder, _: RowStore(folder, Header.here()), ("cannot be read", "directory", "another file")
+    ),
+    "validate.cost.way.LeftOut": Recipe(
+        lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), Setting()),
+        ("the paper prints the strut",),
+    ),
+    "validate.cost.errors.NoNumbers": Recipe(
+        lambda *_: errors_of({}, truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
     ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),

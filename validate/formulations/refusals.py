@@ -13,6 +13,7 @@ from numbers import Integral
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
 from validate.formulations.protocol import FormulationError
+from validate.peers.linkage import PeerError
 
 DRAWING = "drawing has no assembly"
 HARDPOINTS = "hardpoints make no mechanism"
@@ -39,6 +40,10 @@ def _class_of(reason: Exception) -> str:
         if reason.problem.startswith("the drawing"):
             return DRAWING
         return MOTION if reason.partial is not None else START
+    if isinstance(reason, PeerError):
+        if reason.instant is None:
+            return DRAWING
+        return START if reason.instant == 0 else MOTION
     if type(reason).__module__.partition(".")[0] == "absolute":
         return _class_of_absolute(reason)
     return type(reason).__name__

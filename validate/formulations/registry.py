@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 from pointcoord.method import NEWTON, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
+
+if TYPE_CHECKING:
+    from validate.formulations.outside_programs import Engine
+    from validate.peers.linkage import Linkage
 
 
 class UnknownFormulation(Exception):
@@ -31,21 +38,27 @@ WORDS = {
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
+    "mujoco": "the same suspension in MuJoCo, an outside witness",
 }
 """Every formulation by its name, in words."""
 
 NAMES = tuple(WORDS)
 
+OUTSIDE = ("mujoco",)
+"""Other people's programs, which the extra `peers` brings."""
+
 
 def formulation(name: str) -> Formulation:
-    """A formulation by its name. Only the absolute model needs Pinocchio, and only when it is used.
+    """A formulation by its name; what it needs is imported when it is used.
 
     Raises:
         UnknownFormulation: no formulation has this name.
-        MissingPackage: Pinocchio is not installed, or does not load.
+        MissingPackage: a package that it needs is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
+    if name in OUTSIDE:
+        return _outside(name)
     if name != "absolute":
         raise UnknownFormulation(name)
     try:
@@ -55,3 +68,22 @@ def formulation(name: str) -> Formulation:
     except ImportError as error:
         raise MissingPackage(name, error) from error
     return AbsoluteCoordinates()
+
+
+def _outside(name: str) -> Formulation:
+    from validate.formulations.outside_programs import OutsideProgram
+
+    return OutsideProgram(name, engine_of(name))
+
+
+def engine_of(name: str) -> Callable[[Linkage], Engine]:
+    """What makes a linkage a model of one of the programs in `OUTSIDE`.
+
+    Raises:
+        MissingPackage: the program is not installed, or does not load.
+    """
+    try:
+        from validate.peers.in_mujoco import InMujoco
+    except ImportError as error:
+        raise MissingPackage(name, error, "peers") from error
+    return InMujoco
