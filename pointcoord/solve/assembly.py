@@ -13,9 +13,9 @@ and solves in closed form: up to s = 1 / (z + sqrt(2 omega q)) there is exactly 
 about the tangent, and it is the continuation of the one that the step started from. The steps shrink on
 their own towards a pose where the path ends.
 
-A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as a
-rule; what it is still off, e = -X (C(y) - offset), is taken along with the next tangent, and the condition along
-y + e + s y1 is
+A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as
+a rule; what it is still off, e = -X (C(y) - offset), is taken along with the next tangent, and the condition
+along y + e + s y1 is
 
     (1 - omega |e| - s z)^2 >= 2 omega |X B(e + s y1, e + s y1)|,
 
