@@ -29,6 +29,7 @@ _POINT_COORDINATES: dict[str, Formulation] = {
     for f in (
         PointCoordinates("pointcoord", SERIES),
         PointCoordinates("pointcoord-newton", NEWTON),
+        PointCoordinates("pointcoord-as-asked", SERIES, as_asked=True),
         PointCoordinates("printed", PRINTED),
     )
 }
@@ -36,6 +37,7 @@ _POINT_COORDINATES: dict[str, Formulation] = {
 WORDS = {
     "pointcoord": "point coordinates, by a chain of power series in time",
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
+    "pointcoord-as-asked": "the same series, only as fine as the scene's tolerance asks",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
