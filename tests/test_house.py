@@ -28,6 +28,7 @@ ROOMS = {
         "scene",
         "simulation",
         "drawing_stands",
+        "mapping",
         "__main__",
     ),
     "validate": (
