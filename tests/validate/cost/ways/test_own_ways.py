@@ -12,7 +12,7 @@ from validate.cost.way import LeftOut, Setting, Way
 from validate.cost.ways.registry import ways_named
 from validate.formulations.protocol import Numbers
 
-NEWTON_LIKE = ("newton", "absolute")
+NEWTON_LIKE = ("newton", "absolute", "relative")
 TRUTHS: dict[str, Truth] = {}
 
 
@@ -85,7 +85,7 @@ def assert_same(mine: Numbers, theirs: Numbers) -> None:
             np.testing.assert_allclose(mine[quantity][name], array, rtol=1e-13, atol=1e-12)
 
 
-@pytest.mark.parametrize("who", ["series", "newton", "absolute"])
+@pytest.mark.parametrize("who", ["series", "newton", "absolute", "relative"])
 def test_a_chassis_that_moves_and_an_origin_far_away_are_in_the_numbers(who: str) -> None:
     content = Scene.load("bounce-on-a-heaving-chassis").model_dump(exclude_none=True)
     points = content["mechanism"]["points"]
@@ -148,7 +148,7 @@ def test_differences_are_left_out_where_there_is_nothing_to_take_them_of(who: st
         way(who).prepare(Scene.from_mapping(content), Setting("", 1e-3))
 
 
-@pytest.mark.parametrize("who", ["series", "newton", "absolute"])
+@pytest.mark.parametrize("who", ["series", "newton", "absolute", "relative"])
 @pytest.mark.parametrize("effects", [(), ("wheel_angles",), ("velocity",), ("knuckle_rates", "toe")])
 def test_what_a_scene_does_not_ask_for_is_not_computed(who: str, effects: tuple[str, ...]) -> None:
     scene = own_scene("off-axis-strut").model_copy(update={"effects": effects})
@@ -161,10 +161,10 @@ def test_what_a_scene_does_not_ask_for_is_not_computed(who: str, effects: tuple[
     assert all(error.largest < 1e-7 for error in found.values())
 
 
-@pytest.mark.parametrize("who", ["series", "newton", "printed", "absolute", "series-differences"])
+@pytest.mark.parametrize("who", ["series", "newton", "printed", "absolute", "relative", "series-differences"])
 def test_what_was_done_is_counted(who: str) -> None:
     scene = own_scene("steer")
-    chosen = way(who).settings[0]
+    chosen = way(who).settings[-1]
     ready = way(who).prepare(scene, chosen)
     few, many = (ready.counts(ready.rates(ready.solve(study_instants(scene, count)))) for count in (4, 40))
     assert few["factorisations"] > 0
