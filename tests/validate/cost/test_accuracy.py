@@ -121,8 +121,8 @@ def failing(phase: str, error: Exception, run: int) -> Toy:
 @pytest.mark.parametrize("run", [1, 2, 5])
 def test_a_way_that_breaks_down_in_any_run_has_a_failed_row_with_its_reason(phase: str, run: int) -> None:
     clock = FakeClock()
-    toy, other = failing(phase, ZeroDivisionError("by\nnothing"), run), Toy("other")
-    toy.clock = other.clock = clock
+    toy, other = failing(phase, ZeroDivisionError("by\nnothing"), run), Toy("other", clock)
+    toy.clock = clock
     row, fine = rows_of(toy, other)
     assert (row.status, row.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert (row.times, row.errors) == ({}, {})
@@ -178,7 +178,8 @@ def test_a_row_that_is_there_is_not_measured_again_and_others_are_added(tmp_path
     path = tmp_path / "rows"
     first = Toy("a", settings=(Setting("1", 1.0), Setting("2", 2.0)), costs=COSTS)
     rows = rows_of(first, store=Store(path, HEADER))
-    again, other = Toy("a", settings=first.settings), Toy("b", costs=COSTS)
+    again = Toy("a", settings=first.settings)
+    other = Toy("b", again.clock)
     assert rows_of(again, other, store=Store(path, HEADER))[:2] == rows
     assert again.runs == []
     assert other.runs
@@ -240,7 +241,7 @@ def test_a_killed_run_goes_on_and_repeats_nothing_that_was_recorded(tmp_path: Pa
 def test_progress_counts_to_its_end_whatever_becomes_of_a_way(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     toys = [Toy("a", costs=COSTS), failing("rates", ValueError("no"), 6), Toy("c", package="no_such_package")]
-    toys[1].name = "b"
+    toys[1].name, toys[1].clock = "b", toys[0].clock
     path = tmp_path / "rows"
     for _ in range(2):
         accuracy_rows(
