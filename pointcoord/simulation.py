@@ -30,7 +30,6 @@ from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.pointwise import solve_instants
 from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
@@ -45,8 +44,9 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     """Solve a scene by point coordinates.
 
     Args:
-        method: `series` (a chain of power series, dense in time), `newton` (the paper's algorithm, at the
-            scene's instants only), or a method of your own.
+        method: `series` (a chain of power series, dense in time); at the scene's instants only `newton` (the
+            paper's algorithm), `newton-cold` (each instant from the drawing) and `chord` (a factorisation
+            kept); or a method of your own.
     Raises:
         UnknownName: there is no such method.
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
@@ -129,7 +129,8 @@ def _at_instants(task: Task) -> SolvedScene:
     mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
     term = task.method.square_velocity_term
     allowed = pose_tolerance(task.scene, task.method, mechanism)
-    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
+    solver = task.method.at_instants
+    solved = solver(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
     return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
 
 

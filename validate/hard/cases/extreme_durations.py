@@ -95,6 +95,6 @@ CASES: tuple[Case, ...] = (
         "tolerance of the scene, mm",
         tuple(1.0 / x for x in BY_25),
         _tolerance,
-        expected=OURS | {"pointcoord-as-asked": RIGHT},
+        expected={**OURS, "pointcoord-as-asked": RIGHT},
     ),
 )
