@@ -284,7 +284,7 @@ def require_complete(states: SolvedStates) -> None:
         raise error
 
 
-WAYS = (
+WAYS: tuple[Series | AtInstants, ...] = (
     Series(),
     *(
         AtInstants(method.name, f"point coordinates, by {words}", method, tolerance_settings())
