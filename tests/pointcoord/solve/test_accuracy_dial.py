@@ -72,9 +72,9 @@ def test_positions_are_within_the_tolerance_and_rates_within_as_much_of_themselv
     exact = solved(asking(scene, FINEST), "newton")
     motion = solved(asking(scene, tolerance), method)
     assert off(motion, exact, "position") <= tolerance + rounding(exact)
-    # A rate is right to the part of the largest one of its kind that the tolerance is of the car's size. Where
-    # a pose may be off by a tolerance its rates are off by omega times that of themselves (see `newton`), omega
-    # below its condition number; rounding likewise, once per derivative.
+    # A rate is right to the part of the largest one of its kind that the tolerance is of the car's size.
+    # Where a pose may be off by a tolerance its rates are off by omega times that of themselves (see
+    # `newton`), omega below its condition number; rounding likewise, once per derivative.
     condition = float(exact.proof().condition.max())
     assume(condition < 1e3)
     part = tolerance / motion.unit
