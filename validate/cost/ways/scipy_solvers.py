@@ -228,7 +228,9 @@ class ReadySolver:
             chassis=ChassisMotion.of(mechanism, self.scene.functions),
             axes=CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard),
         )
-        states = StatesAtInstants(readout, Solved(solved.times, solved.states, Work()))
+        # Nothing is proven of what a user's solver returns; only a proof would ask.
+        unproven = np.full(len(solved.times), np.inf)
+        states = StatesAtInstants(readout, Solved(solved.times, solved.states, unproven, Work()))
         numbers = readout.samples(solved.times, states.states(solved.times)).numbers
         return {quantity: dict(channel) for quantity, channel in numbers.items() if channel.computed}
 
