@@ -1,9 +1,12 @@
 """Rows of a study of cost that was never run: what must be found in them is known."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from validate.cost.row import QuantityError, Row, Time
+from validate.cost.store import Header, Key, Store
 
 CONFIGURATIONS = 100
 RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
@@ -143,7 +146,30 @@ def study() -> list[Row]:
     rows += grown("chain", "series", "1e-09 mm", "unknowns", chains, 0.0, 2e-6, 1.1, bytes_each=9e3)
     rows += grown("chain", "relative", "", "unknowns", chains[:4], 0.0, 1e-8, 2.9, bytes_each=2e4)
     stopped = Row("growth", "chain", "relative", status="left out", reason="would take an hour")
-    rows.append(Row(**{**vars(stopped), "against": "unknowns", "size": 1500}))
+    rows.append(replace(stopped, against="unknowns", size=1500))
     rows.append(Row("loading", "bounce", "scene", times={"load": time(2e-3)}))
     rows.append(Row("loading", "", "import pointcoord", times={"import": time(0.15)}))
     return rows
+
+
+HEADER = Header(
+    program="pointcoord 0.1.0, code 0123456789ab",
+    machine="a made machine, 2 cores",
+    python="CPython 3.12.0",
+    packages={"numpy": "2.0.0"},
+    threads={"OMP_NUM_THREADS": "1"},
+    command="pointcoord cost",
+)
+
+
+def key(row: Row, digest: str = "0", quick: bool = False) -> Key:
+    """Under which a row is kept."""
+    return Key(row.part, row.scene, digest, row.way, row.setting, row.against, row.size, quick)
+
+
+def kept(path: Path, rows: Sequence[Row], digest: str = "0", quick: bool = False) -> str:
+    """Add rows to a file of rows, which another machine has measured."""
+    store = Store(path, HEADER)
+    for row in rows:
+        store.write(key(row, digest, quick), row)
+    return str(path)

@@ -477,14 +477,18 @@ class Dial:
 
 
 def dials(rows: Iterable[Row], quantity: str = "position") -> list[Dial]:
-    """The dial of each way that has one, by scene."""
+    """The dial of each way that has one, by scene: a setting of ours, or one that moves the error tenfold."""
     groups: dict[tuple[str, str], list[tuple[float, Time, str]]] = {}
+    errors: dict[tuple[str, str], list[float]] = {}
     for row in accuracy_rows(rows):
         time = a_configuration(row, phases(quantity))
-        if row.value is not None and row.value > 0.0 and time is not None:
+        if row.value is not None and row.value > 0.0 and time is not None and quantity in row.errors:
             groups.setdefault((row.scene, row.way), []).append((row.value, time, row.setting))
+            errors.setdefault((row.scene, row.way), []).append(proven(row.errors[quantity]))
     found = []
     for (scene, way), points in groups.items():
+        if way not in OURS and max(errors[scene, way]) < 10.0 * min(errors[scene, way]):
+            continue
         points.sort(key=lambda point: point[0])
         fit = power_law([value for value, _, _ in points], [time.median for _, time, _ in points])
         if fit is not None:

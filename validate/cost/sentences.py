@@ -182,9 +182,13 @@ def _what(group: Sequence[Race]) -> str:
     for quantity, found in accuracies.items():
         together.setdefault(tuple(found), []).append(quantity)
     return "; ".join(
-        f"{listed([words_of(q) for q in quantities])} at {_accuracies(found)}"
+        f"{listed([words_of(q) for q in quantities])} at {_at(found)}"
         for found, quantities in together.items()
     )
+
+
+def _at(accuracies: Sequence[float]) -> str:
+    return "every accuracy" if tuple(accuracies) == ACCURACIES else _accuracies(accuracies)
 
 
 def _accuracies(accuracies: Sequence[float]) -> str:

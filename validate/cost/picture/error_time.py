@@ -124,8 +124,8 @@ def panel(axes: Axes, here: Sequence[Row], quantity: str) -> None:
 
 
 def _decades(errors: Sequence[float], radius: float) -> tuple[float, float]:
-    """Whole decades that hold all errors, and the reference's radius where it is anywhere near them."""
-    low, high = min(errors, default=1e-15), max(errors, default=1.0)
+    """Whole decades that hold all errors, the accuracies, and the reference's radius if it is near them."""
+    low, high = min(errors, default=1e-15), max([*errors, ACCURACIES[0]])
     if radius > 1e-3 * low:
         low = min(low, radius)
     return 10.0 ** math.floor(math.log10(low) - 0.3), 10.0 ** math.ceil(math.log10(high) + 0.1)

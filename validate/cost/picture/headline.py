@@ -15,7 +15,6 @@ from validate.cost.row import Row
 SCENE = "bounce"
 QUANTITIES = ("position", "acceleration")
 WIDE, HIGH, LEFT, RIGHT, TOP, BELOW = 2.55, 2.5, 0.7, 0.95, 0.35, 1.2  # inches
-COLUMNS = 6  # of the legend
 KEY = (
     "* and filled: one solve serves any instant. Down is more accurate, left is quicker. "
     "Dotted: a way's floor."
@@ -55,7 +54,7 @@ def figure(rows: Sequence[Row], found: Findings) -> Figure | None:
             handles=handles((row.way, row.dense) for row in here if row.status == "measured"),
             loc="lower left",
             bbox_to_anchor=(0.1 / wide, 0.22 / high),
-            ncols=COLUMNS,
+            ncols=max(2 * count, 3),
             frameon=False,
             fontsize=7.5,
             handlelength=3.0,

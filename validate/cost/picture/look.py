@@ -54,26 +54,27 @@ class Look:
     size: float = 5.0
 
 
+# No two ways share a marker.
 LOOKS = {
     "series": Look(BLUE, "o", 2.0, 5.5),
     "newton": Look(RED, "s", 1.4),
     "chord": Look(ORANGE, "^", 1.4, 6.0),
-    "newton-cold": Look(RED, "d", 1.2, 6.0),
-    "series-differences": Look(SKY, "o"),
-    "newton-differences": Look(PINK, "s"),
+    "newton-cold": Look(RED, "1", 1.4, 8.0),
+    "series-differences": Look(SKY, "p", 1.2, 6.0),
+    "newton-differences": Look(PINK, "h", 1.2, 6.0),
     "printed": Look(GREY, "x", 1.2, 6.0),
     "absolute": Look(GREEN, "D"),
     "relative": Look(PINK, "P", 1.2, 6.5),
     "scipy-root": Look(SKY, "v", 1.2, 6.0),
-    "scipy-root-jac": Look(BLUE, "v", 1.2, 6.0),
-    "least-squares": Look(ORANGE, "<", 1.2, 6.0),
-    "least-squares-jac": Look(RED, "<", 1.2, 6.0),
+    "scipy-root-jac": Look(BLUE, "<", 1.2, 6.0),
+    "least-squares": Look(ORANGE, ">", 1.2, 6.0),
+    "least-squares-jac": Look(RED, "8", 1.2, 6.0),
     "mujoco": Look(BLACK, "*", 1.2, 9.0),
     "exudyn": Look(GREEN, "X", 1.2, 6.5),
 }
 # For ways that have no look of their own yet, in their order.
 FURTHER = tuple(
-    Look(colour, marker) for marker in ("h", "p", "8", "H") for colour in (BLACK, GREEN, BLUE, RED)
+    Look(colour, marker, 1.2, 7.0) for colour in (BLACK, BLUE, RED) for marker in ("H", "+", "2", "4")
 )
 
 
