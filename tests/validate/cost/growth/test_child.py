@@ -71,6 +71,13 @@ def test_peak_memory_is_the_points_own_and_not_of_those_who_started_it() -> None
     assert nothing <= 4 * MB
 
 
+def test_what_loading_took_and_gave_back_does_not_hide_what_a_point_takes() -> None:
+    task = Ends("takes and gives back", bytes=50 * MB, loading=200 * MB)
+    taken = measure_apart(task, LIMITS).peak_bytes
+    assert taken is not None
+    assert 48 * MB <= taken <= 54 * MB
+
+
 def test_one_thread_is_used_and_the_environment_stays() -> None:
     before = dict(os.environ)
     found = measure_apart(LongChain("newton", 15), LIMITS)

@@ -75,6 +75,21 @@ def test_designs_together_equal_single_ones_to_rounding(
     assert task.check(found) == {}
 
 
+@pytest.mark.parametrize("method", TOGETHER)
+def test_designs_of_one_batch_may_be_measured_in_different_units(method: str) -> None:
+    drawn = scene_named("double-wishbone")
+    boxes = np.ptp(list(designs_of(drawn, 6).values()), axis=0).max(axis=-1)
+    # The longest side of the box about the points just at a power of two, where the unit doubles.
+    scale = 512.0 / np.median(boxes)
+    points = {name: tuple(scale * x for x in place) for name, place in drawn.mechanism.points.items()}
+    scene = drawn.model_copy(update={"mechanism": drawn.mechanism.model_copy(update={"points": points})})
+    task = DesignsTogether(scene, method, 6)
+    run = task.prepare()
+    ((mechanism, _),) = run.blocks
+    assert set(mechanism.unit) == {512.0, 1024.0}
+    assert task.check(run.output(run.solve())) == {}
+
+
 def test_designs_in_a_loop_are_checked_like_designs_together() -> None:
     scene = scene_named("double-wishbone", 1e-9)
     (way,) = ways_named(["series"])
