@@ -28,7 +28,7 @@ from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve.assembly import Path, assemble, blocked, close_drawing, follow
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.status import Status
-from pointcoord.solve.taylor import Settings, build_chain
+from pointcoord.solve.taylor import COARSEST, SOLVED, Settings, build_chain
 from validate.cost.growth.instants import ReadyRun, some_of
 from validate.cost.growth.task import WrongNumber
 from validate.cost.instants import study_instants
@@ -38,8 +38,6 @@ from validate.cost.ways.point_coordinates import counted
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
-Solver = Callable[[Mechanism, Path, Scene, Array], tuple[Array, Work]]
-"""From closed drawings and instants to the unknowns, (designs, N, unknowns), and what it cost."""
 
 INSTANTS = 101
 MOVED = 2.0  # mm, at most, along each axis: what a designer tries, and no drawing turns into another one
@@ -156,7 +154,10 @@ class DesignsTogether:
         blocks = []
         for block in _blocks(self.size):
             mechanism = _mechanism(self.scene, {name: place[block] for name, place in designs.items()})
-            blocks.append((mechanism, close_drawing(mechanism, self.scene.time.start)))
+            settings = _settings(self.scene, mechanism)
+            allowed = allowed_of_a_pose(self.method, settings)
+            closed = close_drawing(mechanism, self.scene.time.start, allowed)
+            blocks.append(Block(mechanism, closed, settings, allowed))
         return BatchRun(self.scene, TOGETHER[self.method], study_instants(self.scene, INSTANTS), blocks)
 
     def check(self, output: Points) -> Mapping[str, QuantityError]:
@@ -170,6 +171,25 @@ class DesignsTogether:
             return {name: places[number] for name, places in output.items()}
 
         return _checked(self.scene, Setting(), self.size, design)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Some designs with their drawings closed.
+
+    Attributes:
+        settings: of a chain of series.
+        allowed: how far a pose may be from the exact assembly, rounding apart, in units.
+    """
+
+    mechanism: Mechanism
+    closed: Path
+    settings: Settings
+    allowed: float
+
+
+Solver = Callable[[Block, Scene, Array], tuple[Array, Work]]
+"""From closed drawings and instants to the unknowns, (designs, N, unknowns), and what it cost."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +207,7 @@ class BatchRun:
     scene: Scene
     solver: Solver
     instants: Array
-    blocks: list[tuple[Mechanism, Path]]
+    blocks: list[Block]
 
     def solve(self) -> Solved:
         """The positions.
@@ -196,9 +216,9 @@ class BatchRun:
             AssemblyError: a design cannot follow the inputs.
         """
         found, work = [], Work()
-        for mechanism, closed in self.blocks:
-            u, done = self.solver(mechanism, closed, self.scene, self.instants)
-            found.append(_places(mechanism, self.scene, self.instants, u))
+        for block in self.blocks:
+            u, done = self.solver(block, self.scene, self.instants)
+            found.append(_places(block.mechanism, self.scene, self.instants, u))
             work += done
         return Solved(found, work)
 
@@ -239,28 +259,39 @@ def _inputs(mechanism: Mechanism, scene: Scene, instant: float, order: int) -> d
     return {name: scene.functions[name].series(instant, order) for name in names}
 
 
-def _by_series(mechanism: Mechanism, closed: Path, scene: Scene, instants: Array) -> tuple[Array, Work]:
+def _settings(scene: Scene, mechanism: Mechanism) -> Settings:
+    """How a chain is cut for all designs of a batch, as finely as the largest of them asks."""
+    return Settings(TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit.max()), derivative=0)
+
+
+def allowed_of_a_pose(method: str, settings: Settings) -> float:
+    """How far a pose may be from the exact assembly, as `simulate` allows it, in units."""
+    return SOLVED * settings.kept.tolerance if method == "series" else min(settings.tolerance, COARSEST)
+
+
+def _by_series(block: Block, scene: Scene, instants: Array) -> tuple[Array, Work]:
     """Unknowns at instants, (designs, N, unknowns), as `simulate` finds them of one design."""
+    mechanism = block.mechanism
     start, stop = scene.time.start, scene.time.stop
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     values = {name: series[..., 0] for name, series in _inputs(mechanism, scene, start, 0).items()}
-    pose = assemble(mechanism, values, start, closed)
-    tolerance = TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit.max())
-    chain = build_chain(mechanism, functions, pose, start, stop, Settings(tolerance, derivative=0))
+    pose = assemble(mechanism, values, start, block.closed, block.allowed)
+    chain = build_chain(mechanism, functions, pose, start, stop, block.settings)
     _require_whole(chain.status)
     n = mechanism.map.unknowns
     pieces = [segment.coefficients[..., :n] for segment in chain.segments]
     return evaluate(chain, pieces, instants, 0)[0], pose.work + chain.work
 
 
-def _by_newton(mechanism: Mechanism, closed: Path, scene: Scene, instants: Array) -> tuple[Array, Work]:
+def _by_newton(block: Block, scene: Scene, instants: Array) -> tuple[Array, Work]:
     """The same by Newton's method for all designs, at each instant from the one before."""
+    mechanism, closed = block.mechanism, block.closed
     n = mechanism.map.unknowns
     found = np.empty((len(closed.y), len(instants), n))
     here, factors, work = closed.y, closed.factors, closed.work
     for i, instant in enumerate(instants.tolist()):
         known = mechanism.known_series(_inputs(mechanism, scene, instant, 0))[..., 0, :]
-        path = follow(mechanism.map, here, known, factors)
+        path = follow(mechanism.map, here, known, factors, block.allowed)
         work += path.work
         if (path.done < 1.0).any():
             problem = "a design cannot be assembled"

@@ -11,11 +11,13 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.pointwise import solve_instants
 from pointcoord.solve.taylor import Settings, build_chain
 from validate.cost.growth.chain import SWING, FourBarChain
+from validate.cost.growth.designs import allowed_of_a_pose
 from validate.cost.growth.task import WrongNumber
 from validate.cost.row import QuantityError
 from validate.cost.way import Setting
@@ -25,7 +27,7 @@ Array = NDArray[np.float64]
 
 INSTANTS = np.array([0.05, 0.1, 0.15, 0.2, 0.25])
 """Of a quarter of the swing, s; the longest chains take a second and more for each."""
-TOLERANCE = 1e-9  # mm, the truncation of series
+TOLERANCE = 1e-9  # mm, of series and of Newton's method
 SCIPY_TOLERANCE = 1e-12  # of scipy's steps, in parts of the coordinates: their rounding is 1e-16
 NOT_RIGHT = 1e-3
 """Of the shortest rocker: an answer that far off is another assembly, or none."""
@@ -112,12 +114,13 @@ class ChainRun:
 
 
 def _series(mechanism: Mechanism) -> Callable[[], Poses]:
-    closed = close_drawing(mechanism)
+    settings = Settings(TRUNCATION_SHARE * TOLERANCE / float(mechanism.unit), derivative=0)
+    allowed = allowed_of_a_pose("series", settings)
+    closed = close_drawing(mechanism, tolerance=allowed)
 
     def solve() -> Poses:
         start, stop = 0.0, float(INSTANTS[-1])
-        pose = assemble(mechanism, {"arm_angle": SWING.series(start, 0)[..., 0]}, start, closed)
-        settings = Settings(TOLERANCE / float(mechanism.unit), derivative=0)
+        pose = assemble(mechanism, {"arm_angle": SWING.series(start, 0)[..., 0]}, start, closed, allowed)
         chain = build_chain(mechanism, {"arm_angle": SWING}, pose, start, stop, settings)
         _require(chain.status.error())
         pieces = [segment.coefficients[..., : mechanism.map.unknowns] for segment in chain.segments]
@@ -127,12 +130,16 @@ def _series(mechanism: Mechanism) -> Callable[[], Poses]:
 
 
 def _newton(mechanism: Mechanism) -> Callable[[], Poses]:
-    closed = close_drawing(mechanism)
+    settings = Settings(TRUNCATION_SHARE * TOLERANCE / float(mechanism.unit), derivative=0)
+    allowed = allowed_of_a_pose("newton", settings)
+    closed = close_drawing(mechanism, tolerance=allowed)
 
     def solve() -> Poses:
         first = float(INSTANTS[0])
-        pose = assemble(mechanism, {"arm_angle": SWING.series(first, 0)[..., 0]}, first, closed)
-        solved = solve_instants(mechanism, {"arm_angle": SWING}, pose, INSTANTS, derivative=0)
+        pose = assemble(mechanism, {"arm_angle": SWING.series(first, 0)[..., 0]}, first, closed, allowed)
+        solved = solve_instants(
+            mechanism, {"arm_angle": SWING}, pose, INSTANTS, derivative=0, tolerance=allowed
+        )
         _require(solved.status.error())
         return Poses(solved.states[0][:, : mechanism.map.unknowns], counted(pose.work + solved.work))
 
@@ -182,7 +189,7 @@ METHODS: Mapping[str, Callable[[Mechanism], Callable[[], Poses]]] = {
 
 SETTINGS: Mapping[str, Setting] = {
     "series": tolerance_settings((TOLERANCE,))[0],
-    "newton": Setting(),
+    "newton": tolerance_settings((TOLERANCE,))[0],
     "scipy-root": Setting(f"xtol {short(SCIPY_TOLERANCE)}", SCIPY_TOLERANCE),
     "scipy-root-jac": Setting(f"xtol {short(SCIPY_TOLERANCE)}", SCIPY_TOLERANCE),
 }

@@ -85,8 +85,8 @@ def test_designs_of_one_batch_may_be_measured_in_different_units(method: str) ->
     scene = drawn.model_copy(update={"mechanism": drawn.mechanism.model_copy(update={"points": points})})
     task = DesignsTogether(scene, method, 6)
     run = task.prepare()
-    ((mechanism, _),) = run.blocks
-    assert set(mechanism.unit) == {512.0, 1024.0}
+    (block,) = run.blocks
+    assert set(block.mechanism.unit) == {512.0, 1024.0}
     assert task.check(run.output(run.solve())) == {}
 
 

@@ -67,7 +67,7 @@ def test_planted_exponents_come_out_of_the_rows() -> None:
     lines = {(g.against, g.way, g.setting) for g in growths(found)}
     assert ("designs", "series", "1e-9 mm, together") in lines
     assert ("designs", "absolute", "one by one") in lines
-    assert ("unknowns", "newton", "") in lines
+    assert ("unknowns", "newton", "1e-9 mm") in lines
 
 
 def test_a_row_says_what_was_varied_and_how_many_poses_it_is_of() -> None:
