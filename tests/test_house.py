@@ -28,6 +28,7 @@ ROOMS = {
         "scene",
         "simulation",
         "drawing_stands",
+        "mapping",
         "__main__",
     ),
     "validate": (
@@ -39,6 +40,7 @@ ROOMS = {
         "reference",
         "paper",
         "peers",
+        "relative",
         "formulations",
         "comparison",
         "cars",

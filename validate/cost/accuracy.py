@@ -334,6 +334,6 @@ class _Race:
             setting=runner.setting.words,
             value=runner.setting.value,
             status=status,
-            reason=" ".join(visible(reason).split()),
+            reason=visible(" ".join(reason.split())),
             dense=runner.way.dense,
         )

@@ -29,6 +29,7 @@ _POINT_COORDINATES: dict[str, Formulation] = {
     for f in (
         PointCoordinates("pointcoord", SERIES),
         PointCoordinates("pointcoord-newton", NEWTON),
+        PointCoordinates("pointcoord-as-asked", SERIES, as_asked=True),
         PointCoordinates("printed", PRINTED),
     )
 }
@@ -36,8 +37,10 @@ _POINT_COORDINATES: dict[str, Formulation] = {
 WORDS = {
     "pointcoord": "point coordinates, by a chain of power series in time",
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
+    "pointcoord-as-asked": "the same series, only as fine as the scene's tolerance asks",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
+    "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
     "mujoco": "the same suspension in MuJoCo, an outside witness",
 }
 """Every formulation by its name, in words."""
@@ -59,15 +62,29 @@ def formulation(name: str) -> Formulation:
         return _POINT_COORDINATES[name]
     if name in OUTSIDE:
         return _outside(name)
-    if name != "absolute":
+    if name not in _IN_PINOCCHIO:
         raise UnknownFormulation(name)
     try:
-        from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+        return _IN_PINOCCHIO[name]()
     except MissingPackage:
         raise
     except ImportError as error:
         raise MissingPackage(name, error) from error
+
+
+def _absolute() -> Formulation:
+    from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+
     return AbsoluteCoordinates()
+
+
+def _relative() -> Formulation:
+    from validate.formulations.relative_coordinates import RelativeCoordinates
+
+    return RelativeCoordinates()
+
+
+_IN_PINOCCHIO: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "relative": _relative}
 
 
 def _outside(name: str) -> Formulation:

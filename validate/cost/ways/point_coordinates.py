@@ -233,7 +233,12 @@ class ReadyInstants:
         error = solved.status.error(None)
         if error is not None:
             raise error
-        return replace(solved, times=times[early:], states=tuple(y[early:] for y in solved.states))
+        return replace(
+            solved,
+            times=times[early:],
+            states=tuple(y[early:] for y in solved.states),
+            left=solved.left[early:],
+        )
 
     def rates(self, solved: Progress) -> Progress:
         """Two linear solves at each pose."""

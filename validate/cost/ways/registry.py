@@ -6,13 +6,15 @@ from collections.abc import Iterable
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
-from validate.cost.ways import absolute, differences, point_coordinates, printed
+from validate.cost.ways import absolute, differences, peers, point_coordinates, printed, scipy_solvers
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
     *differences.WAYS,
     *printed.WAYS,
     *absolute.WAYS,
+    *scipy_solvers.WAYS,
+    *peers.WAYS,
 )
 """All of them, in the order in which tables show them. Optional packages are imported when they are used."""
 
