@@ -161,16 +161,18 @@ def _needs(way: Way) -> str:
 
 
 def _modules() -> tuple[Any, Any]:
-    """The study's scenes and ways.
+    """The study's scenes and ways."""
+    return _module("scenes"), _module("ways.registry")
+
+
+def _module(name: str) -> Any:
+    """A module of the study.
 
     Raises:
-        MissingPackage: they need what the solvers do without.
+        MissingPackage: it needs what the solvers do without.
     """
     try:
-        return (
-            importlib.import_module("validate.cost.scenes"),
-            importlib.import_module("validate.cost.ways.registry"),
-        )
+        return importlib.import_module(f"validate.cost.{name}")
     except ImportError as error:
         raise MissingPackage("cost", error) from None
 
@@ -222,6 +224,8 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
     chosen = tuple(scenes) or of_study.own_scenes()
+    for part in parts:
+        _module(MODULES[part])
     return Study(parts, chosen, ways, options.quick)
 
 
@@ -258,10 +262,7 @@ def _measured(
 
 def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tuple[Row, ...]:
     """Measure what is missing of a part, and give its rows."""
-    try:
-        module = importlib.import_module(f"validate.cost.{MODULES[part]}")
-    except ImportError as error:
-        raise MissingPackage("cost", error) from None
+    module = _module(MODULES[part])
     if part == "accuracy":
         found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=progress)
     elif part == "growth":
