@@ -214,6 +214,8 @@ def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
 def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     """What is to be measured; everything is found before anything is measured."""
     of_study, registry = _modules()
+    for part in parts:
+        _module(MODULES[part])
     ways = registry.WAYS
     if options.ways is not None:
         ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
@@ -224,8 +226,6 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
     chosen = tuple(scenes) or of_study.own_scenes()
-    for part in parts:
-        _module(MODULES[part])
     return Study(parts, chosen, ways, options.quick)
 
 
