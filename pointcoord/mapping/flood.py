@@ -35,8 +35,8 @@ Whole = NDArray[np.int64]
 Corner = tuple[int, ...]
 Key = tuple[Corner, Corner]
 
-# Boxes that are expanded and proven at once: their products stay below some 100 MB.
-BATCH = 8
+# Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
+BATCH = 32
 # A part whose bound is no smaller than this share of the whole's is as exact as rounding lets it be.
 NO_BETTER = 0.9
 # Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
