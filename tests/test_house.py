@@ -39,6 +39,8 @@ ROOMS = {
         "closed_drawing",
         "reference",
         "paper",
+        "peers",
+        "relative",
         "formulations",
         "comparison",
         "cars",

@@ -127,7 +127,10 @@ class ArmAngle:
         outside = ~((angle >= 0.0) & (angle <= np.pi))
         if outside.any():
             worst = float(np.atleast_1d(angle[outside])[0])
-            raise InputOutOfRange(self.input, worst, "0 to pi rad, measured from the upward vertical")
+            allowed = "0 to pi rad, measured from the upward vertical"
+            if 2.0 * np.pi < worst <= 180.0:
+                allowed += f" (if {worst:.10g} is meant in degrees, it is {np.radians(worst):.10g} rad)"
+            raise InputOutOfRange(self.input, worst, allowed)
         with np.errstate(over="ignore", invalid="ignore"):
             return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
 

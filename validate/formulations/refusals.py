@@ -13,6 +13,8 @@ from numbers import Integral
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
 from validate.formulations.protocol import FormulationError
+from validate.peers.linkage import PeerError
+from validate.relative.errors import HardpointsError, InputError, PoseError
 
 DRAWING = "drawing has no assembly"
 HARDPOINTS = "hardpoints make no mechanism"
@@ -39,6 +41,14 @@ def _class_of(reason: Exception) -> str:
         if reason.problem.startswith("the drawing"):
             return DRAWING
         return MOTION if reason.partial is not None else START
+    if isinstance(reason, PeerError):
+        return _of_instant(reason.instant)
+    if isinstance(reason, HardpointsError):
+        return HARDPOINTS
+    if isinstance(reason, InputError):
+        return INPUT
+    if isinstance(reason, PoseError):
+        return _of_instant(reason.instant)
     if type(reason).__module__.partition(".")[0] == "absolute":
         return _class_of_absolute(reason)
     return type(reason).__name__
@@ -53,10 +63,15 @@ def _class_of_absolute(reason: Exception) -> str:
     if isinstance(reason, errors.InputError):
         return INPUT
     if isinstance(reason, errors.PoseError):
-        if reason.instant is None:
-            return DRAWING
-        return START if reason.instant == 0 else MOTION
+        return _of_instant(reason.instant)
     return type(reason).__name__
+
+
+def _of_instant(number: int | None) -> str:
+    """What cannot be solved at an instant, or in the drawing."""
+    if number is None:
+        return DRAWING
+    return START if number == 0 else MOTION
 
 
 def same_reason(first: str, second: str) -> bool:
@@ -122,7 +137,7 @@ def refusal_of(formulation: str, reason: Exception, scene: Scene) -> Refusal:
 
 
 def _instant(reason: Exception, scene: Scene) -> float | None:
-    """The time of a refusal; an error of the absolute model counts the instants."""
+    """The time of a refusal; errors of the models in Pinocchio count the instants."""
     instant = getattr(reason, "instant", None)
     if isinstance(instant, Integral):
         times = scene.instants

@@ -20,7 +20,13 @@ WHAT_IT_GIVES = {
     "toe": (("wheel", "toe"),),
     "caster": (("wheel", "caster"),),
 }
-PAIRS = [("pointcoord", "absolute"), ("pointcoord-newton", "absolute"), ("pointcoord", "pointcoord-newton")]
+PAIRS = [
+    ("pointcoord", "absolute"),
+    ("pointcoord-newton", "absolute"),
+    ("pointcoord", "pointcoord-newton"),
+    ("pointcoord", "relative"),
+    ("absolute", "relative"),
+]
 
 
 @pytest.mark.parametrize("pair", PAIRS)
@@ -58,6 +64,16 @@ def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
     except FormulationError as error:
         # A motion that cannot be assembled is passed over; one that only the absolute model refuses
         # is a finding.
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
+        raise
+    require_agreement(outcome)
+
+
+@given(scenes())
+def test_relative_coordinates_agree_on_random_cars_and_motions(scene: Scene) -> None:
+    try:
+        outcome = compare(scene, "pointcoord", "relative")
+    except FormulationError as error:
         assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
         raise
     require_agreement(outcome)

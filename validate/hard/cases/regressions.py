@@ -80,6 +80,7 @@ CASES: tuple[Case, ...] = (
         scene=_touching,
         expected={
             "pointcoord": Expected(("right", "refused"), 1e-12),
+            "pointcoord-as-asked": Expected(("right", "refused"), 1e-12),
             "pointcoord-newton": Expected(("right", "refused"), 1e-12),
             "absolute": RIGHT_OR_REFUSED,
         },

@@ -1,0 +1,1 @@
+"""A relative-coordinate model of suspensions in Pinocchio: a tree of joints with loop closures."""
