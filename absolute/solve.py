@@ -79,15 +79,27 @@ def solve(
     doubts = doubt_series(tuple(model.inputs), input_errors or {}, count) if errors else None
     record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked))
     try:
-        # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         with np.errstate(over="ignore", invalid="ignore"):
             tracking = Tracking(mechanism)
-            for start in range(0, count, BATCH):
-                _solve_batch(tracking, series[start : start + BATCH], rates, record)
+        solve_instants(tracking, series, rates, record)
     except AbsoluteError as error:
         error.partial = record.solution() if record.written else None
         raise
     return record.solution()
+
+
+def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
+    """Find the poses for inputs (N, 3, inputs) from the assembled drawing on, and write them down.
+
+    Args:
+        rates: as the record was told.
+    Raises:
+        AbsoluteError: an instant cannot be solved; those before it are in the record.
+    """
+    # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
+    with np.errstate(over="ignore", invalid="ignore"):
+        for start in range(0, len(series), BATCH):
+            _solve_batch(tracking, series[start : start + BATCH], rates, record)
 
 
 def _solve_batch(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:

@@ -17,16 +17,19 @@ if TYPE_CHECKING:
         AssemblyError,
         InputNotKnown,
         InputOutOfRange,
+        MapError,
         MechanismError,
         MotionTooLong,
         MotionTooRough,
         NotComputed,
+        NotCovered,
         OutsideMotion,
         PointcoordError,
         SceneError,
         SingularConfiguration,
         UnknownName,
     )
+    from pointcoord.mapping.kinematic_map import KinematicMap, kinematic_map
     from pointcoord.results.motion import Motion
     from pointcoord.results.samples import Samples
     from pointcoord.scene.scene_file import Scene, built_in_scenes
@@ -36,11 +39,14 @@ __all__ = [
     "AssemblyError",
     "InputNotKnown",
     "InputOutOfRange",
+    "KinematicMap",
+    "MapError",
     "MechanismError",
     "Motion",
     "MotionTooLong",
     "MotionTooRough",
     "NotComputed",
+    "NotCovered",
     "OutsideMotion",
     "PointcoordError",
     "Samples",
@@ -50,17 +56,20 @@ __all__ = [
     "Standing",
     "UnknownName",
     "built_in_scenes",
+    "kinematic_map",
     "simulate",
     "standing",
 ]
 
 # Where names are that are no errors.
 _MODULES = {
+    "KinematicMap": "mapping.kinematic_map",
     "Motion": "results.motion",
     "Samples": "results.samples",
     "Scene": "scene.scene_file",
     "Standing": "drawing_stands",
     "built_in_scenes": "scene.scene_file",
+    "kinematic_map": "mapping.kinematic_map",
     "simulate": "simulation",
     "standing": "drawing_stands",
 }

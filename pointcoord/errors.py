@@ -255,3 +255,41 @@ class OutsideMotion(PointcoordError, ValueError):
         super().__init__(
             f"t = {instant:.10g} s is outside the motion; allowed: {start:.10g} to {stop:.10g} s"
         )
+
+
+class MapError(PointcoordError, ValueError):
+    """A kinematic map cannot be made, used or read as it was asked for.
+
+    Args:
+        what: the argument or the file at fault.
+        problem: what is wrong, with the value.
+        allowed: what would be right.
+    """
+
+    def __init__(self, what: str, problem: str, allowed: str) -> None:
+        self.what = what
+        self.problem = problem
+        self.allowed = allowed
+        super().__init__(f"{what} {problem}; allowed: {allowed}")
+
+
+class NotCovered(PointcoordError, ValueError):
+    """Inputs inside the range of a kinematic map at which nothing is proven.
+
+    Args:
+        inputs: value of each input, the first that is not covered.
+        reason: why not.
+        count: how many of those that were asked for are not. asked: how many there are.
+    """
+
+    def __init__(self, inputs: Mapping[str, float], reason: str, count: int, asked: int) -> None:
+        self.inputs = dict(inputs)
+        self.reason = reason
+        self.count = count
+        self.asked = asked
+        place = ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
+        others = f"; {count} of {asked} poses are not covered" if asked > 1 else ""
+        super().__init__(
+            f"the map does not cover {place}: {reason}{others}; keep to what `covers` says, or make the map "
+            "of a smaller range or with more halvings"
+        )

@@ -20,6 +20,7 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES, Method, method_of
+from pointcoord.numerics.rounding import EPS
 from pointcoord.results.closing import ALLOWED, Closing, closing
 from pointcoord.results.motion import Motion
 from pointcoord.results.readout import Readout
@@ -30,7 +31,7 @@ from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.pointwise import solve_instants
-from pointcoord.solve.taylor import COARSEST, FINEST, Settings, build_chain
+from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -104,22 +105,21 @@ def _prepared(scene: Scene, method: Method) -> Task:
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     _check_range(mechanism, functions, scene.instants)
     readout.chassis.states(scene.instants, readout.derivative_of_every_point)
-    first = scene.time.start
-    closed = close_drawing(mechanism, first)
+    first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
+    closed = close_drawing(mechanism, first, tolerance)
     moved = closing(mechanism, closed.y)
     _require_the_drawn_car(scene, moved)
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    start = assemble(mechanism, inputs, first, closed)
+    start = assemble(mechanism, inputs, first, closed, tolerance)
     return Task(scene, method, readout, functions, start, moved)
 
 
 def _by_series(task: Task) -> SolvedScene:
     """Solve a motion as a chain of power series."""
     mechanism, time = task.readout.mechanism, task.scene.time
-    tolerance = TRUNCATION_SHARE * task.scene.tolerance / float(mechanism.unit)
-    settings = Settings(tolerance=tolerance, derivative=task.readout.plan.derivative)
+    settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
     chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
-    notes = _tolerance_notes(task.scene, settings, mechanism)
+    notes = _tolerance_notes(task.scene, mechanism)
     states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
 
@@ -128,7 +128,8 @@ def _at_instants(task: Task) -> SolvedScene:
     """Solve a motion at each of the scene's instants by itself."""
     mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
     term = task.method.square_velocity_term
-    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term)
+    allowed = pose_tolerance(task.scene, task.method, mechanism)
+    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
     return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
 
 
@@ -220,9 +221,38 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
-def _tolerance_notes(scene: Scene, settings: Settings, mechanism: Mechanism) -> tuple[str, ...]:
+def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
+    """How a scene's chain of series is cut.
+
+    Args:
+        derivative: highest time derivative that will be evaluated.
+    """
+    return Settings(TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit), derivative)
+
+
+def finest_tolerance(scene: Scene) -> float:
+    """The finest tolerance that a chain of series keeps, mm: below it truncation drowns in rounding.
+
+    Raises:
+        SceneError: the hardpoints do not make a mechanism.
+    """
+    # Inflated by what taking a share of it may round.
+    return FINEST * (1.0 + 4.0 * EPS) * float(scene_mechanism(scene).unit) / TRUNCATION_SHARE
+
+
+def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
+    """How far a pose that is solved for may be from the exact assembly, rounding apart, in units."""
+    settings = chain_settings(scene, mechanism, 0)
+    if method.by_series:
+        return SOLVED * settings.kept.tolerance
+    # Finer than a sum of series can be, but no coarser.
+    return min(settings.tolerance, COARSEST)
+
+
+def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
-    used = min(max(settings.tolerance, FINEST), COARSEST)
+    settings = chain_settings(scene, mechanism, 0)
+    used = settings.kept.tolerance
     if used == settings.tolerance:
         return ()
     reason = (

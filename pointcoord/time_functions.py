@@ -12,15 +12,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb, factorial, perm
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 
@@ -220,6 +222,9 @@ class Table:
 
     @cached_property
     def _spline(self) -> CubicSpline:
+        # Imported here: it takes seven times as long as numpy, and few scenes have a table.
+        from scipy.interpolate import CubicSpline
+
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return CubicSpline(self.times, self.values, bc_type="not-a-knot", extrapolate=False)
 

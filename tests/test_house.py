@@ -28,6 +28,7 @@ ROOMS = {
         "scene",
         "simulation",
         "drawing_stands",
+        "mapping",
         "__main__",
     ),
     "validate": (
@@ -38,6 +39,7 @@ ROOMS = {
         "closed_drawing",
         "reference",
         "paper",
+        "peers",
         "relative",
         "formulations",
         "comparison",

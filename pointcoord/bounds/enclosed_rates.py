@@ -18,8 +18,9 @@ working precision of numbers that are known to twice the working precision, so n
 what the data have; and it sees whatever a series left out.
 
 What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds,
-with the pose (and the velocity) off by as much as rounding makes them; and of a series what it leaves out on
-purpose, of each derivative apart, because the series of a rate is cut where the pose's is.
+with the pose (and the velocity) off by as much as rounding makes them and as the solver left on purpose; and
+of a series what it leaves out on purpose, of each derivative apart, because the series of a rate is cut where
+the pose's is.
 """
 
 from __future__ import annotations
@@ -80,6 +81,7 @@ def enclosed_coordinates(
     data: tuple[Array, Array, Array],
     driven: Mapping[int, Sequence[Enclosed]],
     summed: Sequence[Summed],
+    unsolved: Array,
     powers: Sequence[Array],
 ) -> list[Enclosed]:
     """The exact coordinates y* and as many of their time derivatives as were solved for, each (N, size).
@@ -89,6 +91,7 @@ def enclosed_coordinates(
         data: what the known coordinates of y lack, their uncertainty and the one expected, (N, size).
         driven: by place in y each driven coordinate with its first and second derivative, each (N,).
         summed: how each of the states was summed; empty if they were solved for.
+        unsolved: how far from its assembly each pose was left on purpose, (N,).
         powers: of the unit of time, s^d, each (N,).
     """
     system, n = mechanism.map, mechanism.map.unknowns
@@ -100,7 +103,7 @@ def enclosed_coordinates(
     proven[:, :n] = rounded + _tail(system, certificate, magnitude)
     rounded = _applied(magnitude, system.uncertainty(y, expected))
     expected = expected + UNIT_ROUNDOFF * np.abs(y)
-    expected[:, :n] += rounded
+    expected[:, :n] += rounded + unsolved[:, None]
     lacking = lacking.copy()
     lacking[:, :n] = -certificate.step
     pose = Enclosed.of(y, lacking, proven, expected)

@@ -120,9 +120,9 @@ def _enclosed(mechanism: Mechanism, pose: Proven, reported: Reported) -> Enclose
         for place, parts in pose.driven.items()
     }
     scaled = [state * p[:, None] for state, p in zip(pose.states, powers, strict=False)]
-    summed = reported.solved.summed(pose.times)
+    summed, unsolved = reported.solved.summed(pose.times), reported.solved.unsolved(pose.times)
     coordinates = enclosed_coordinates(
-        mechanism, pose.factors, pose.certificate, scaled, pose.data, driven, summed, powers
+        mechanism, pose.factors, pose.certificate, scaled, pose.data, driven, summed, unsolved, powers
     )
     added = reported.chassis.enclosed(pose.times, mechanism.origin)
     return EnclosedPoses(mechanism, reported.axes, enclosed_points(mechanism, coordinates), added, powers)

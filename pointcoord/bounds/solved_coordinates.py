@@ -23,3 +23,10 @@ class SolvedCoordinates(Protocol):
     def summed(self, instants: Array) -> Sequence[Summed]:
         """How each of these was summed from a series; empty if they were solved for at the instants."""
         ...
+
+    def unsolved(self, instants: Array) -> Array:
+        """How far from its assembly each pose was left because no more was asked, proven, in units, (N,).
+
+        Rounding, and what a series leaves out, are apart.
+        """
+        ...

@@ -52,6 +52,19 @@ class Drive(Protocol):
         """The coordinate's series from the input's."""
         ...
 
+    def series_over(
+        self, middle: Array, half: Array, order: int, drawing: Drawing
+    ) -> tuple[Array, tuple[Array, Array, Array]]:
+        """The coordinate's series where the input is middle + half s, for all of |s| <= 1.
+
+        Args:
+            middle, half: shape (...).
+        Returns:
+            The series, shape (..., order + 1), and how far it and its first and second derivative by s may be
+            off anywhere there, each (...); what `rounding` says of its first term is lacking apart from that.
+        """
+        ...
+
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """What the computed coordinate of an input lacks, and how uncertain it is with that added.
 
@@ -114,9 +127,35 @@ class ArmAngle:
         outside = ~((angle >= 0.0) & (angle <= np.pi))
         if outside.any():
             worst = float(np.atleast_1d(angle[outside])[0])
-            raise InputOutOfRange(self.input, worst, "0 to pi rad, measured from the upward vertical")
+            allowed = "0 to pi rad, measured from the upward vertical"
+            if 2.0 * np.pi < worst <= 180.0:
+                allowed += f" (if {worst:.10g} is meant in degrees, it is {np.radians(worst):.10g} rad)"
+            raise InputOutOfRange(self.input, worst, allowed)
         with np.errstate(over="ignore", invalid="ignore"):
             return drawing.distance(self.pivot, self.point)[..., None] * cosine(value)
+
+    def series_over(
+        self, middle: Array, half: Array, order: int, drawing: Drawing
+    ) -> tuple[Array, tuple[Array, Array, Array]]:
+        """Terms d half^k / k! by cos(middle + k pi/2), |k| <= order, order 3 or more.
+
+        A term is rounded 2 k times by its powers and factorials and 4 times beside, and the length lacks u of
+        itself. What is left out falls faster than the powers of half / (order + 1), which is below 1.
+        """
+        length, middle, half = drawing.distance(self.pivot, self.point), np.asarray(middle), np.asarray(half)
+        k = np.arange(order + 1)
+        turned = np.stack([np.cos(middle), -np.sin(middle), -np.cos(middle), np.sin(middle)], axis=-1)
+        factorials = np.cumprod(np.maximum(k, 1), dtype=float)
+        sizes = length[..., None] * half[..., None] ** k / factorials
+        series = sizes * turned[..., k % 4]
+        rounded = (2.0 * k + 5.0) * UNIT_ROUNDOFF * np.abs(series)
+        rounded[..., 0] = self.rounding(series[..., 0], drawing, 0.0)[1]
+        doubts: list[Array] = []
+        for d, falling in enumerate((np.ones(order + 1), k, k * (k - 1.0))):
+            first = length * half ** (order + 1) / float(np.prod(np.arange(1.0, order + 2.0 - d)))
+            beyond = first / (1.0 - half / (order + 2.0 - d))
+            doubts.append((rounded * falling).sum(axis=-1) + 1.01 * beyond)
+        return series, (doubts[0], doubts[1], doubts[2])
 
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """The length's rounding is known, so the rise lacks it in proportion.
@@ -184,6 +223,15 @@ class Travel:
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The displacement in the mechanism's units."""
         return value / np.asarray(drawing.unit)[..., None]
+
+    def series_over(
+        self, middle: Array, half: Array, order: int, drawing: Drawing
+    ) -> tuple[Array, tuple[Array, Array, Array]]:
+        """Two terms, exactly."""
+        series = np.zeros((*np.shape(middle), order + 1))
+        series[..., 0], series[..., 1] = middle / drawing.unit, half / drawing.unit
+        exact = np.zeros(np.shape(middle))
+        return series, (exact, exact, exact)
 
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """None of its own: a quotient by a power of two."""

@@ -1,9 +1,19 @@
-r"""Newton's method on the quadratic map, carried on until rounding stops it.
+r"""Newton's method on the quadratic map, carried on until it is as good as asked or rounding stops it.
 
     C_u(y) du = -(C(y) - offset),      u <- u + du
 
-LU with partial pivoting (see `linear`). A step ends the iteration when it is no larger than its own
-rounding error, |C_u^-1| times the uncertainty of C(y): what is left is noise, not progress.
+LU with partial pivoting (see `linear`). A step ends the iteration
+
+- when it is no larger than its own rounding error, |C_u^-1| times the uncertainty of C(y): what is left is
+  noise, not progress;
+- or when what the *next* step would be at most is already below the tolerance. Because C is quadratic, a step
+  d leaves C(y + d) = B(d, d) exactly. With X = C_u(y)^-1, q = |X B(d, d)|, omega = Lipschitz(X C_u) and
+  z = omega |d| >= |I - X C_u(y + d)|, Newton and Kantorovich's theorem (see `kantorovich`) about y + d says
+
+      h = 2 omega q / (1 - z)^2 <= 1:      |u* - u| <= 2 q / ((1 - z)(1 + sqrt(1 - h))),
+
+  and that no other solution lies nearby. So a tolerance saves the step that would only confirm it, and its
+  factorisation; an infinite one asks for no more than that the solution is the only one here.
 """
 
 from __future__ import annotations
@@ -16,12 +26,16 @@ from numpy.typing import NDArray
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 
 # From a start inside the Kantorovich region the error squares at every step: 2^-1 falls below 2^-53 in
 # six steps. Twice that leaves room for starts outside the region that still converge.
 LIMIT = 12
+# The rounding error of a step in parts of eps times the condition number, at most: rows are sums of some ten
+# products of coordinates near 1, each rounded a few times. A larger step need not be compared with it.
+ROUNDINGS = 1e4
 
 
 @dataclass(frozen=True)
@@ -30,11 +44,15 @@ class Converged:
 
     Attributes:
         y: coordinates, shape (..., size).
-        factors: factorisation of C_u at y up to the last, noise-sized step.
-        converged: whether the last step was noise, shape (...,).
+        factors: factorisation of C_u at y up to the last step.
+        converged: whether the last step was noise, or what it leaves is below the tolerance, shape (...,).
         iterations: steps taken by each member, shape (...,).
         first_step: largest component of the first step, shape (...,).
-        noise: largest component of the rounding error of the last step, shape (...,).
+        noise: largest component of the rounding error of the last step, shape (...,); zero where the step was
+            far above it.
+        left: proven distance to the solution, rounding apart, of members that ended by the tolerance,
+            shape (...,); zero of those that ended in noise.
+        last_step: largest component of the last step, shape (...,).
         work: what it cost.
     """
 
@@ -44,28 +62,34 @@ class Converged:
     iterations: NDArray[np.int64]
     first_step: Array
     noise: Array
+    left: Array
+    last_step: Array
     work: Work
 
 
-def newton_refine(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -> Converged:
+def newton_refine(
+    system: QuadraticMap, y: Array, offset: Array | float = 0.0, tolerance: Array | float = 0.0
+) -> Converged:
     """Solve C(u, w) = offset for the unknowns of y, starting from them.
 
     Args:
         y: start, shape (..., size); the known coordinates stay as they are.
         offset: wanted residual, shape (..., rows).
+        tolerance: allowed distance to the solution, rounding apart, shape (...,); none unless given.
     Returns:
         The solution; members that do not converge are marked, never raised, and keep their last y.
     """
     batch, n = y.shape[:-1], system.unknowns
     y = y.reshape(-1, y.shape[-1]).copy()
     offset = np.broadcast_to(offset, (*batch, len(system.rows))).reshape(-1, len(system.rows))
+    allowed = np.broadcast_to(tolerance, batch).ravel()
     members = len(y)
     converged = np.zeros(members, dtype=bool)
     iterations = np.zeros(members, dtype=np.int64)
     first_step = np.full(members, np.nan)
     last_noise = np.full(members, np.inf)
+    left = np.zeros(members)
     previous = np.full(members, np.inf)
-    exact_data = np.zeros(y.shape[-1])
     active = np.arange(members)
     factors: Factors | None = None
     evaluations = 0
@@ -77,8 +101,8 @@ def newton_refine(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -
             local = factorise(system.jacobian(here))
             factors = local if factors is None else factors.replaced(active, local)
             step = -local.solve(system.residual(here) - offset[active])
-            noise = (np.abs(local.preconditioner) @ system.uncertainty(here, exact_data)[..., None])[..., 0]
-        size = np.abs(step).max(axis=-1)
+            size = np.abs(step).max(axis=-1)
+            noise = _noise(system, here, local, size)
         usable = np.isfinite(size) & ~local.singular
         # Below the square root of the rounding unit the error of the next step would be noise as well,
         # so a step that no longer shrinks there is noise that the bound above judged too low.
@@ -89,6 +113,11 @@ def newton_refine(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -
         last_noise[active] = noise.max(axis=-1)
         previous[active] = size
         y[active, :n] += np.where(usable[:, None], step, 0.0)
+        wanted = allowed[active]
+        if (usable & ~small & (wanted > 0.0)).any():
+            rest = what_is_left(system, local, step)
+            left[active] = np.where(small, 0.0, rest)
+            small = small | (rest <= np.minimum(wanted, np.finfo(float).max))
         converged[active] = usable & small
         active = active[usable & ~small]
         if not active.size:
@@ -102,5 +131,35 @@ def newton_refine(system: QuadraticMap, y: Array, offset: Array | float = 0.0) -
         iterations=iterations.reshape(batch),
         first_step=first_step.reshape(batch),
         noise=last_noise.reshape(batch),
+        left=left.reshape(batch),
+        last_step=previous.reshape(batch),
         work=Work(residuals=evaluations, factorisations=evaluations),
     )
+
+
+def _noise(system: QuadraticMap, y: Array, factors: Factors, size: Array) -> Array:
+    """Rounding error of a Newton step, shape (members, unknowns); zero if every step is far above it."""
+    if (size > ROUNDINGS * EPS * factors.condition).all():
+        return np.zeros((*size.shape, system.unknowns))
+    rows = system.uncertainty(y, np.zeros(y.shape[-1]))
+    return np.asarray((np.abs(factors.preconditioner) @ rows[..., None])[..., 0])
+
+
+def what_is_left(system: QuadraticMap, factors: Factors, step: Array) -> Array:
+    """Proven distance to the solution after a Newton step d, rounding apart, shape (...,).
+
+    Infinite where nothing is proven; see the formula above.
+
+    Args:
+        factors: of C_u at the place that the step started from. step: d, shape (..., unknowns).
+    """
+    d = np.zeros((*step.shape[:-1], system.size))
+    d[..., : system.unknowns] = step
+    inverse = factors.preconditioner
+    with np.errstate(all="ignore"):
+        q = np.abs((inverse @ system.residual(d)[..., None])[..., 0]).max(axis=-1)
+        omega = system.lipschitz(inverse, np.ones_like(step))
+        room = 1.0 - omega * np.abs(step).max(axis=-1)
+        constant = 2.0 * omega * q / room**2
+        rest = 2.0 * q / (room * (1.0 + np.sqrt(np.maximum(1.0 - constant, 0.0))))
+    return np.where((room > 0.0) & (constant < 1.0), rest, np.inf)

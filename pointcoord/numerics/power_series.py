@@ -18,7 +18,9 @@ from pointcoord.numerics.quadratic import QuadraticMap
 Array = NDArray[np.float64]
 
 
-def expand(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Array:
+def expand(
+    system: QuadraticMap, factors: Factors, y: Array, known: Array, begun: Array | None = None
+) -> Array:
     """Series of all coordinates about an assembled pose.
 
     Args:
@@ -26,6 +28,7 @@ def expand(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Ar
         y: assembled coordinates, shape (..., size).
         known: series of the known coordinates, shape (..., order + 1, size - unknowns), in the
             mechanism's units per power of the time unit.
+        begun: the first orders, if they are at hand, shape (..., orders, size).
     Returns:
         Coefficients, shape (..., order + 1, size).
     """
@@ -33,9 +36,12 @@ def expand(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Ar
     series = np.zeros((*y.shape[:-1], orders, y.shape[-1]))
     series[..., 1:, n:] = known[..., 1:, :]
     series[..., 0, :] = y
+    first = 1 if begun is None else begun.shape[-2]
+    if begun is not None:
+        series[..., :first, :] = begun
     left, right = system.factors(series)
     driven = np.any(known[..., 1:, :].reshape(-1, orders - 1, known.shape[-1]) != 0.0, axis=(0, 2))
-    for k in range(1, orders):
+    for k in range(first, orders):
         products = np.zeros_like(left[..., 0, :])
         if driven[k - 1]:
             products += left[..., 0, :] * right[..., k, :] + left[..., k, :] * right[..., 0, :]

@@ -109,6 +109,10 @@ class StatesAtInstants:
         """Nothing: they were solved for."""
         return ()
 
+    def unsolved(self, instants: Array) -> Array:
+        """What the tolerance let Newton's method leave."""
+        return self.solved.left[np.searchsorted(self.solved.times, instants)]
+
     @property
     def work(self) -> Work:
         """What solving took, and the states of each instant."""
@@ -189,6 +193,12 @@ class StatesOfChain:
 
         parts = (sums(-2, None), sums(-4, -2), sums(0, None))
         return [Summed(*part) for part in zip(*parts, strict=True)]
+
+    def unsolved(self, instants: Array) -> Array:
+        """What the tolerance let Newton's method leave at the start of each segment."""
+        starts = [segment.start for segment in self.chain.segments]
+        left = np.array([np.max(segment.left) for segment in self.chain.segments])
+        return left[np.searchsorted(starts, instants, side="right") - 1]
 
     @property
     def work(self) -> Work:

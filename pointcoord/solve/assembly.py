@@ -12,12 +12,21 @@ So Kantorovich's condition (see `kantorovich`) along the step needs only three c
 and solves in closed form: up to s = 1 / (z + sqrt(2 omega q)) there is exactly one assembly in a tube
 about the tangent, and it is the continuation of the one that the step started from. The steps shrink on
 their own towards a pose where the path ends.
+
+A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as
+a rule; what it is still off, e = -X (C(y) - offset), is taken along with the next tangent, and the condition
+along y + e + s y1 is
+
+    (1 - omega |e| - s z)^2 >= 2 omega |X B(e + s y1, e + s y1)|,
+
+which solves in closed form as well. Only the end is corrected to the tolerance.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -50,62 +59,110 @@ class Pose:
     """One assembled configuration or a batch of them.
 
     Attributes:
+        mechanism: what is assembled.
         y: coordinates, shape (..., size), in the mechanism's units.
         factors: factorisation of the Jacobian there.
-        residual: largest row of C(y), shape (...,), in the mechanism's units (squared for links).
         iterations: Newton steps that the last correction took, shape (...,).
-        condition: condition number of the Jacobian, rows scaled, maximum norm, shape (...,).
-        bound: proven distance of every coordinate of the solved points to the exact assembly, shape
-            (...,), mm; infinite where nothing is proven. See `kantorovich` for what it covers.
+        left: proven distance to the exact assembly, rounding apart, where a tolerance ended the correction,
+            shape (...,), in the mechanism's units; zero where it went on to rounding.
         work: what it cost.
     """
 
+    mechanism: Mechanism
     y: Array
     factors: Factors
-    residual: Array
     iterations: NDArray[np.int64]
-    condition: Array
-    bound: Array
+    left: Array
     work: Work
+
+    @cached_property
+    def residual(self) -> Array:
+        """Largest row of C(y), shape (...,), in the mechanism's units (squared for links)."""
+        return np.asarray(np.abs(self.mechanism.map.residual(self.y)).max(axis=-1))
+
+    @property
+    def condition(self) -> Array:
+        """Condition number of the Jacobian, rows scaled, maximum norm, shape (...,)."""
+        return self.factors.condition
+
+    @cached_property
+    def bound(self) -> Array:
+        """Proven distance of every coordinate of the solved points to the exact assembly, shape (...,), mm.
+
+        Infinite where nothing is proven. See `kantorovich` for what it covers; computed when it is read.
+        """
+        return pose_bound(self.mechanism, self.y, self.factors)
 
 
 @dataclass(frozen=True)
 class Path:
-    """How far a batch of poses followed their paths: `done` is 1 where the end was reached."""
+    """How far a batch of poses followed their paths: `done` is 1 where the end was reached.
+
+    Attributes:
+        left: as of `Pose`, where the end was reached.
+    """
 
     y: Array
     factors: Factors
     iterations: NDArray[np.int64]
+    left: Array
     done: Array
     work: Work
 
 
-def proven_step(system: QuadraticMap, y: Array, factors: Factors, tangent: Array) -> Array:
+def proven_step(
+    system: QuadraticMap, factors: Factors, tangent: Array, correction: Array | None = None
+) -> Array:
     """Largest s for which the tangent step is proven to stay on its branch, shape (...,).
 
     The condition holds if it holds in any weighted maximum norm. Three are tried: plain, and two that
     weigh each coordinate by the curvature of its own path, so that what hardly moves hardly counts.
+
+    Args:
+        factors: of C_u at the start. tangent: y1, shape (..., size).
+        correction: e, shape (..., size); none if the start is exact.
     """
-    inverse = factors.preconditioner
-    bend = np.abs(inverse @ system.residual(tangent)[..., None])[..., 0]
+    n, inverse = system.unknowns, factors.preconditioner
+
+    def bent(rows: Array) -> Array:
+        return np.asarray(np.abs(inverse @ rows[..., None])[..., 0])
+
+    bend = bent(system.residual(tangent))
     turn = np.abs(inverse @ system.jacobian(tangent))
     largest = bend.max(axis=-1, keepdims=True)
-    best = np.zeros(y.shape[:-1])
+    best = np.zeros(tangent.shape[:-1])
+    if correction is not None:
+        own, both = bent(system.residual(correction)), bent(2.0 * system.polar(correction, tangent))
     for weights in (np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest):
         omega = system.lipschitz(inverse, weights)
         q = (bend / weights).max(axis=-1)
         z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
-        best = np.fmax(best, 1.0 / (z + np.sqrt(2.0 * omega * q)))
+        if correction is None:
+            best = np.fmax(best, 1.0 / (z + np.sqrt(2.0 * omega * q)))
+            continue
+        # The smaller root of (a - s z)^2 = 2 omega (q s^2 + c s + b), with a > 0 left after the correction.
+        a = 1.0 - omega * (np.abs(correction[..., :n]) / weights).max(axis=-1)
+        b, c = ((part / weights).max(axis=-1) for part in (own, both))
+        room, slope = a * a - 2.0 * omega * b, a * z + omega * c
+        root = np.sqrt(np.maximum(slope * slope - (z * z - 2.0 * omega * q) * room, 0.0))
+        best = np.fmax(best, np.where((a > 0.0) & (room > 0.0), room / (slope + root), 0.0))
     return best
 
 
-def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | None = None) -> Path:
+def follow(
+    system: QuadraticMap,
+    y: Array,
+    target: Array,
+    factors: Factors | None = None,
+    tolerance: float = 0.0,
+) -> Path:
     """Carry poses along straight paths to other known coordinates.
 
     Args:
         y: start, shape (..., size); what its residual is not zero by is taken back along the path.
         target: known coordinates at the end, shape (..., size - unknowns).
         factors: factorisation of C_u at y, if it is at hand.
+        tolerance: how far the end may be from the exact assembly, rounding apart, in units.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
@@ -115,10 +172,10 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
     target = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
     start, offset = y[:, n:].copy(), system.residual(y)
     change = target - start
-    remaining = np.ones(len(y))
+    remaining, rest = np.ones(len(y)), np.zeros(len(y))
     iterations = np.zeros(len(y), dtype=np.int64)
     work = Work(residuals=len(y))
-    if factors is None:
+    if factors is None or factors.condition.shape != batch:
         factors = factorise(system.jacobian(y))
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
@@ -128,21 +185,25 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         if not active.size:
             break
         left, local = remaining[active], factors.taken(active)
-        tangent = _tangent(
-            system, y[active], local, change[active] * left[:, None], offset[active] * left[:, None]
-        )
+        here, wanted = y[active], offset[active] * left[:, None]
+        tangent = _tangent(system, here, local, change[active] * left[:, None], wanted)
+        correction = _correction(system, here, local, wanted) if rest[active].any() else None
         with np.errstate(all="ignore"):
-            step = np.minimum(SAFETY * proven_step(system, y[active], local, tangent), 1.0)
+            step = np.minimum(SAFETY * proven_step(system, local, tangent, correction), 1.0)
         # False for a NaN as well; a step that completes the path may be as short as it likes.
         able = (step * left >= SMALLEST_STEP) | (step >= 1.0)
         active, tangent, step, left = active[able], tangent[able], step[able], left[able]
         left = np.where(step >= 1.0, 0.0, left * (1.0 - step))
         guess = y[active] + step[:, None] * tangent
+        if correction is not None:
+            guess += correction[able]
         ahead = start[active] + change[active] * (1.0 - left)[:, None]
         guess[:, n:] = np.where((left == 0.0)[:, None], target[active], ahead)
         if not active.size:
             break
-        reached = newton_refine(system, guess, offset[active] * left[:, None])
+        # On the way it is enough to be where Newton's method is proven to converge.
+        allowed = np.where(left == 0.0, tolerance, np.inf)
+        reached = newton_refine(system, guess, offset[active] * left[:, None], allowed)
         work = work + reached.work
         # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
         # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding. The
@@ -152,15 +213,35 @@ def follow(system: QuadraticMap, y: Array, target: Array, factors: Factors | Non
         good = reached.converged & (orientation(there) == side[active])
         active, left = active[good], left[good]
         y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
+        rest[active] = reached.left[good]
         factors = factors.replaced(active, there.taken(np.flatnonzero(good)))
         active = active[left > 0.0]
+    stopped = np.flatnonzero((remaining > 0.0) & (rest > 0.0))
+    if stopped.size:
+        # Where a path ends is told as exactly as an assembly is.
+        ends = newton_refine(system, y[stopped], offset[stopped] * remaining[stopped][:, None])
+        there = factorise(system.jacobian(ends.y))
+        work += ends.work + Work(factorisations=len(stopped))
+        good = ends.converged & (orientation(there) == side[stopped])
+        stopped = stopped[good]
+        y[stopped], rest[stopped] = ends.y[good], 0.0
+        factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
     return Path(
         y=y.reshape(*batch, -1),
         factors=factors.reshaped(batch),
         iterations=iterations.reshape(batch),
+        left=rest.reshape(batch),
         done=(1.0 - remaining).reshape(batch),
         work=work,
     )
+
+
+def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array) -> Array:
+    """What places are still off, e with C_u e = -(C(y) - wanted), shape (members, size)."""
+    correction = np.zeros_like(y)
+    with np.errstate(all="ignore"):
+        correction[:, : system.unknowns] = -factors.solve(system.residual(y) - wanted)
+    return correction
 
 
 def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array) -> Array:
@@ -176,29 +257,16 @@ def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, of
     return tangent
 
 
-def as_pose(
-    mechanism: Mechanism, y: Array, factors: Factors, iterations: NDArray[np.int64], work: Work
-) -> Pose:
-    """A pose with its residual, condition number and proven bound."""
-    return Pose(
-        y=y,
-        factors=factors,
-        residual=np.abs(mechanism.map.residual(y)).max(axis=-1),
-        iterations=iterations,
-        condition=factors.condition,
-        bound=pose_bound(mechanism, y, factors),
-        work=work,
-    )
-
-
-def close_drawing(mechanism: Mechanism, instant: float | None = None) -> Path:
+def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance: float = 0.0) -> Path:
     """The drawing assembled at its own inputs.
 
+    Args:
+        tolerance: as of `follow`.
     Raises:
         AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
     """
     own = mechanism.drawn[..., mechanism.map.unknowns :]
-    path = follow(mechanism.map, mechanism.drawn, own)
+    path = follow(mechanism.map, mechanism.drawn, own, tolerance=tolerance)
     _require(mechanism, path, own, "the drawing cannot be assembled", instant)
     _require_sense(mechanism, path, instant)
     return path
@@ -209,6 +277,7 @@ def assemble(
     inputs: Mapping[str, Array],
     instant: float | None = None,
     closed: Path | None = None,
+    tolerance: float = 0.0,
 ) -> Pose:
     """The pose for given inputs on the branch of the drawing.
 
@@ -219,15 +288,16 @@ def assemble(
         inputs: value of each input, shape (...,), rad or mm.
         instant: for messages, s.
         closed: the closed drawing, if it is at hand.
+        tolerance: how far the pose may be from the exact assembly, rounding apart, in units.
     Raises:
         AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
     """
     target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
     target = target[..., 0, :]
     drawing = close_drawing(mechanism, instant) if closed is None else closed
-    path = follow(mechanism.map, drawing.y, target)
+    path = follow(mechanism.map, drawing.y, target, drawing.factors, tolerance)
     _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
-    return as_pose(mechanism, path.y, path.factors, path.iterations, drawing.work + path.work)
+    return Pose(mechanism, path.y, path.factors, path.iterations, path.left, drawing.work + path.work)
 
 
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:

@@ -33,12 +33,14 @@ class Solved:
     Attributes:
         times: (N,), s.
         states: y and its time derivatives, each (N, size).
+        left: proven distance of each pose to the exact assembly, rounding apart, in units, (N,).
         work: what it cost.
         status: how it ended.
     """
 
     times: Array
     states: tuple[Array, ...]
+    left: Array
     work: Work
     status: Status = COMPLETE
 
@@ -60,6 +62,7 @@ def solve_instants(
     times: Array,
     derivative: int,
     square_term: SquareVelocityTerm = square_velocity_term,
+    tolerance: float = 0.0,
 ) -> Solved:
     """Solve at each instant, each from the one before.
 
@@ -67,27 +70,28 @@ def solve_instants(
         pose: assembled at the first instant.
         times: increasing instants, shape (N,), s.
         derivative: highest time derivative to solve for, 0 to 2.
+        tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
     Returns:
         The states, up to the first instant that cannot be reached.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
-    y = np.empty((len(times), system.size))
-    here, factors, work = pose.y, pose.factors, Work()
+    y, left = np.empty((len(times), system.size)), np.empty(len(times))
+    here, factors, rest, work = pose.y, pose.factors, pose.left, Work()
     status: Status = COMPLETE
     for i in range(len(times)):
         if i > 0:
-            path = follow(system, here, known[i, 0], factors)
+            path = follow(system, here, known[i, 0], factors, tolerance)
             work += path.work
             if path.done < 1.0:
                 problem = "the mechanism cannot be assembled"
                 status = blocked(mechanism, problem, path, known[i, 0], path.done < 1.0, float(times[i]))
-                y, known, times = y[:i], known[:i], times[:i]
+                y, left, known, times = y[:i], left[:i], known[:i], times[:i]
                 break
-            here, factors = path.y, path.factors
-        y[i] = here
+            here, factors, rest = path.y, path.factors, path.left
+        y[i], left[i] = here, rest
     y[:, n:] = known[:, 0]
-    solved = _with_rates(system, y, known, times, derivative, square_term, work)
+    solved = _with_rates(system, y, known, times, derivative, square_term, work, left)
     return replace(solved, status=status)
 
 
@@ -99,6 +103,7 @@ def _with_rates(
     derivative: int,
     square_term: SquareVelocityTerm,
     work: Work,
+    left: Array | None = None,
 ) -> Solved:
     states = [y]
     if derivative >= 1:
@@ -108,7 +113,8 @@ def _with_rates(
         states.append(_rate(system, factors, y, known[:, 1], 0.0))
     if derivative >= 2:
         states.append(_rate(system, factors, y, 2.0 * known[:, 2], square_term(system, states[1])))
-    return Solved(times, tuple(states), work + Work(rate_solves=derivative * len(times)))
+    rest = np.zeros(len(times)) if left is None else left
+    return Solved(times, tuple(states), rest, work + Work(rate_solves=derivative * len(times)))
 
 
 def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:

@@ -22,10 +22,17 @@ from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
+from validate.cost.errors import errors_of, truth_of
+from validate.cost.store import Header
+from validate.cost.store import Store as RowStore
+from validate.cost.way import Setting
+from validate.cost.ways.registry import ways_named
+from validate.cost.ways.scipy_solvers import WAYS as SCIPY
 from validate.formulations.protocol import Accuracy
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.output.motion_tables import write_motion
+from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
 from validate.reference.candidates import choices_of_table
 from validate.reference.certificate import certify, refine
@@ -92,6 +99,17 @@ def blocked() -> object:
         return mechanism.targets(values, change, [0.0, 0.0])
 
     return follow(mechanism, assemble(mechanism)[0], path)
+
+
+def outside(points: Mapping[str, Any]) -> object:
+    return linkage_of("macpherson", points, *UPRIGHT.values(), "collinear")
+
+
+def leaving_by_scipy() -> object:
+    """The rack goes half a metre, which no tie rod follows."""
+    scene = changed(inputs={"rack": {"polynomial": [0.0, 500.0]}, "arm_angle": {"constant": 1.6}})
+    way = next(way for way in SCIPY if way.name == "scipy-root")
+    return way.prepare(scene, Setting("", 1e-9)).solve(scene.instants)
 
 
 def uncertified() -> object:
@@ -239,6 +257,16 @@ RECIPES: dict[str, Recipe] = {
     "validate.studies.chunk_store.StoreError": Recipe(
         lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
     ),
+    "validate.cost.store.StoreError": Recipe(
+        lambda folder, _: RowStore(folder, Header.here()), ("cannot be read", "directory", "another file")
+    ),
+    "validate.cost.way.LeftOut": Recipe(
+        lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), Setting()),
+        ("the paper prints the strut",),
+    ),
+    "validate.cost.errors.NoNumbers": Recipe(
+        lambda *_: errors_of({}, truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
+    ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
         ("pointcoord: ", "rack = 500", "bring 'rack' back"),
@@ -255,6 +283,16 @@ RECIPES: dict[str, Recipe] = {
         ),
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
         {"part": "absolute", "package": "absolute"},
+    ),
+    "validate.peers.linkage.PeerError": Recipe(
+        lambda *_: outside(TABLE | {"lower_arm_rear": TABLE["lower_arm_front"]}),
+        ("lower_arm_front and lower_arm_rear are at the same place",),
+        {"problem": bool, "instant": None},
+    ),
+    "validate.cost.ways.scipy_solvers.SolverStopped": Recipe(
+        lambda *_: leaving_by_scipy(),
+        ("scipy.optimize.root at t = ", "not making good progress"),
+        {"solver": "root", "where": lambda place: place.startswith("t = ")},
     ),
     "validate.output.files.OutputError": Recipe(
         lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),

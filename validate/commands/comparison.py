@@ -73,6 +73,7 @@ class _Results:
     scenes: list[dict[str, Any]] = field(default_factory=list)
     statuses: list[ExitStatus] = field(default_factory=list)
     agreed: dict[tuple[str, str], int] = field(default_factory=dict)
+    uncompared: int = 0
     printed: list[str] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
@@ -81,6 +82,7 @@ class _Results:
     def add(self, examined: Examined) -> None:
         self.scenes.append(report.examined_data(examined))
         self.statuses.append(examined.status)
+        self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
             first, second = (s.formulation for s in outcome.solutions)
             self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.agreed
@@ -193,4 +195,6 @@ def _say_at_the_end(
         f"{pair[1]}"
         for i, pair in enumerate(pairs)
     ]
-    console.say(", ".join(told) + ".")
+    # No agreement is no disagreement yet: what was not compared is counted apart.
+    rest = f"; {results.uncompared} of {count} could not be compared at all" if results.uncompared else ""
+    console.say(", ".join(told) + rest + ".")

@@ -43,7 +43,8 @@ class Row:
     Attributes:
         part: of the study.
         scene: its name. way: its name. setting, value: see `way.Setting`.
-        status: whether there are numbers; `reason` says why not, in words.
+        status: whether there are numbers; `reason` says why not, in words, or why there are fewer of them
+            than of others.
         configurations: how many poses one solve gives.
         dense: whether one solve serves any instant.
         errors: by quantity (see `pointcoord.effects.registry.QUANTITIES`).

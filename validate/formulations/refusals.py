@@ -13,6 +13,7 @@ from numbers import Integral
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
 from validate.formulations.protocol import FormulationError
+from validate.peers.linkage import PeerError
 from validate.relative.errors import HardpointsError, InputError, PoseError
 
 DRAWING = "drawing has no assembly"
@@ -40,6 +41,8 @@ def _class_of(reason: Exception) -> str:
         if reason.problem.startswith("the drawing"):
             return DRAWING
         return MOTION if reason.partial is not None else START
+    if isinstance(reason, PeerError):
+        return _of_instant(reason.instant)
     if isinstance(reason, HardpointsError):
         return HARDPOINTS
     if isinstance(reason, InputError):

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from pointcoord.method import NEWTON, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
+
+if TYPE_CHECKING:
+    from validate.formulations.outside_programs import Engine
+    from validate.peers.linkage import Linkage
 
 
 class UnknownFormulation(Exception):
@@ -24,6 +29,7 @@ _POINT_COORDINATES: dict[str, Formulation] = {
     for f in (
         PointCoordinates("pointcoord", SERIES),
         PointCoordinates("pointcoord-newton", NEWTON),
+        PointCoordinates("pointcoord-as-asked", SERIES, as_asked=True),
         PointCoordinates("printed", PRINTED),
     )
 }
@@ -31,24 +37,31 @@ _POINT_COORDINATES: dict[str, Formulation] = {
 WORDS = {
     "pointcoord": "point coordinates, by a chain of power series in time",
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
+    "pointcoord-as-asked": "the same series, only as fine as the scene's tolerance asks",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
+    "mujoco": "the same suspension in MuJoCo, an outside witness",
 }
 """Every formulation by its name, in words."""
 
 NAMES = tuple(WORDS)
 
+OUTSIDE = ("mujoco",)
+"""Other people's programs, which the extra `peers` brings."""
+
 
 def formulation(name: str) -> Formulation:
-    """A formulation by its name. Only the models in Pinocchio need it, and only when they are used.
+    """A formulation by its name; what it needs is imported when it is used.
 
     Raises:
         UnknownFormulation: no formulation has this name.
-        MissingPackage: Pinocchio is not installed, or does not load.
+        MissingPackage: a package that it needs is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
+    if name in OUTSIDE:
+        return _outside(name)
     if name not in _IN_PINOCCHIO:
         raise UnknownFormulation(name)
     try:
@@ -72,3 +85,22 @@ def _relative() -> Formulation:
 
 
 _IN_PINOCCHIO: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "relative": _relative}
+
+
+def _outside(name: str) -> Formulation:
+    from validate.formulations.outside_programs import OutsideProgram
+
+    return OutsideProgram(name, engine_of(name))
+
+
+def engine_of(name: str) -> Callable[[Linkage], Engine]:
+    """What makes a linkage a model of one of the programs in `OUTSIDE`.
+
+    Raises:
+        MissingPackage: the program is not installed, or does not load.
+    """
+    try:
+        from validate.peers.in_mujoco import InMujoco
+    except ImportError as error:
+        raise MissingPackage(name, error, "peers") from error
+    return InMujoco

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from contextlib import suppress
 
@@ -27,6 +28,7 @@ class Console:
         self.mute = False
         self.written: list[str] = []
         self._reader_gone = False
+        self._in_progress = False
 
     def require(self, what_else: str) -> None:
         """Refuse a closed standard output, before anything is solved.
@@ -97,10 +99,27 @@ class Console:
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
+        self.end_progress()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
                 print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
+
+    def progress(self, message: str) -> None:
+        """A line on a terminal's standard error, in the place of the one before; nothing elsewhere."""
+        if not self.quiet and sys.stderr is not None and sys.stderr.isatty():
+            width = max(shutil.get_terminal_size().columns - 1, 20)
+            with suppress(OSError, ValueError):
+                print(f"\r{one_line(message)[:width].ljust(width)}", end="", file=sys.stderr, flush=True)
+                self._in_progress = True
+
+    def end_progress(self) -> None:
+        """Take the line of progress away."""
+        if self._in_progress:
+            self._in_progress = False
+            width = max(shutil.get_terminal_size().columns - 1, 20)
+            with suppress(OSError, ValueError):
+                print("\r" + " " * width, end="\r", file=sys.stderr, flush=True)
 
     def note(self, message: str) -> None:
         """One line on standard error of what was taken for granted; nothing if the run is quiet."""

@@ -36,6 +36,8 @@ def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float
         iterations=np.array(2),
         first_step=np.array(first_step),
         noise=np.array(0.0),
+        left=np.array(0.0),
+        last_step=np.array(first_step),
         work=Work(),
     )
     return bool(on_branch(PARABOLA, np.array(1.0), series, S, reached, factors))

@@ -66,7 +66,8 @@ def test_polishing_a_polished_pose_takes_one_step_of_noise(strut: Mechanism, pos
     again = newton_refine(strut.map, pose.y)
     assert again.converged
     assert again.iterations == 1
-    assert again.first_step <= float(pose.bound / strut.unit)
+    # It shows what the pose is off, and its own rounding.
+    assert again.first_step <= float(pose.bound / strut.unit) + again.noise
 
 
 def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:

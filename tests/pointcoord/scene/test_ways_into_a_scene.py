@@ -90,7 +90,7 @@ def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_h
         notes = [note for note in motion.notes if note != motion.closing.words]
         assert len(notes) == (words is not None)
         assert words is None or words in notes[0]
-    # Newton's method goes on until rounding stops it, whatever the tolerance.
+    # Newton's method is no finer than it is asked to be, but each pose keeps to its branch by a proof.
     motion = simulate(BOUNCE.model_copy(update={"tolerance": 50.0}), "newton")
     assert motion.notes == (motion.closing.words,)
 

@@ -242,7 +242,7 @@ def test_proven_step_stays_within_newtons_reach_of_the_path(
     tangent = change.copy()
     factors = factorise(mechanism.map.jacobian(pose.y))
     tangent[:n] = -factors.solve(2.0 * mechanism.map.polar(pose.y, change))
-    step = float(proven_step(mechanism.map, pose.y, factors, tangent))
+    step = float(proven_step(mechanism.map, factors, tangent))
     assert 0.0 < step < np.inf
     # What is proven: along the whole step the Jacobian stays regular. Its determinant keeps its sign.
     shares = np.linspace(0.0, 0.999 * step, 40)

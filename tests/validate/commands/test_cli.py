@@ -66,6 +66,21 @@ def test_json_of_the_main_job_holds_the_printed_tables(tmp_path: Path) -> None:
     assert all(scene["refusals"] == [] for scene in data["scenes"])
 
 
+def test_an_angle_that_only_degrees_explain_is_asked_about(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for value, asked in ("88.0", True), ("3.5", False), ("200.0", False):
+        text = scene_file(
+            tmp_path,
+            ("arm_angle = { polynomial = [0.8, 0.25, 0.0625] }", f"arm_angle = {{ constant = {value} }}"),
+        )
+        assert main(["validate", text]) == 3
+        out, err = capsys.readouterr()
+        assert ("if 88 is meant in degrees, it is 1.535889742 rad" in err) == asked
+        assert "0 of 1 scenes agree" in out
+        assert "1 of 1 could not be compared at all" in out
+
+
 def test_a_disagreement_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", "bounce", "--second", "printed"]) == 1
     assert "DISAGREES" in capsys.readouterr().out

@@ -7,9 +7,9 @@ from typing import Any
 from validate.cars.car import Car
 from validate.cars.input_limits import Linkage
 from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.case import Case, decades
+from validate.hard.case import RIGHT, Case, decades
 from validate.hard.cases.dead_points import inside, near_end
-from validate.hard.cases.laws import law_cases
+from validate.hard.cases.laws import OURS, law_cases
 
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
 
@@ -95,5 +95,6 @@ CASES: tuple[Case, ...] = (
         "tolerance of the scene, mm",
         tuple(1.0 / x for x in BY_25),
         _tolerance,
+        expected={**OURS, "pointcoord-as-asked": RIGHT},
     ),
 )

@@ -84,6 +84,7 @@ CASES: tuple[Case, ...] = (
         scene=_touching,
         expected={
             "pointcoord": Expected(("right", "refused"), 1e-12),
+            "pointcoord-as-asked": Expected(("right", "refused"), 1e-12),
             "pointcoord-newton": Expected(("right", "refused"), 1e-12),
             "absolute": RIGHT_OR_REFUSED,
             "relative": RIGHT_OR_REFUSED,

@@ -1,0 +1,117 @@
+"""The inputs that a map is made over, and their range cut into boxes.
+
+A box halves the range of each input some times over. Its place is kept in whole numbers, in parts of the
+smallest box, so that boxes that touch are known to, exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.drives import Drive
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.multi_index import powers
+from pointcoord.numerics.rounding import EPS
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Ranges of the inputs of a mechanism of one car.
+
+    Attributes:
+        ranges: of every input that drives it, rad or mm; one whose ends are the same is held there.
+        halvings: how often the range of an input is halved at most.
+    """
+
+    mechanism: Mechanism
+    ranges: Mapping[str, tuple[float, float]]
+    halvings: int
+
+    @cached_property
+    def free(self) -> tuple[str, ...]:
+        """The inputs that are not held: the variables of the series."""
+        names = self.mechanism.topology.required_inputs
+        return tuple(name for name in names if self.ranges[name][0] < self.ranges[name][1])
+
+    @property
+    def parts(self) -> int:
+        """How many of the smallest boxes lie along a range."""
+        return 1 << self.halvings
+
+    @cached_property
+    def ends(self) -> tuple[Array, Array]:
+        """The lower and the upper ends of the free inputs, each (p,)."""
+        low, high = np.array([self.ranges[name] for name in self.free]).reshape(-1, 2).T
+        return low, high
+
+    def inputs_at(self, twice: Whole) -> Array:
+        """Values of the free inputs at places given in halves of the smallest box, shape (..., p)."""
+        low, high = self.ends
+        share = twice / (2.0 * self.parts)
+        return np.asarray(np.where(share >= 1.0, high, low + (high - low) * share))
+
+    def middle_and_half(self, low: Whole, high: Whole) -> tuple[Array, Array]:
+        """Middles of boxes, and half widths that reach both ends whatever is rounded, each (..., p)."""
+        first, last = self.inputs_at(2 * low), self.inputs_at(2 * high)
+        middle = first + 0.5 * (last - first)
+        half = np.maximum(last - middle, middle - first) * (1.0 + 4.0 * EPS)
+        return middle, half
+
+    def known_at(self, values: Array) -> Array:
+        """Known coordinates at values of the free inputs, shape (..., p) to (..., known coordinates)."""
+        batch = values.shape[:-1]
+        series = {
+            name: np.full((*batch, 1), self.ranges[name][0])
+            for name in self.mechanism.topology.required_inputs
+        }
+        series |= {name: values[..., i, None] for i, name in enumerate(self.free)}
+        return self.mechanism.known_series(series)[..., 0, :]
+
+    def known_over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Jet]:
+        """Series of the known coordinates over boxes, shapes (P, p).
+
+        Returns:
+            Coefficients, (P, powers, known coordinates); what those of the middle lack, (P, size); and how
+            far the series are off beside that, (P, size).
+        """
+        mechanism, count = self.mechanism, len(self.free)
+        layout, every = mechanism.layout, powers(count, order)
+        boxes, first = len(middle), layout.unknowns
+        known = np.zeros((boxes, every.count, layout.size - first))
+        known[:, 0] = mechanism.drawn[first:]
+        lacking = np.tile(mechanism.drawn_lacks, (boxes, 1))
+        value = np.tile(mechanism.drawn_doubt, (boxes, 1))
+        rates = np.zeros((boxes, count, layout.size))
+        curves = np.zeros((boxes, count, count, layout.size))
+        for drive in mechanism.topology.drives:
+            place = layout.scalar(drive.coordinate)
+            series, doubts, variable = self._driven(drive, middle, half, order)
+            known[:, 0, place - first] = series[:, 0]
+            lacking[:, place] = drive.rounding(series[:, 0], mechanism.drawing, 0.0)[0]
+            value[:, place] = doubts[0]
+            if variable is not None:
+                along = [every.power_of(variable, k) for k in range(1, order + 1)]
+                known[:, along, place - first] = series[:, 1:]
+                rates[:, variable, place] = doubts[1]
+                curves[:, variable, variable, place] = doubts[2]
+        return known, lacking, Jet(value, rates, curves)
+
+    def _driven(
+        self, drive: Drive, middle: Array, half: Array, order: int
+    ) -> tuple[Array, tuple[Array, Array, Array], int | None]:
+        """A driven coordinate's series, its doubts, and the variable that it is a series in, if any."""
+        drawing = self.mechanism.drawing
+        if drive.input in self.free:
+            i = self.free.index(drive.input)
+            return (*drive.series_over(middle[:, i], half[:, i], order, drawing), i)
+        held = np.full(len(middle), self.ranges[drive.input][0])
+        return (*drive.series_over(held, np.zeros(len(middle)), order, drawing), None)

@@ -1,0 +1,175 @@
+r"""Sums of series in several inputs at many values, and their time derivatives along any laws.
+
+The powers of a total degree are those of the degree below times one variable each: s_1 times all of them, s_2
+times those without s_1, and so on. With batch last every such product is one call on contiguous numbers, and
+its rates follow Leibniz' rule, (s m)' = s' m + s m' and (s m)'' = s'' m + 2 s' m' + s m''. So
+
+    p = Y(a, b),  v = Y_a a' + Y_b b',  acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb
+    b'^2
+
+are three products with one and the same matrix of coefficients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.mapping.multi_index import powers
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+# Poses per matrix product: their powers, 90 in two inputs, stay in a second-level cache.
+BLOCK = 512
+
+
+@dataclass(frozen=True)
+class Step:
+    """Powers low .. high are variable `variable` times the powers first .. last."""
+
+    low: int
+    high: int
+    variable: int
+    first: int
+    last: int
+
+
+@lru_cache(maxsize=32)
+def steps(inputs: int, order: int) -> tuple[Step, ...]:
+    """How the powers are made of each other, in the order of `multi_index.powers`."""
+    found, last = [], 1
+    for degree in range(1, order + 1):
+        place = last
+        for variable in range(inputs):
+            # Of the degree below, those without the variables before this one come last.
+            others = inputs - variable
+            count = comb(degree - 1 + others - 1, others - 1)
+            found.append(Step(place, place + count, variable, last - count, last))
+            place += count
+        last = place
+    return tuple(found)
+
+
+def monomials(states: Sequence[Array], order: int) -> list[Array]:
+    """Powers of the variables, and their time derivatives.
+
+    Args:
+        states: the variables and as many of their derivatives as are wanted, each (p, N).
+    Returns:
+        As many arrays of shape (powers, N).
+    """
+    inputs, count = states[0].shape
+    every = comb(order + inputs, inputs)
+    found = [np.empty((every, count)) for _ in states]
+    found[0][0] = 1.0
+    for rates in found[1:]:
+        rates[0] = 0.0
+    for step in steps(inputs, order):
+        here, before, i = slice(step.low, step.high), slice(step.first, step.last), step.variable
+        np.multiply(states[0][i], found[0][before], out=found[0][here])
+        if len(states) > 1:
+            np.multiply(states[0][i], found[1][before], out=found[1][here])
+            found[1][here] += states[1][i] * found[0][before]
+        if len(states) > 2:
+            np.multiply(states[0][i], found[2][before], out=found[2][here])
+            found[2][here] += 2.0 * states[1][i] * found[1][before]
+            found[2][here] += states[2][i] * found[0][before]
+    return found
+
+
+def sum_series(
+    coefficients: Array,
+    middle: Array,
+    half: Array,
+    order: int,
+    patch: Whole,
+    states: Sequence[Array],
+) -> Array:
+    """Sum each pose's series, and its time derivatives.
+
+    Args:
+        coefficients: shape (P, powers, m). middle, half: of the patches' boxes, (P, p).
+        patch: which one each pose lies on, shape (N,).
+        states: inputs and their time derivatives, each (N, p).
+    Returns:
+        Shape (derivatives + 1, N, m), per s^d.
+    """
+    count = len(patch)
+    result = np.empty((len(states), count, coefficients.shape[-1]))
+    if count and (patch == patch[0]).all():
+        _sum_on(coefficients, middle, half, order, int(patch[0]), states, result, None)
+        return result
+    # Whole numbers of 16 bits are sorted in one pass over their digits.
+    small = patch.astype(np.int16) if len(coefficients) < 2**15 else patch
+    by_patch = np.argsort(small, kind="stable")
+    counts = np.bincount(patch, minlength=len(coefficients))
+    last = np.cumsum(counts)
+    for number in np.flatnonzero(counts):
+        members = by_patch[last[number] - counts[number] : last[number]]
+        _sum_on(coefficients, middle, half, order, int(number), states, result, members)
+    return result
+
+
+def _sum_on(
+    coefficients: Array,
+    middle: Array,
+    half: Array,
+    order: int,
+    number: int,
+    states: Sequence[Array],
+    result: Array,
+    members: NDArray[np.intp] | None,
+) -> None:
+    """Sum on one patch, for some of the poses or for all."""
+    table, centre = coefficients[number, 1:], middle[number]
+    scale = 1.0 / half[number]
+    count = result.shape[1] if members is None else len(members)
+    for low in range(0, count, BLOCK):
+        here = slice(low, low + BLOCK) if members is None else members[low : low + BLOCK]
+        local = [np.ascontiguousarray(state[here].T) for state in states]
+        local[0] -= centre[:, None]
+        for state in local:
+            state *= scale[:, None]
+        for d, block in enumerate(monomials(local, order)):
+            summed = block[1:].T @ table
+            if d == 0:
+                summed += coefficients[number, 0]
+            result[d, here] = summed
+
+
+@lru_cache(maxsize=32)
+def _exponents(inputs: int, order: int) -> tuple[Array, list[NDArray[np.intp]]]:
+    """0 .. order, and the exponents of every power but the first by variable."""
+    return np.arange(order + 1.0), list(powers(inputs, order).exponents[1:].T)
+
+
+def sum_series_once(
+    coefficients: Array, middle: Array, half: Array, order: int, states: Sequence[Array]
+) -> Array:
+    """The same for one pose on one patch, with as few calls as possible.
+
+    Args:
+        coefficients: shape (powers, m). middle, half: (p,).
+        states: inputs and their time derivatives, each (p,).
+    Returns:
+        Shape (derivatives + 1, m), per s^d.
+    """
+    if len(states) > 1:
+        local = [((states[0] - middle) / half)[:, None], *((state / half)[:, None] for state in states[1:])]
+        rows = np.stack([row[1:, 0] for row in monomials(local, order)])
+        result = np.asarray(rows @ coefficients[1:])
+        result[0] += coefficients[0]
+        return result
+    exponents, which = _exponents(len(middle), order)
+    row: Array | None = None
+    for value, at, width, k in zip(states[0].tolist(), middle.tolist(), half.tolist(), which, strict=True):
+        own = (((value - at) / width) ** exponents)[k]
+        row = own if row is None else row * own
+    assert row is not None  # a map has an input
+    return np.asarray(row @ coefficients[1:] + coefficients[0])[None]

@@ -1,0 +1,319 @@
+r"""Covering a range of inputs with proven patches, outwards from a pose, on one branch.
+
+A box is entered at a pose that is known to be on the branch. From there a path goes straight to its middle
+that cannot change branch (see `solve.assembly`), where the series starts. A patch that is proven, and near
+enough, is kept, and its neighbours are entered where they touch it. A box that fails is halved in the input
+that its failure depends on most, and its parts are entered at its middle, or where it was entered itself.
+So boxes shrink towards folds, and beyond the smallest they are given up, with the reason.
+
+In the end neighbours are compared: each is alone within a proven distance, so where they touch they are the
+same assembly or are seen not to be. Two ways around a point where folds meet can lead to two assemblies at
+the same inputs; the one that came later is then given up, so that nothing crosses from the one to the
+other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.mapping.domain import Domain
+from pointcoord.mapping.evaluation import monomials
+from pointcoord.mapping.expansion import expand_in_inputs
+from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.patch_proof import PatchProof, prove_patches
+from pointcoord.mapping.reported_points import reported_points
+from pointcoord.numerics.linear import factorise
+from pointcoord.solve.assembly import follow
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+Corner = tuple[int, ...]
+Key = tuple[Corner, Corner]
+
+# Boxes that are expanded and proven at once: their products stay below some 100 MB.
+BATCH = 8
+# A part whose bound is no smaller than this share of the whole's is as exact as rounding lets it be.
+NO_BETTER = 0.9
+
+FOLD = "no patch can be proven here down to the smallest: a fold, where assemblies meet or end, is near"
+ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
+UNREACHED = "not reached from the drawing without crossing what is not covered"
+SEAM = "two ways from the drawing around a place that is not covered lead to different assemblies here"
+TOO_MANY = "the most patches that are allowed were used before this place was reached"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Where a box is entered.
+
+    Attributes:
+        twice: the place, in halves of the smallest box, (p,).
+        y: the pose there, (size,).
+        bound: of the patch that this box is a part of, where that was proven but not near enough.
+    """
+
+    twice: Whole
+    y: Array
+    bound: float = np.inf
+
+
+@dataclass(frozen=True)
+class Patches:
+    """Proven patches.
+
+    Attributes:
+        low, high: corners of the boxes, in the smallest ones, (P, p).
+        series: of the unknown coordinates, (P, powers, unknowns), in the mechanism's units.
+        error: of these on each patch, (P, unknowns). unique_within: no other assembly is nearer, likewise.
+        coefficients: of the reported points, (P, powers, 3 points), mm. off: errors of their sums.
+        condition: condition number of the Jacobian at the middle, (P,).
+        contraction: of the proof, (P,).
+    """
+
+    low: Whole
+    high: Whole
+    series: Array
+    error: Array
+    unique_within: Array
+    coefficients: Array
+    off: Jet
+    condition: Array
+    contraction: Array
+
+    def taken(self, places: NDArray[np.intp]) -> Patches:
+        """Some of them."""
+        return Patches(
+            low=self.low[places],
+            high=self.high[places],
+            series=self.series[places],
+            error=self.error[places],
+            unique_within=self.unique_within[places],
+            coefficients=self.coefficients[places],
+            off=self.off.each(lambda part: part[places]),
+            condition=self.condition[places],
+            contraction=self.contraction[places],
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Patches]) -> Patches:
+        """Several as one."""
+        return Patches(
+            low=np.concatenate([part.low for part in parts]),
+            high=np.concatenate([part.high for part in parts]),
+            series=np.concatenate([part.series for part in parts]),
+            error=np.concatenate([part.error for part in parts]),
+            unique_within=np.concatenate([part.unique_within for part in parts]),
+            coefficients=np.concatenate([part.coefficients for part in parts]),
+            off=Jet(*(np.concatenate(each) for each in zip(*(p.off.parts for p in parts), strict=True))),
+            condition=np.concatenate([part.condition for part in parts]),
+            contraction=np.concatenate([part.contraction for part in parts]),
+        )
+
+
+@dataclass(frozen=True)
+class Cover:
+    """What was covered, and what not: boxes by their corners, with the reason."""
+
+    patches: Patches | None
+    given_up: tuple[tuple[Key, str], ...]
+
+
+@dataclass
+class _Flood:
+    """Boxes on their way to being covered.
+
+    Attributes:
+        waiting: boxes that nothing has entered yet. entered: those that are to be tried.
+        given_up: with reasons. kept: batches of proven patches, in the order in which they were reached.
+    """
+
+    domain: Domain
+    order: int
+    tolerance: float
+    most: int
+    waiting: dict[Key, None] = field(default_factory=dict)
+    entered: dict[Key, Entry] = field(default_factory=dict)
+    given_up: dict[Key, str] = field(default_factory=dict)
+    kept: list[Patches] = field(default_factory=list)
+
+    @property
+    def count(self) -> int:
+        """How many patches are kept."""
+        return sum(len(part.low) for part in self.kept)
+
+    def try_boxes(self, boxes: list[tuple[Key, Entry]]) -> None:
+        """Prove boxes, keep those that can be, and halve the others."""
+        domain, mechanism = self.domain, self.domain.mechanism
+        system = mechanism.map
+        low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
+        middle, half = domain.middle_and_half(low, high)
+        known, lacking, data = domain.known_over(middle, half, self.order)
+        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0])
+        arrived = np.flatnonzero(path.done >= 1.0)
+        for place in np.flatnonzero(path.done < 1.0).tolist():
+            self._halve(*boxes[place], None, None)
+        if not arrived.size:
+            return
+        y = path.y[arrived]
+        y[:, system.unknowns :] = known[arrived, 0]
+        factors = factorise(system.jacobian(y))
+        here = data.each(lambda part: part[arrived])
+        count = len(domain.free)
+        series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
+        proof = prove_patches(system, factors, series, self.order, lacking[arrived], here)
+        proven = np.flatnonzero(proof.proven)
+        error = proof.error.each(lambda part: part[proven])
+        points, off = reported_points(mechanism, series[proven], error, self.order)
+        bound = np.full(len(arrived), np.inf)
+        bound[proven] = off.value.max(axis=-1)
+        for place, box in enumerate(arrived.tolist()):
+            if bound[place] > self.tolerance:
+                self._halve(*boxes[box], y[place], self._failure(proof, place, float(bound[place])))
+        near = bound[proven] <= self.tolerance
+        if near.any():
+            good = proven[near]
+            self.kept.append(
+                Patches(
+                    low=low[arrived[good]],
+                    high=high[arrived[good]],
+                    series=series[good, :, : system.unknowns],
+                    error=proof.error.value[good],
+                    unique_within=proof.unique_within[good],
+                    coefficients=points[near],
+                    off=off.each(lambda part: part[near]),
+                    condition=factors.condition[good],
+                    contraction=proof.contraction[good],
+                )
+            )
+            self._enter_neighbours(self.kept[-1], list(self.waiting))
+
+    def _failure(self, proof: PatchProof, place: int, bound: float) -> tuple[Array, float]:
+        """How much each input takes part in a failure, and the bound that was reached."""
+        weights = proof.left_out if proof.proven[place] else proof.change
+        return np.nan_to_num(weights[place], nan=0.0, posinf=1e300), bound
+
+    def _halve(self, key: Key, entry: Entry, y: Array | None, failure: tuple[Array, float] | None) -> None:
+        """Cut a box that failed in two.
+
+        Args:
+            y: the pose at its middle, if that was reached. failure: likewise.
+        """
+        low, high = np.array(key)
+        sizes = high - low
+        bound = np.inf if failure is None else failure[1]
+        if np.isfinite(bound) and bound > NO_BETTER * entry.bound:
+            self.given_up[key] = ROUNDING
+            return
+        if not (sizes > 1).any():
+            self.given_up[key] = FOLD
+            return
+        weights = sizes / self.domain.parts if failure is None else failure[0]
+        along = int(np.argmax(np.where(sizes > 1, weights, -1.0)))
+        cut = int(low[along] + sizes[along] // 2)
+        parts = []
+        for side in (0, 1):
+            corners = [low.copy(), high.copy()]
+            corners[1 - side][along] = cut
+            parts.append(corners)
+        for first, last in parts:
+            part: Key = (tuple(first.tolist()), tuple(last.tolist()))
+            if y is not None:
+                self.entered[part] = Entry(low + high, y, bound)
+            elif (2 * first <= entry.twice).all() and (entry.twice <= 2 * last).all():
+                self.entered[part] = entry
+            else:
+                self.waiting[part] = None
+                for kept in self.kept:
+                    if part in self.waiting:
+                        self._enter_neighbours(kept, [part])
+
+    def _enter_neighbours(self, patches: Patches, keys: list[Key]) -> None:
+        """Enter boxes where they touch patches."""
+        if not keys:
+            return
+        low, high = (np.array([key[end] for key in keys], dtype=np.int64) for end in (0, 1))
+        which, box = np.nonzero(touching(patches.low, patches.high, low, high))
+        _, first = np.unique(box, return_index=True)
+        which, box = which[first], box[first]
+        if not box.size:
+            return
+        twice = shared_place(patches.low[which], patches.high[which], low[box], high[box])
+        values = self.domain.inputs_at(twice)
+        unknown = unknowns_at(self.domain, self.order, patches, which, values)
+        y = np.concatenate([unknown, self.domain.known_at(values)], axis=-1)
+        for place, number in enumerate(box):
+            del self.waiting[keys[number]]
+            self.entered[keys[number]] = Entry(twice[place], y[place])
+
+
+def flood(domain: Domain, order: int, tolerance: float, start: tuple[Whole, Array], most: int) -> Cover:
+    """Cover a domain from a pose on.
+
+    Args:
+        tolerance: largest bound of a reported point, mm.
+        start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
+        most: patches.
+    """
+    whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
+    state = _Flood(domain, order, tolerance, most)
+    state.entered[whole] = Entry(*start)
+    while state.entered and state.count < most:
+        batch = list(state.entered.items())[:BATCH]
+        for key, _ in batch:
+            del state.entered[key]
+        state.try_boxes(batch)
+    for key in state.entered:
+        state.given_up[key] = TOO_MANY
+    for key in state.waiting:
+        state.given_up[key] = TOO_MANY if state.entered else UNREACHED
+    if not state.kept:
+        return Cover(None, tuple(state.given_up.items()))
+    patches = Patches.joined(state.kept)
+    dropped = _seams(domain, order, patches)
+    for place in np.flatnonzero(dropped):
+        key = (tuple(patches.low[place].tolist()), tuple(patches.high[place].tolist()))
+        state.given_up[key] = SEAM
+    return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()))
+
+
+def touching(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> NDArray[np.bool_]:
+    """Which boxes (A, p) and (B, p) that do not overlap share a part of a face, shape (A, B)."""
+    first = np.maximum(low[:, None], other_low[None])
+    last = np.minimum(high[:, None], other_high[None])
+    return np.asarray(((first == last).sum(axis=-1) == 1) & (first <= last).all(axis=-1))
+
+
+def shared_place(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> Whole:
+    """Middles of what boxes share, in halves of the smallest, shape (..., p)."""
+    return np.asarray(np.maximum(low, other_low) + np.minimum(high, other_high))
+
+
+def unknowns_at(
+    domain: Domain, order: int, patches: Patches, which: NDArray[np.intp], values: Array
+) -> Array:
+    """Unknown coordinates of some patches at one place each, shapes (N,) and (N, p) to (N, unknowns)."""
+    middle, half = domain.middle_and_half(patches.low[which], patches.high[which])
+    (powers,) = monomials([((values - middle) / half).T], order)
+    return np.asarray(np.einsum("kn,nku->nu", powers, patches.series[which]))
+
+
+def _seams(domain: Domain, order: int, patches: Patches) -> NDArray[np.bool_]:
+    """Patches that are another assembly than a neighbour that was reached before them, shape (P,)."""
+    dropped = np.zeros(len(patches.low), dtype=bool)
+    one, other = np.nonzero(np.triu(touching(patches.low, patches.high, patches.low, patches.high)))
+    twice = shared_place(patches.low[one], patches.high[one], patches.low[other], patches.high[other])
+    values = domain.inputs_at(twice)
+    apart = np.abs(
+        unknowns_at(domain, order, patches, one, values) - unknowns_at(domain, order, patches, other, values)
+    )
+    # The one's assembly is in the ball of the other's within which there is only one.
+    alike = (apart + patches.error[one] < patches.unique_within[other]).all(axis=-1)
+    alike |= (apart + patches.error[other] < patches.unique_within[one]).all(axis=-1)
+    for first, second in zip(one[~alike], other[~alike], strict=True):
+        if not dropped[first]:
+            dropped[second] = True
+    return dropped

@@ -1,0 +1,600 @@
+r"""A suspension's kinematics as a function of its inputs: solved once, proven, and quick to evaluate.
+
+    map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)})
+    map({"arm_angle": angles, "rack": racks}).position["wheel_centre"]      # mm, of the inputs' shape
+
+Everything that moves depends on time through the inputs only, p(t) = Y(a(t), b(t)). The map holds Y as power
+series in the inputs, in patches, each with a proven bound; any laws are then composed with it:
+
+    v = Y_a a' + Y_b b',    acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb b'^2.
+
+What moves the chassis (heave) is added to it, outside. The branch is the drawing's: patches are proven
+outwards from the closed drawing (see `flood`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.effects.effect import Effect, Poses
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.errors import (
+    InputOutOfRange,
+    MapError,
+    NotComputed,
+    NotCovered,
+    SceneError,
+    UnknownName,
+)
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.domain import Domain
+from pointcoord.mapping.evaluation import sum_series, sum_series_once
+from pointcoord.mapping.flood import flood
+from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.reported_points import moving_points
+from pointcoord.mapping.stored import Stored, read, write
+from pointcoord.results.closing import ALLOWED, closing
+from pointcoord.results.samples import Channel
+from pointcoord.scene.scene_file import Scene
+from pointcoord.simulation import require_scene, scene_mechanism
+from pointcoord.solve.assembly import assemble, close_drawing
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+Ranges = Mapping[str, tuple[float, float]]
+
+HALVINGS = 6
+MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
+# Patches of one map: a few hundred MB while it is made.
+MOST = 4096
+LEAST_ORDER, MOST_ORDER = 6, 16
+VARIABLES = 3
+
+
+@dataclass(frozen=True)
+class Bound:
+    """How far what a map gives is off, at most.
+
+    A velocity is off by at most the sum of velocity[i] |x_i'| and an acceleration by that of
+    velocity[i] |x_i''| and acceleration[i, j] |x_i'| |x_j'|, x the inputs, over all i and j in both orders.
+
+    Attributes:
+        position: of every coordinate of a point, mm.
+        velocity: by input, mm per its unit (rad or mm).
+        acceleration: by two inputs, mm per the product of their units.
+    """
+
+    position: float
+    velocity: Mapping[str, float]
+    acceleration: Mapping[tuple[str, str], float]
+
+    @classmethod
+    def of(cls, off: Jet, half: Array, names: Sequence[str]) -> Bound:
+        """The largest of some patches, from derivatives by parts of their half widths (P, p)."""
+        first = (off.first.max(axis=-1) / half).max(axis=0)
+        second = (off.second.max(axis=-1) / (half[:, :, None] * half[:, None])).max(axis=0)
+        return cls(
+            float(off.value.max()),
+            {name: float(first[i]) for i, name in enumerate(names)},
+            {(a, b): float(second[i, j]) for i, a in enumerate(names) for j, b in enumerate(names)},
+        )
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A part of a map: a box of inputs with one series, and what is proven of it.
+
+    Attributes:
+        ranges: of the inputs, rad or mm.
+        condition: condition number of the Jacobian in its middle.
+        contraction: at most this of an error is left by each step of the proof's map, below 1.
+    """
+
+    ranges: Ranges
+    bound: Bound
+    condition: float
+    contraction: float
+
+
+@dataclass(frozen=True)
+class Uncovered:
+    """A box of inputs at which nothing is proven, and why."""
+
+    ranges: Ranges
+    reason: str
+
+
+@dataclass(frozen=True, repr=False)
+class MappedPoses:
+    """What a map gives at some inputs; every quantity is an attribute too, such as `position`.
+
+    Attributes:
+        numbers: by quantity and name, of points and bodies (..., 3), of the car (...), for inputs of shape
+            (...); see `effects.registry.QUANTITIES` for what there is and its units.
+    """
+
+    numbers: Mapping[str, Channel]
+
+    def __getattr__(self, name: str) -> Channel:
+        numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
+        if name in numbers:
+            return numbers[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}; its quantities: {', '.join(numbers)}")
+
+    def __repr__(self) -> str:
+        return f"<MappedPoses: {', '.join(c.quantity.words for c in self.numbers.values() if c.computed)}>"
+
+
+@dataclass(frozen=True, repr=False)
+class KinematicMap:
+    """A scene's suspension as a function of its inputs; make one with `kinematic_map`.
+
+    It can be pickled, and saved to a file that another program reads.
+
+    Attributes:
+        scene: whose suspension it is, and which effects it gives.
+        tolerance: largest bound of a position on any patch, mm.
+        stored: its patches.
+    """
+
+    scene: Scene
+    tolerance: float
+    stored: Stored
+
+    @property
+    def ranges(self) -> Ranges:
+        """Of every input that drives the suspension, rad or mm; held where both ends are the same."""
+        return MappingProxyType(dict(self.stored.ranges))
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that it is a function of, in the order of the columns of `evaluate`."""
+        return self.domain.free
+
+    @cached_property
+    def points(self) -> tuple[str, ...]:
+        """The points that move, in the order of `evaluate`."""
+        return moving_points(self.mechanism.topology)
+
+    @property
+    def order(self) -> int:
+        """Total degree of its series."""
+        return self.stored.order
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the scene."""
+        return scene_mechanism(self.scene)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """Its ranges, cut into boxes."""
+        return Domain(self.mechanism, self.stored.ranges, self.stored.halvings)
+
+    @cached_property
+    def bound(self) -> Bound:
+        """What is proven of all that it covers."""
+        return Bound.of(self.stored.off, self._boxes[1], self.inputs)
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """Its patches."""
+        half, off = self._boxes[1], self.stored.off
+        found = []
+        for place in range(len(half)):
+            here = slice(place, place + 1)
+            bound = Bound.of(Jet(*(part[here] for part in off.parts)), half[here], self.inputs)
+            ranges = self._ranges_of(self.stored.low[place], self.stored.high[place])
+            condition, rest = self.stored.condition[place], self.stored.contraction[place]
+            found.append(Patch(ranges, bound, float(condition), float(rest)))
+        return tuple(found)
+
+    @property
+    def uncovered(self) -> tuple[Uncovered, ...]:
+        """Where nothing is proven."""
+        boxes = zip(self.stored.gap_low, self.stored.gap_high, self.stored.gap_reason, strict=True)
+        return tuple(
+            Uncovered(self._ranges_of(low, high), self.stored.reasons[reason]) for low, high, reason in boxes
+        )
+
+    @cached_property
+    def share_covered(self) -> float:
+        """Share of its range that is covered, 0 to 1."""
+        covered = (self.stored.high - self.stored.low).prod(axis=-1).sum()
+        return float(covered / self.domain.parts ** len(self.inputs))
+
+    def __repr__(self) -> str:
+        over = ", ".join(f"{name} {low:.6g} to {high:.6g}" for name, (low, high) in self.ranges.items())
+        count, bound = len(self.stored.low), self.bound.position
+        part = "" if self.share_covered == 1.0 else f", {self.share_covered:.1%} covered"
+        return (
+            f"<KinematicMap over {over}{part}: {count} patches of order {self.order} within {bound:.2g} mm>"
+        )
+
+    def __call__(
+        self,
+        inputs: Mapping[str, ArrayLike],
+        rates: Mapping[str, ArrayLike] | None = None,
+        accelerations: Mapping[str, ArrayLike] | None = None,
+    ) -> MappedPoses:
+        """Poses at some inputs, and their time derivatives where the inputs' own are given.
+
+        Args:
+            inputs: of each input that is not held, numbers or arrays that broadcast to one shape, rad or mm;
+                what moves the chassis may be given too, and is zero if it is not.
+            rates, accelerations: likewise, per s and per s^2.
+        Returns:
+            Positions of all points, their velocities and accelerations where rates and accelerations are
+            given, and the scene's effects as far as these are known.
+        Raises:
+            UnknownName: an input that is missing, or that there is not.
+            InputOutOfRange: a value outside the map's range, or a rate that is not finite.
+            NotCovered: inputs at which nothing is proven.
+            NotComputed: accelerations without rates.
+        """
+        given = [inputs] if rates is None else [inputs, rates]
+        if accelerations is not None:
+            if rates is None:
+                raise _needs_rates()
+            given.append(accelerations)
+        states, lifts, shape = self._split(given)
+        numbers = self.evaluate(*states)
+        places = [
+            self._chassis(d, shape) | {name: state[..., i, :] for i, name in enumerate(self.points)}
+            for d, state in enumerate(numbers)
+        ]
+        return self._read(places, lifts)
+
+    def evaluate(
+        self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
+    ) -> Array:
+        """States of the points that move as one array, for loops that call it often.
+
+        The chassis stands still: nothing is added for what moves it.
+
+        Args:
+            values: inputs in the order of `inputs`, shape (..., p), rad or mm.
+            rates, accelerations: their time derivatives, likewise.
+        Returns:
+            Shape (1 to 3 derivatives, ..., points, 3), mm from the mechanism's origin (`mechanism.origin`,
+            zero for a car that is drawn near the user's), per s^d.
+        Raises:
+            InputOutOfRange: a value outside the map's range, or a rate that is not finite.
+            NotCovered: inputs at which nothing is proven.
+            MapError: an array without a column for each input.
+        """
+        states = [np.asarray(values, dtype=float)]
+        if accelerations is not None and rates is None:
+            raise _needs_rates()
+        states += [np.asarray(state, dtype=float) for state in (rates, accelerations) if state is not None]
+        for d, state in enumerate(states):
+            if state.shape[-1:] != (len(self.inputs),):
+                allowed = f"(..., {len(self.inputs)}), a column for each of {', '.join(self.inputs)}"
+                raise MapError(STATES[d], f"have the shape {state.shape}", allowed)
+            if d > 0 and not np.isfinite(state).all():
+                place = tuple(np.argwhere(~np.isfinite(state))[0])
+                raise InputOutOfRange(
+                    self.inputs[place[-1]], float(state[place]), f"{STATES[d]} that are finite"
+                )
+        middle, half = self._boxes
+        table, order = self.stored.coefficients, self.order
+        if all(state.ndim == 1 for state in states):
+            number = self._patch_of(states[0])
+            found = sum_series_once(table[number], middle[number], half[number], order, states)
+            return found.reshape(len(states), -1, 3)
+        batch = np.broadcast_shapes(*(state.shape[:-1] for state in states))
+        flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
+        patch = self._patches_of(flat[0])
+        found = sum_series(table, middle, half, order, patch, flat)
+        return found.reshape(len(states), *batch, -1, 3)
+
+    def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
+        """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
+        (values,), _, _ = self._split([inputs])
+        low, high = self.domain.ends
+        inside = np.asarray(((values >= low) & (values <= high)).all(axis=-1))
+        number = self._table[self._boxes_of(np.where(inside[..., None], values, low))]
+        return np.asarray(inside & (number >= 0))
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write it to an npz file, which `load` and any program that reads numpy's files can read.
+
+        Raises:
+            MapError: the file cannot be written.
+        """
+        write(path, self.scene, self.tolerance, self.stored)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> KinematicMap:
+        """Read a map that was saved.
+
+        Raises:
+            MapError: there is no such file, it is another one, of another version, or damaged.
+        """
+        return cls(*read(path))
+
+    def _chassis(self, derivative: int, shape: tuple[int, ...]) -> dict[str, Array]:
+        """The points of the chassis, which are where they are drawn, (..., 3), mm."""
+        mechanism, factor = self.mechanism, 0.0 if derivative else float(self.mechanism.unit)
+        vectors = mechanism.drawing.vectors
+        names = mechanism.topology.chassis
+        return {name: np.broadcast_to(vectors[name] * factor, (*shape, 3)) for name in names}
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        """Middles and half widths of the patches, (P, p)."""
+        return self.domain.middle_and_half(self.stored.low, self.stored.high)
+
+    @cached_property
+    def _table(self) -> Whole:
+        """The patch of each of the smallest boxes, or -1 - the place of the reason why there is none."""
+        table = np.full((self.domain.parts,) * len(self.inputs), -1, dtype=np.int64)
+        boxes = zip(self.stored.gap_low, self.stored.gap_high, self.stored.gap_reason, strict=True)
+        for low, high, reason in boxes:
+            table[_inside(low, high)] = -1 - reason
+        for number, (low, high) in enumerate(zip(self.stored.low, self.stored.high, strict=True)):
+            table[_inside(low, high)] = number
+        return table
+
+    @cached_property
+    def _single(self) -> bool:
+        """Whether one patch is all."""
+        return bool((self._table == 0).all())
+
+    @cached_property
+    def _corner(self) -> tuple[list[float], list[float], list[float]]:
+        """The lower and upper ends of the inputs, and how many of the smallest boxes lie along a unit."""
+        low, high = self.domain.ends
+        return low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist()
+
+    def _ranges_of(self, low: Whole, high: Whole) -> Ranges:
+        """The ranges of a box."""
+        first, last = self.domain.inputs_at(2 * low), self.domain.inputs_at(2 * high)
+        return {name: (float(first[i]), float(last[i])) for i, name in enumerate(self.inputs)}
+
+    def _boxes_of(self, values: Array) -> tuple[Whole, ...]:
+        """The smallest box that holds each value, along each input."""
+        low, _, along = self._corner
+        last = self.domain.parts - 1
+        places = (((values[..., i] - low[i]) * along[i]).astype(np.int64) for i in range(len(self.inputs)))
+        return tuple(np.minimum(place, last) for place in places)
+
+    def _patches_of(self, values: Array) -> Whole:
+        """The patch of each pose, (N, p) to (N,)."""
+        low, high = self.domain.ends
+        for i, name in enumerate(self.inputs):
+            column = values[:, i]
+            # False for what is not a number as well.
+            if column.size and not (column.min() >= low[i] and column.max() <= high[i]):
+                worst = column[~((column >= low[i]) & (column <= high[i]))][0]
+                raise self._out_of_range(name, float(worst))
+        if self._single:
+            return np.zeros(len(values), dtype=np.int64)
+        number = self._table[self._boxes_of(values)]
+        if (number < 0).any():
+            gaps = np.flatnonzero(number < 0)
+            raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
+        return number
+
+    def _patch_of(self, value: Array) -> int:
+        """The patch of one pose."""
+        low, high, along = self._corner
+        box = []
+        for i, number in enumerate(value.tolist()):
+            if not low[i] <= number <= high[i]:
+                raise self._out_of_range(self.inputs[i], number)
+            box.append(min(int((number - low[i]) * along[i]), self.domain.parts - 1))
+        patch = int(self._table[tuple(box)])
+        if patch < 0:
+            raise self._not_covered(value, patch, 1, 1)
+        return patch
+
+    def _out_of_range(self, name: str, value: float) -> InputOutOfRange:
+        low, high = self.stored.ranges[name]
+        unit = self.mechanism.topology.input_units[name]
+        return InputOutOfRange(name, value, f"{low:.10g} to {high:.10g} {unit}, the range of this map")
+
+    def _not_covered(self, value: Array, number: int, count: int, asked: int) -> NotCovered:
+        inputs = {name: float(value[i]) for i, name in enumerate(self.inputs)}
+        return NotCovered(inputs, self.stored.reasons[-1 - number], count, asked)
+
+    def _split(
+        self, given: Sequence[Mapping[str, ArrayLike]]
+    ) -> tuple[list[Array], list[Array | None], tuple[int, ...]]:
+        """The map's inputs as columns, (..., p), what the chassis does, (..., 3), and the poses' shape."""
+        topology, vectors = self.mechanism.topology, self.mechanism.drawing.vectors
+        held = {name: low for name, (low, high) in self.stored.ranges.items() if low == high}
+        for d, state in enumerate(given):
+            kind = ("input", "input with a rate", "input with an acceleration")[d]
+            for name in state:
+                if name not in topology.inputs:
+                    raise UnknownName(kind, name, topology.inputs)
+                wanted = held.get(name) if d == 0 else 0.0 if name in held else None
+                value = np.ravel(np.asarray(state[name], dtype=float))
+                if wanted is not None and any(value != wanted):
+                    worst = float(value[np.argmax(value != wanted)])
+                    raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
+            for name in self.inputs:
+                if name not in state:
+                    raise UnknownName(f"given {kind}", name, state)
+        arrays = [{name: np.asarray(value, dtype=float) for name, value in state.items()} for state in given]
+        shape = np.broadcast_shapes(*(value.shape for state in arrays for value in state.values()))
+        columns = [
+            np.stack([np.broadcast_to(state[name], shape) for name in self.inputs], axis=-1)
+            for state in arrays
+        ]
+        lifts: list[Array | None] = []
+        for state in arrays:
+            total: Array | None = None
+            for name, direction in topology.chassis_motion.items():
+                if name in state:
+                    wrong = state[name][~np.isfinite(state[name])]
+                    if wrong.size:
+                        raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
+                    part = np.broadcast_to(state[name], shape)[..., None] * vectors[direction]
+                    total = part if total is None else total + part
+            lifts.append(total)
+        return columns, lifts, shape
+
+    @cached_property
+    def _effects(self) -> tuple[tuple[Effect, ...], tuple[Effect, ...], tuple[Effect, ...]]:
+        """What is evaluated with values alone, with rates, and with accelerations."""
+        asked = plan_effects((*self.scene.effects, *POINT_STATES)).computed
+        always = set(POINT_STATES)
+        found = []
+        for derivative in range(3):
+            states = [e for e in asked if e.name not in always or e.derivative <= derivative]
+            found.append(tuple(e for e in states if e.derivative <= derivative))
+        return found[0], found[1], found[2]
+
+    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> MappedPoses:
+        """Effects of states in the chassis' frame."""
+        mechanism = self.mechanism
+        axes = CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard)
+        origin = mechanism.origin if mechanism.origin.any() else None
+        added = list(lifts)
+        if origin is not None:
+            added[0] = origin if lifts[0] is None else origin + lifts[0]
+        poses = Poses(mechanism, axes, states=places, added=added)
+        found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
+        computed = self._effects[len(places) - 1]
+        for effect in computed:
+            for quantity, arrays in effect.evaluate(poses).items():
+                found[quantity] |= arrays
+        missing = [effect for effect in EFFECTS.values() if effect not in computed]
+        numbers = {}
+        for name, arrays in found.items():
+            left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
+            numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
+        return MappedPoses(MappingProxyType(numbers))
+
+
+STATES = ("values", "rates", "accelerations")
+POINT_STATES = ("velocity", "acceleration")
+"""Effects that a map gives wherever it is told the rates."""
+
+
+def _needs_rates() -> NotComputed:
+    return NotComputed("an acceleration of a point", "", "give the rates of the inputs as well")
+
+
+def _inside(low: Whole, high: Whole) -> tuple[slice, ...]:
+    return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+
+
+def kinematic_map(
+    scene: Scene, ranges: Ranges, tolerance: float = 1e-9, halvings: int = HALVINGS
+) -> KinematicMap:
+    """Solve a scene's suspension as a function of its inputs.
+
+    Args:
+        scene: whose suspension; the laws of its inputs and its instants are not looked at.
+        ranges: the lower and the upper end of each input that drives it, rad or mm; one whose ends are the
+            same is held there. What moves the chassis has none: it is added, whatever it is.
+        tolerance: largest proven bound of a position, mm, on every patch.
+        halvings: how often the range of an input is halved at most, towards places where assemblies end.
+    Returns:
+        A map of all that could be reached and proven; the rest is in its `uncovered`.
+    Raises:
+        UnknownName: a range that is missing, or of no input that drives the suspension.
+        InputOutOfRange: an end at which the input has no meaning.
+        MapError: a range, tolerance or number of halvings that makes no map.
+        SceneError: the hardpoints do not make a mechanism, or closing them makes another car.
+        AssemblyError: the range cannot be reached from the drawing.
+        NotCovered: nothing of it can be proven.
+
+    >>> map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)})
+    >>> map({"arm_angle": 1.0, "rack": [0.0, 5.0]}).position["wheel_centre"].shape
+    (2, 3)
+    >>> map.bound.position < 1e-9
+    True
+    """
+    require_scene(scene)
+    scene = Scene.checked(scene, scene.title or "scene")
+    mechanism = scene_mechanism(scene)
+    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), _checked_halvings(halvings))
+    if not 1 <= len(domain.free) <= VARIABLES:
+        raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
+    if not (np.isfinite(tolerance) and tolerance > 0.0):
+        raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
+    domain.known_at(np.stack(domain.ends))
+    closed = close_drawing(mechanism)
+    moved = closing(mechanism, closed.y)
+    if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
+        share = f"at most {ALLOWED:.0%} of the car's size, {ALLOWED * moved.size:.3g} mm"
+        source = scene.title or "scene"
+        raise SceneError(source, "mechanism.points", f"{moved.words}: that is another car", share)
+    twice = _nearest(domain, mechanism.input_values(closed.y[mechanism.map.unknowns :]))
+    values = domain.inputs_at(twice)
+    held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
+    start = assemble(mechanism, held | dict(zip(domain.free, values, strict=True)), None, closed)
+    order = order_for(tolerance, float(mechanism.unit))
+    cover = flood(domain, order, tolerance, (twice, start.y), MOST)
+    reasons = tuple(dict.fromkeys(reason for _, reason in cover.given_up))
+    if cover.patches is None:
+        inputs = {name: float(value) for name, value in zip(domain.free, values, strict=True)}
+        raise NotCovered(inputs, reasons[0], 1, 1)
+    return KinematicMap(scene, tolerance, Stored.of(domain, order, cover, reasons))
+
+
+def order_for(tolerance: float, size: float) -> int:
+    """Total degree of the series: one for each digit of a tolerance, relative to the mechanism's size, mm.
+
+    A pose costs in proportion to the number of powers, order^p, and the number of patches falls with the
+    order; between half and twice this order both together change little.
+    """
+    return int(np.clip(round(-np.log10(tolerance / size)), LEAST_ORDER, MOST_ORDER))
+
+
+def _checked_halvings(halvings: int) -> int:
+    if not (isinstance(halvings, int) and 0 <= halvings <= MOST_HALVINGS):
+        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
+    return halvings
+
+
+def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
+    """The range of each driving input, in their order."""
+    topology = mechanism.topology
+    if not isinstance(ranges, Mapping):
+        raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
+    for name in ranges:
+        if name in topology.chassis_motion:
+            raise MapError(
+                f"ranges[{name!r}]",
+                "is given",
+                "no range: it moves the whole chassis and is added, whatever it is",
+            )
+        if name not in topology.required_inputs:
+            raise UnknownName("driving input", name, topology.required_inputs)
+    found = {}
+    for name in topology.required_inputs:
+        if name not in ranges:
+            raise UnknownName("range of an input", name, ranges)
+        try:
+            low, high = (float(end) for end in ranges[name])
+        except (TypeError, ValueError):
+            low, high = np.nan, np.nan
+        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+            raise MapError(
+                f"ranges[{name!r}]",
+                f"is {ranges[name]!r}",
+                "two finite numbers, the lower first; the same to hold it",
+            )
+        found[name] = (low + 0.0, high + 0.0)
+    return found
+
+
+def _nearest(domain: Domain, drawn: Mapping[str, Array]) -> Whole:
+    """The place in the range that is nearest to the drawing, in halves of the smallest box."""
+    low, high = domain.ends
+    share = (np.array([float(drawn[name]) for name in domain.free]) - low) / (high - low)
+    return np.clip(np.round(share * 2 * domain.parts), 0, 2 * domain.parts).astype(np.int64)

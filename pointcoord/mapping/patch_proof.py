@@ -1,0 +1,244 @@
+r"""A proof that a truncated series is near an assembly everywhere on its patch, with its derivatives.
+
+For a series y(s) about an assembled pose, s in the box |s_i| <= 1, the residual C(y(s)) is a polynomial of
+twice its order. Up to the order its coefficients are rounding; beyond it they are what the series leaves out.
+With X close to C_u(y_0)^-1, the map T(u) = u - X C(u, w(s)) takes the ball of radius r about u(s) into itself
+and contracts there, for every s at once, if
+
+    eta + z r + omega r^2 / 2 <= r   and   z + omega r < 1,
+
+    eta   >= sum_k |X C(y)_k|,
+    z     >= |I - X C_u(y_0)| + sum_{k > 0} |X C_u(y_k)|,       C_u is linear in y,
+    omega  = Lipschitz constant of X C_u,
+
+as for a pose (see `numerics.kantorovich`), because a polynomial is at most the sum of the magnitudes of its
+coefficients on the box (radii polynomials: Day, Lessard and Mischaikow, SIAM J. Numer. Anal. 45 (2007),
+1398). Then there is exactly one assembly u*(s) in the ball at each s; it is analytic in s, as C_u is
+regular there. The norm is max_i |u_i| / g_i with g near the Perron vector of z's matrix Z, where z is
+least.
+
+Differentiating C(y*(s)) = 0, with e = u* - u, Q(a, b) = |2 X B(a, b)|, G = sum_k |X C_u(y_k)| of the
+derivatives and q the same sums as eta of the residual and of its derivatives:
+
+    |e|    <= q    + Z |e|    + Q(e, e) / 2,
+    |e_i|  <= q_i  + Z |e_i|  + G_i |e| + Q(e, e_i),
+    |e_ij| <= q_ij + Z |e_ij| + G_i |e_j| + G_j |e_i| + G_ij |e| + Q(e, e_ij) + Q(e_i, e_j),
+
+which bounds the errors of the derivatives, coordinate by coordinate.
+
+Floating point: the residual of the centre is taken in twice the working precision, its other coefficients
+carry gamma_n of their sums (Higham, ch. 3), and the known coordinates what their drives say of their series.
+The rounding of the bound's own last operations is made up for by a factor, as for a pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.mapping.expansion import multiplied
+from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.multi_index import powers, products
+from pointcoord.numerics.double_double import doubled_residual
+from pointcoord.numerics.kantorovich import INFLATION
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+
+Array = NDArray[np.float64]
+
+# Power iterations towards the Perron vector: any positive vector proves, so these need not converge.
+ITERATIONS = 40
+# Least weight of a coordinate: what hardly changes still may be off.
+LEAST = 1e-3
+REFINEMENTS = 4
+
+
+@dataclass(frozen=True)
+class PatchProof:
+    """What is proven of each of P patches; lengths in the mechanism's units, derivatives by s.
+
+    Attributes:
+        proven: whether there is exactly one assembly near the series everywhere on the patch, (P,).
+        error: how far the unknown coordinates and their derivatives are off, at most, (P, unknowns).
+        unique_within: no other assembly lies within this of the series, (P, unknowns).
+        change: z by input: how much each input changes the Jacobian, (P, p).
+        left_out: eta by input: how much each takes part in what the series leaves out, (P, p).
+        contraction: z + omega r, (P,).
+    """
+
+    proven: NDArray[np.bool_]
+    error: Jet
+    unique_within: Array
+    change: Array
+    left_out: Array
+    contraction: Array
+
+
+def prove_patches(
+    system: QuadraticMap,
+    factors: Factors,
+    series: Array,
+    order: int,
+    low: Array,
+    data: Jet,
+) -> PatchProof:
+    """Prove patches.
+
+    Args:
+        factors: of C_u at the centres.
+        series: of all coordinates, shape (P, powers, size).
+        low: what the known coordinates of the centre lack, shape (P, size).
+        data: how far the known coordinates' series are off beside that, (P, size).
+    """
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        remaining = _remaining(system, factors, series, order, low, data)
+        change = _change(system, factors, series, order, low, data)
+        weights = _perron(change.value)
+        z = ((change.value @ weights[..., None])[..., 0] / weights).max(axis=-1)
+        eta = (remaining.value / weights).max(axis=-1)
+        omega = system.lipschitz(factors.preconditioner, weights)
+        room = 1.0 - z
+        constant = 2.0 * omega * eta / room**2
+        root = np.sqrt(np.maximum(1.0 - constant, 0.0))
+        radius = INFLATION * 2.0 * eta / (room * (1.0 + root))
+        outer = room * (1.0 + root) / omega / INFLATION
+        contraction = INFLATION * (z + omega * radius)
+        proven = (room > 0.0) & (constant < 1.0) & (contraction < 1.0) & np.isfinite(radius)
+        error = _errors(remaining, change, weights, omega, radius, contraction)
+        spread = ((change.first @ weights[:, None, :, None])[..., 0] / weights[:, None]).max(axis=-1)
+        left_out = (remaining.first / weights[:, None]).max(axis=-1)
+    return PatchProof(
+        proven=proven,
+        error=error.scaled(INFLATION).where(proven),
+        unique_within=np.where(proven[:, None], weights * outer[:, None], 0.0),
+        change=spread,
+        left_out=left_out,
+        contraction=np.where(proven, contraction, np.inf),
+    )
+
+
+def _remaining(
+    system: QuadraticMap, factors: Factors, series: Array, order: int, low: Array, data: Jet
+) -> Jet:
+    """q: bounds of X C(y) and of its derivatives, rounding and doubt of the data included, (P, unknowns)."""
+    inputs = data.first.shape[1]
+    inverse = factors.preconditioner
+    magnitude = np.swapaxes(np.abs(inverse), -1, -2)
+    left, right = system.factors(series)
+    pairs = products(inputs, order, (2, 2 * order), 1)
+    own = powers(inputs, order)
+    rest = np.zeros((len(series), powers(inputs, 2 * order).count, left.shape[-1]))
+    rest[:, pairs.targets] = multiplied(left, right, pairs)
+    rest[:, 1 : own.count] += left[:, :1] * right[:, 1:] + left[:, 1:] * right[:, :1]
+    rows = system.gather(rest)
+    nothing = np.zeros_like(low)
+    rows[:, 0], doubt = doubled_residual(system, series[:, 0], low, nothing)
+    exponents = powers(inputs, 2 * order).exponents
+    stepped = Jet.of(rows @ np.swapaxes(inverse, -1, -2), exponents)
+    # Each coefficient is a sum of products of rounded differences: two terms and what its row sums at order
+    # zero, and as many terms as there are powers elsewhere.
+    terms = max(len(row) for row in system.rows)
+    few, many = ((count + terms + 6) * UNIT_ROUNDOFF for count in (2, own.count))
+    first, later = (
+        [Jet.constant(f[:, 0], inputs), Jet.of(f[:, 1:], own.exponents[1:])] for f in (left, right)
+    )
+    rounded = (first[0] * later[1] + first[1] * later[0]).scaled(few) + (first[1] * later[1]).scaled(many)
+    # What the known coordinates are off: the centre's residual has seen what they lack.
+    off = _of_factors(system, data + Jet.constant(low, inputs))
+    moved = off[0] * later[1] + first[1] * off[1] + off[0] * off[1]
+    doubted = _of_factors(system, data)
+    moved += doubted[0] * later[0] + first[0] * doubted[1]
+    spread = (rounded + moved).each(lambda part: _gathered(system, part))
+    spread += Jet.of(rows, exponents).scaled((system.unknowns + 2) * EPS)
+    spread += Jet.constant(doubt, inputs)
+    return stepped + Jet(
+        (spread.value[:, None] @ magnitude)[:, 0],
+        spread.first @ magnitude,
+        spread.second @ magnitude[:, None],
+    )
+
+
+def _of_factors(system: QuadraticMap, off: Jet) -> tuple[Jet, Jet]:
+    """How far the two factors of each term are off where the coordinates are, (P, terms)."""
+    _, _, ends = system.terms
+    (a, b), (c, d) = ends
+    return off.taken(a) + off.taken(b), off.taken(c) + off.taken(d)
+
+
+def _gathered(system: QuadraticMap, part: Array) -> Array:
+    """Sums of magnitudes of terms, (..., terms), to (..., rows)."""
+    coefficients, starts, _ = system.terms
+    return np.add.reduceat(part * np.abs(coefficients), starts, axis=-1)
+
+
+def _change(system: QuadraticMap, factors: Factors, series: Array, order: int, low: Array, data: Jet) -> Jet:
+    """Z and G: bounds of I - X C_u(y(s)) and of its derivatives, shape (P, unknowns, unknowns)."""
+    inputs, n = data.first.shape[1], system.unknowns
+    inverse = factors.preconditioner
+    matrices = system.jacobian(series)
+    moved = inverse[:, None] @ matrices
+    moved[:, 0] -= np.eye(n)
+    exponents = powers(inputs, order).exponents
+    known = data + Jet.constant(low, inputs)
+    doubt = Jet.of(matrices, exponents).scaled((n + 2) * EPS)
+    doubt += known.each(system.jacobian_uncertainty)
+    magnitude = np.abs(inverse)
+    return Jet.of(moved, exponents) + Jet(
+        magnitude @ doubt.value, magnitude[:, None] @ doubt.first, magnitude[:, None, None] @ doubt.second
+    )
+
+
+def _perron(matrix: Array) -> Array:
+    """Weights for which the norm of a matrix of no negative elements is near its spectral radius, (P, n)."""
+    usable = np.where(np.isfinite(matrix), matrix, 0.0)
+    weights = np.ones(matrix.shape[:-1])
+    for _ in range(ITERATIONS):
+        # Adding what was there keeps matrices with several eigenvalues of one size from going round.
+        weights = (
+            weights
+            + (usable @ weights[..., None])[..., 0]
+            / np.maximum(usable.sum(axis=-1).max(axis=-1), 1e-300)[:, None]
+        )
+        weights /= weights.max(axis=-1, keepdims=True)
+    return np.asarray(np.maximum(weights, LEAST))
+
+
+def _errors(
+    remaining: Jet, change: Jet, weights: Array, omega: Array, radius: Array, contraction: Array
+) -> Jet:
+    """Errors of the coordinates and of their derivatives, (P, unknowns)."""
+    z, g = change.value, weights
+
+    def applied(matrix: Array, vector: Array) -> Array:
+        return np.asarray((matrix @ vector[..., None])[..., 0])
+
+    def norm(vector: Array) -> Array:
+        return np.asarray((vector / g).max(axis=-1))
+
+    def solved(right: Array) -> Array:
+        """The least v with v <= right + Z v + Q(e, v)."""
+        size = norm(right) / (1.0 - contraction)
+        found = size[:, None] * g
+        for _ in range(REFINEMENTS):
+            found = np.minimum(found, right + applied(z, found) + (omega * radius * size)[:, None] * g)
+        return found
+
+    value = radius[:, None] * g
+    for _ in range(REFINEMENTS):
+        rest = remaining.value + applied(z, value) + (0.5 * omega * radius**2)[:, None] * g
+        value = np.minimum(value, rest)
+    first = np.empty_like(remaining.first)
+    inputs = first.shape[1]
+    for i in range(inputs):
+        first[:, i] = solved(remaining.first[:, i] + applied(change.first[:, i], value))
+    second = np.empty_like(remaining.second)
+    for i in range(inputs):
+        for j in range(i, inputs):
+            crossed = omega * norm(first[:, i]) * norm(first[:, j])
+            right = remaining.second[:, i, j] + applied(change.second[:, i, j], value) + crossed[:, None] * g
+            right += applied(change.first[:, i], first[:, j]) + applied(change.first[:, j], first[:, i])
+            second[:, i, j] = second[:, j, i] = solved(right)
+    return Jet(value, first, second)

@@ -1,0 +1,132 @@
+r"""Series of every reported point in mm, and how far what is summed from them may be off.
+
+A point that is solved for is three of the coordinates. One that rides on a body is p_0 + a e1 + b e2 + c e1
+x e2 (see `linkage.carried_points`): a product of series, cut at their order; what is cut, what its carriers
+are off and what the weights are off of the drawing is added to its bound. So is the rounding of the sum at
+any inputs: with M powers of a degree up to N in p inputs, each product of powers is rounded some 4 N times,
+the variables 3 times for each of their powers, and the sum M times, relative to the sum of magnitudes; the
+first term, which is the largest, is added last and once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.mapping.expansion import multiplied
+from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.multi_index import powers, products
+from pointcoord.numerics.kantorovich import INFLATION
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+
+Array = NDArray[np.float64]
+
+CYCLE, BACK = [1, 2, 0], [2, 0, 1]
+
+
+def moving_points(topology: Topology) -> tuple[str, ...]:
+    """The points that a map gives: all but those of the chassis."""
+    return (*topology.moving, *topology.carried)
+
+
+def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int) -> tuple[Array, Jet]:
+    """Series of the points that move, in the order of `moving_points`, three coordinates each.
+
+    Args:
+        series: of all coordinates, shape (P, powers, size).
+        error: of the unknown coordinates and of their derivatives, (P, unknowns), in the mechanism's units.
+    Returns:
+        Coefficients, shape (P, powers, 3 points), mm from the mechanism's origin, and how far a sum of them,
+        with that origin added, is off at most anywhere on its patch, (P, 3 points), mm.
+    """
+    topology, layout, inputs = mechanism.topology, mechanism.layout, error.first.shape[1]
+    every = powers(inputs, order)
+    found: dict[str, tuple[Array, Jet]] = {}
+    for name in topology.moving:
+        place = list(layout.vector(name))
+        found[name] = series[..., place], error.taken(place)
+    for name, (base, first, second) in topology.carried.items():
+        found[name] = _carried(mechanism, name, (found[base], found[first], found[second]), order)
+    parts = [found[name] for name in moving_points(topology)]
+    coefficients = np.concatenate([part for part, _ in parts], axis=-1)
+    off = parts[0][1]
+    for _, jet in parts[1:]:
+        off = off.joined(jet)
+    unit, origin = float(mechanism.unit), np.tile(np.abs(mechanism.origin), len(parts))
+    coefficients = coefficients * unit
+    later = Jet.of(coefficients[:, 1:], every.exponents[1:])
+    count = every.count + 8 * order + 2 * inputs + 8
+    summed = later.scaled(count * UNIT_ROUNDOFF)
+    # Two more sums: with the first term, and with the origin unless that is zero.
+    local = np.abs(coefficients[:, 0]) + later.value
+    last = Jet.constant(UNIT_ROUNDOFF * (local + np.where(origin > 0.0, origin + local, 0.0)), inputs)
+    return coefficients, (off.scaled(unit) + summed + last).scaled(INFLATION)
+
+
+Place = tuple[Array, Jet]
+
+
+def _carried(
+    mechanism: Mechanism, name: str, carriers: tuple[Place, Place, Place], order: int
+) -> tuple[Array, Jet]:
+    """Series of a carried point, in units, and its error."""
+    (base, base_error), (first, first_error), (second, second_error) = carriers
+    inputs = base_error.first.shape[1]
+    a, b, c = (float(weight) for weight in mechanism.carrier_weights[name])
+    e1, e2 = first - base, second - base
+    off1, off2 = first_error + base_error, second_error + base_error
+    normal = _cross_series(e1, e2, inputs, order)
+    own, doubled = powers(inputs, order), powers(inputs, 2 * order)
+    beyond = Jet.of(normal[:, own.count :], doubled.exponents[own.count :])
+    kept = normal[:, : own.count]
+    size1, size2 = Jet.of(e1, own.exponents), Jet.of(e2, own.exponents)
+    crossed = _cross_sizes(size1, size2)
+    off3 = _cross_sizes(size1, off2) + _cross_sizes(off1, size2) + _cross_sizes(off1, off2)
+    off3 = off3 + beyond + crossed.scaled((own.count + 6) * UNIT_ROUNDOFF)
+    doubts = _doubts_of_weights(mechanism, name)
+    sizes = (size1, size2, crossed)
+    error = base_error + off1.scaled(abs(a)) + off2.scaled(abs(b)) + off3.scaled(abs(c))
+    for size, weight, doubt in zip(sizes, (a, b, c), doubts, strict=True):
+        error = error + size.scaled(float(doubt) + 8.0 * UNIT_ROUNDOFF * abs(weight))
+    error = error + Jet.of(base, own.exponents).scaled(4.0 * UNIT_ROUNDOFF)
+    return base + a * e1 + b * e2 + c * kept, error
+
+
+def _cross_series(e1: Array, e2: Array, inputs: int, order: int) -> Array:
+    """e1 x e2 to twice the order, shape (P, powers, 3)."""
+    pairs = products(inputs, order, (0, 2 * order), 0)
+    left = np.concatenate([e1[..., CYCLE], e1[..., BACK]], axis=-1)
+    right = np.concatenate([e2[..., BACK], e2[..., CYCLE]], axis=-1)
+    found = multiplied(left, right, pairs)
+    result = np.empty((len(e1), powers(inputs, 2 * order).count, 3))
+    result[:, pairs.targets] = found[..., :3] - found[..., 3:]
+    return result
+
+
+def _cross_sizes(a: Jet, b: Jet) -> Jet:
+    """Bounds of a x b from those of the components."""
+    return a.taken(CYCLE) * b.taken(BACK) + a.taken(BACK) * b.taken(CYCLE)
+
+
+def _doubts_of_weights(mechanism: Mechanism, name: str) -> Array:
+    """How far a, b and c may be off of the drawn point, (3,).
+
+    They are |W| of what they leave of it, W the inverse of the frame, up to a factor of 2 for a defect of W
+    below one half; infinite where it is not.
+    """
+    vectors = mechanism.drawing.vectors
+    base, first, second = (vectors[point] for point in mechanism.topology.carried[name])
+    e1, e2 = first - base, second - base
+    frame = np.stack([e1, e2, np.cross(e1, e2)], axis=-1)
+    weights = mechanism.carrier_weights[name]
+    rest = np.abs(vectors[name] - base - frame @ weights)
+    crossed = np.abs(e1)[CYCLE] * np.abs(e2)[BACK] + np.abs(e1)[BACK] * np.abs(e2)[CYCLE]
+    parts = np.stack([np.abs(e1), np.abs(e2), crossed], axis=-1)
+    rest += 10.0 * UNIT_ROUNDOFF * (np.abs(vectors[name]) + np.abs(base) + parts @ np.abs(weights))
+    lengths = np.linalg.norm(frame, axis=0)
+    inverse = np.linalg.inv(frame / lengths)
+    if not np.abs(np.eye(3) - inverse @ (frame / lengths)).sum(axis=-1).max() < 0.5:
+        return np.full(3, np.inf)
+    return np.asarray(2.0 * (np.abs(inverse) @ rest).max() / lengths)

@@ -1,0 +1,410 @@
+"""`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
+
+import csv
+import io
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import jsonschema
+import pytest
+from made_rows import alike, kept, key, measured, study
+from program import run as run_program
+
+from validate.cli import main
+from validate.commands import cost
+from validate.cost.row import Row
+from validate.cost.store import Store, StoreError
+from validate.output.document import schema_text
+
+CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
+ROWS = study()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> str:
+    """A file of rows, measured elsewhere."""
+    return kept(tmp_path / "rows.jsonl", ROWS)
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Puts others in the place of what measures the accuracy, and of the other parts nothing."""
+
+    def plant(measure: Callable[..., Any]) -> None:
+        modules = {
+            "accuracy": {"accuracy_rows": measure},
+            "growth.rows": {"measure_growth": lambda *_: ()},
+            "loading": {"measure_loading": lambda *_: ()},
+        }
+        for name, content in modules.items():
+            module = ModuleType(name)
+            vars(module).update(content)
+            monkeypatch.setitem(sys.modules, f"validate.cost.{name}", module)
+
+    return plant
+
+
+def told(capsys: pytest.CaptureFixture[str]) -> tuple[str, list[str]]:
+    out, err = capsys.readouterr()
+    return out, [line for line in err.splitlines() if not line.startswith("pointcoord: note: ")]
+
+
+def document(text: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    CHECK.validate(data)
+    return data
+
+
+def test_a_report_from_rows_measures_nothing_and_ends_with_0(
+    store: str, capsys: pytest.CaptureFixture[str], fake: Callable[..., None]
+) -> None:
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("measured")
+
+    fake(never)
+    before = Path(store).read_bytes()
+    assert main(["cost", "--from-rows", "--rows", store]) == 0
+    out, err = told(capsys)
+    assert err == []
+    assert out.index("Races: 30") < out.index("bounce: time of a configuration to reach")
+    assert "a made machine" in out
+    assert store in out
+    assert Path(store).read_bytes() == before
+
+
+def test_the_same_rows_give_the_same_bytes_twice(
+    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [
+        "cost",
+        "--from-rows",
+        "--rows",
+        store,
+        "--csv",
+        str(tmp_path / "x.csv"),
+        "--report",
+        str(tmp_path / "r"),
+    ]
+    found = []
+    for _ in range(2):
+        assert main(words) == 0
+        files = {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()}
+        found.append((capsys.readouterr().out, files, (tmp_path / "x.csv").read_bytes()))
+    assert found[0] == found[1]
+    assert "headline.svg" in found[0][1]
+
+
+def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
+    store: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["cost", "--from-rows", "--rows", store, "--json", "-"]) == 0
+    data = document(capsys.readouterr().out)
+    assert (data["kind"], data["complete"], data["verdict"]) == ("cost", True, "agree")
+    assert len(data["rows"]) == len(ROWS)
+    assert data["measured_by"]["machine"] == "a made machine, 2 cores"
+    assert data["sentences"]
+    assert {race["verdict"] for race in data["races"]} == {"ours"}
+    assert {one["against"] for one in data["growths"]} == {"instants", "designs", "unknowns"}
+
+
+def test_csv_is_alone_on_standard_output(store: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", "--from-rows", "--rows", store, "--csv", "-"]) == 0
+    lines = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert [line["way"] for line in lines] == [row.way for row in ROWS]
+
+
+def test_quiet_says_nothing_but_writes(
+    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "x.json"
+    assert main(["cost", "--from-rows", "--rows", store, "--quiet", "--json", str(target)]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert len(document(target.read_text())["rows"]) == len(ROWS)
+
+
+@pytest.mark.parametrize(
+    ("words", "ways", "scenes", "parts"),
+    [
+        (["bounce"], None, {"bounce"}, {"accuracy", "growth", "loading"}),
+        (
+            ["--ways", "series,mujoco"],
+            {"series", "mujoco"},
+            {"bounce", "double-wishbone", "chain"},
+            {"accuracy", "growth"},
+        ),
+        (["--parts", "growth"], None, {"bounce", "chain"}, {"growth"}),
+        (["--parts", "loading, accuracy", "double-wishbone"], None, {"double-wishbone"}, {"accuracy"}),
+    ],
+)
+def test_scenes_ways_and_parts_choose_rows(
+    words: list[str],
+    ways: set[str] | None,
+    scenes: set[str],
+    parts: set[str],
+    store: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["cost", *words, "--from-rows", "--rows", store, "--json", "-"]) == 0
+    rows = document(capsys.readouterr().out)["rows"]
+    assert {row["scene"] for row in rows} == scenes
+    assert {row["part"] for row in rows} == parts
+    assert ways is None or {row["way"] for row in rows} == ways
+
+
+@pytest.mark.parametrize(
+    ("words", "parts"),
+    [
+        (["--from-rows", "--ways", "serie"], ["serie", "did you mean 'series'", "mujoco"]),
+        (["--from-rows", "bounc"], ["bounc", "did you mean 'bounce'", "double-wishbone"]),
+        (["--from-rows", "--parts", "accuracies"], ["part", "accuracies", "accuracy, growth, loading"]),
+        (["--from-rows", "--parts", ","], ["--parts", "names nothing", "accuracy, growth, loading"]),
+        (["--from-rows", "--ways", ""], ["--ways", "names nothing", "series"]),
+        (["--from-rows", "--json", "-", "--csv", "-"], ["--json -", "--csv -", "file"]),
+        (["--from-rows", "--json", ""], ["--json", "names no file"]),
+        (["--from-rows", "--report", " "], ["--report", "names no folder"]),
+        (["--rows", "-"], ["--rows", "names no file"]),
+        (["-", "-"], ["standard input", "once"]),
+        (["no-such-scene"], ["no-such-scene", "bounce"]),
+        (["--speed"], ["--speed", "pointcoord"]),
+    ],
+)
+def test_a_wrong_command_ends_with_2_and_one_line_before_anything_is_measured(
+    words: list[str],
+    parts: list[str],
+    store: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    named = [] if "--rows" in words else ["--rows", store]
+    assert main(["cost", *words, *named]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    for part in parts:
+        assert part in line
+    assert {path.name for path in tmp_path.iterdir()} == {"rows.jsonl"}
+
+
+@pytest.mark.parametrize(
+    ("content", "parts"),
+    [
+        ("not rows\n", ["line 1", "is no row", "give another file"]),
+        ('{"cost of accuracy": 99}\n', ["form 99"]),
+        ("", ["holds no rows", "measure them first"]),
+    ],
+)
+def test_a_broken_file_of_rows_ends_with_2_and_is_not_touched(
+    content: str, parts: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "rows.jsonl"
+    path.write_text(content)
+    assert main(["cost", "--from-rows", "--rows", str(path)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    for part in ("--rows", str(path), *parts):
+        assert part in line
+    assert path.read_text() == content
+    if content:
+        assert main(["cost", "--rows", str(path)]) == 2
+        assert path.read_text() == content
+    assert main(["cost", "--from-rows", "--rows", str(tmp_path / "none.jsonl")]) == 2
+
+
+def test_a_torn_last_line_is_no_row_and_the_others_count(
+    store: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with open(store, "a", encoding="utf-8") as stream:
+        stream.write('\n{"row": {"part": "accur')
+    assert main(["cost", "--from-rows", "--rows", store, "--json", "-"]) == 0
+    assert len(document(capsys.readouterr().out)["rows"]) == len(ROWS)
+
+
+def test_rows_of_another_machine_are_reported_and_not_gone_on_with(
+    store: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["cost", "--rows", store]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "a made machine" in line
+    assert "give another file" in line
+
+
+def test_of_a_scene_that_was_changed_the_last_rows_count(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "rows.jsonl"
+    old = [measured("mine.toml", way, "", alike(1e-3), 1e-3) for way in ("series", "newton")]
+    kept(path, old, digest="before")
+    new = measured("mine.toml", "series", "", alike(1e-9), 1e-5)
+    kept(path, [new], digest="after")
+    assert main(["cost", "--from-rows", "--rows", str(path), "--json", "-"]) == 0
+    (row,) = document(capsys.readouterr().out)["rows"]
+    assert row["errors"]["position"]["largest"] == 1e-9
+
+
+def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "rows.jsonl"
+    kept(path, [measured("bounce", "series", "", alike(1e-3), 1e-3)], quick=True)
+    words = ["cost", "--from-rows", "--rows", str(path), "--json", "-"]
+    # Where there are no others the quick ones are shown, and called quick.
+    assert main(words) == 0
+    assert document(capsys.readouterr().out)["quick"] is True
+    kept(path, [measured("bounce", "series", "", alike(1e-9), 1e-3)])
+    for more, largest in (([], 1e-9), (["--quick"], 1e-3)):
+        assert main([*words, *more]) == 0
+        (row,) = document(capsys.readouterr().out)["rows"]
+        assert row["errors"]["position"]["largest"] == largest
+
+
+def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
+    store: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["cost", "--rows", str(tmp_path / "new.jsonl"), "--report", str(tmp_path / "r")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert "matplotlib" in line
+    assert "pip install 'pointcoord[plot]'" in line
+    assert {path.name for path in tmp_path.iterdir()} == {"rows.jsonl"}
+    # All but the pictures does without.
+    assert main(["cost", "--from-rows", "--rows", store]) == 0
+
+
+def test_a_folder_that_cannot_be_had_ends_with_4_before_anything_is_measured(
+    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("mine")
+    assert main(["cost", "--rows", str(tmp_path / "new.jsonl"), "--report", str(tmp_path / "file")]) == 4
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "cannot be written" in line
+    assert not (tmp_path / "new.jsonl").exists()
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., tuple[Row, ...]]:
+    """A measurement that keeps rows, and then ends as told."""
+
+    def measure(scenes: Any, store: Store, ways: Any, *, quick: bool, progress: Any) -> tuple[Row, ...]:
+        for number, row in enumerate(rows):
+            progress(row.way, number, len(rows))
+            store.write(key(row, quick=quick), row)
+        if end is not None:
+            raise end
+        return rows
+
+    return measure
+
+
+ONE = measured("bounce", "series", "1e-9 mm", alike(1e-10), 1e-5)
+
+
+def test_ctrl_c_keeps_and_names_what_was_measured(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(ONE, replace(ONE, way="newton"), end=KeyboardInterrupt()))
+    path = tmp_path / "rows.jsonl"
+    assert main(["cost", "--rows", str(path)]) == 130
+    out, err = told(capsys)
+    assert out == ""
+    assert err == [f"pointcoord: interrupted; {path} holds 2 rows"]
+    assert main(["cost", "--from-rows", "--rows", str(path)]) == 0
+
+
+def test_json_of_an_interrupted_run_holds_what_was_measured(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(ONE, end=KeyboardInterrupt()))
+    path, target = tmp_path / "rows.jsonl", tmp_path / "x.json"
+    assert main(["cost", "--rows", str(path), "--json", str(target)]) == 130
+    _, (line,) = told(capsys)
+    assert f"{path} holds 1 row" in line
+    assert f"{target} holds 1 row" in line
+    data = document(target.read_text())
+    assert (data["complete"], data["exit_status"], len(data["rows"])) == (False, 130, 1)
+
+
+def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(Row("accuracy", "bounce", "series", status="failed", reason="locked at 2 s")))
+    assert main(["cost", "--rows", str(tmp_path / "rows.jsonl")]) == 3
+    out, err = told(capsys)
+    assert "failed: locked at 2 s" in out
+    assert "nothing could be measured" in err[0]
+
+
+def test_rows_that_cannot_be_written_end_with_4(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(ONE, end=StoreError("rows.jsonl: 3 of 90 bytes written; is the disk full?")))
+    assert main(["cost", "--rows", str(tmp_path / "rows.jsonl")]) == 4
+    assert "is the disk full?" in told(capsys)[1][0]
+
+
+def test_progress_is_told_to_a_terminal_only(
+    tmp_path: Path,
+    fake: Callable[..., None],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    fake(planted(ONE))
+    assert main(["cost", "--rows", str(tmp_path / "a.jsonl")]) == 0
+    assert "\r" not in capsys.readouterr().err
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["cost", "--rows", str(tmp_path / "b.jsonl")]) == 0
+    err = capsys.readouterr().err
+    assert "\r0 of 1  series" in err
+    assert err.rstrip(" ").rstrip("\r").rstrip(" ").endswith("\r") or err.endswith("\r")
+    assert main(["cost", "--rows", str(tmp_path / "c.jsonl"), "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_named_scenes_are_measured_in_the_parts_that_are_about_a_scene(
+    tmp_path: Path, fake: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[str, ...]] = []
+
+    def measure(scenes: Any, store: Store, ways: Any, **_: object) -> tuple[Row, ...]:
+        asked.append(tuple(scene.name for scene in scenes))
+        return (ONE,)
+
+    fake(measure)
+
+    def loading(*_: object) -> tuple[Row, ...]:
+        raise AssertionError("loading was not asked for")
+
+    monkeypatch.setattr(sys.modules["validate.cost.loading"], "measure_loading", loading)
+    rows = ["--rows", str(tmp_path / "rows.jsonl"), "--quiet"]
+    assert main(["cost", "steer", "near-toggle", "steer", *rows]) == 0
+    assert asked == [("steer", "near-toggle")]
+    with pytest.raises(AssertionError, match="not asked for"):
+        cost._of_part("loading", cost.Study((), (), (), False), None, None)  # type: ignore[arg-type]
+
+
+def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", "--list"]) == 0
+    out = capsys.readouterr().out
+    for name in ("series", "newton", "bounce", "near-toggle", "accuracy, growth, loading"):
+        assert name in out
+
+
+def test_help_says_what_is_measured_and_where_rows_go(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", "--help"]) == 0
+    out = capsys.readouterr().out
+    for word in ("--from-rows", "--quick", "--ways", "--parts", "--report", cost.ROWS, "exit status"):
+        assert word in out
+
+
+def test_the_program_reports_rows_as_a_shell_runs_it(store: str) -> None:
+    done = run_program("cost", "--from-rows", "--rows", store)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert done.stdout.startswith("What accuracy costs in time")

@@ -1,0 +1,139 @@
+"""Other people's programs as witnesses: they agree within what they claim, and a fault of theirs is seen."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, note, settings
+from numpy.typing import NDArray
+
+from pointcoord import Scene, SceneError, built_in_scenes
+from validate.adjudication.reference_solution import reference_solution, told_by
+from validate.cars.scene_content import scene_content
+from validate.cars.strategies import scenes
+from validate.comparison.compare import compare, compare_solutions
+from validate.extras import MissingPackage
+from validate.formulations.outside_programs import OutsideProgram
+from validate.formulations.protocol import FormulationError
+from validate.formulations.refusals import DRAWING, INPUT, MOTION, START, why_refused
+from validate.formulations.registry import OUTSIDE, WORDS, formulation
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR
+from validate.peers.in_mujoco import InMujoco
+from validate.peers.linkage import PeerError
+from validate.peers.motion import Poses, Rates
+
+Array = NDArray[np.float64]
+QUANTITIES = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")
+
+# Each scene is solved seven times, and a search is short.
+searched = settings(max_examples=min(settings.default.max_examples if settings.default else 100, 40))
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_a_program_agrees_in_everything_that_the_built_in_scenes_ask_for(name: str, who: str) -> None:
+    scene = Scene.load(name)
+    outcome = compare(scene, "pointcoord", who, name)
+    assert outcome.agreed, (outcome.disagreements, outcome.undecided)
+    assert {row.quantity for row in outcome.rows} == set(QUANTITIES)
+    assert not outcome.missing
+    # A witness that claims much tests little. These cars raise 16 u by some ten in a place, and by another
+    # ten in what is twice differentiated.
+    for row in outcome.rows:
+        numbers = outcome.solutions[1].numbers[row.quantity].values()
+        assert row.tolerance < 1e-12 * max(float(np.abs(array).max()) for array in numbers), row
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+@searched
+@given(scene=scenes(samples=3))
+def test_a_program_agrees_on_random_cars_and_motions(scene: Scene, who: str) -> None:
+    note(repr(scene))
+    try:
+        outcome = compare(scene, "pointcoord", who)
+    except FormulationError as error:
+        # What one of them refuses tells nothing here; it must be refused for a reason of the car.
+        assume(not isinstance(error.reason, SceneError))
+        refused = why_refused(error)
+    else:
+        refused = ""
+        assert not outcome.disagreements
+    assert refused in ("", DRAWING, START, MOTION, INPUT)
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+def test_what_a_program_claims_covers_its_error_against_the_reference(who: str) -> None:
+    for name in ("off-axis-strut", "double-wishbone", "bounce-on-a-heaving-chassis"):
+        whole = Scene.load(name)
+        scene = whole.model_copy(update={"time": whole.time.model_copy(update={"samples": 7})})
+        reference = reference_solution(scene)
+        solved = formulation(who).solve(scene)
+        for quantity, names in told_by(reference, scene).items():
+            for part in names:
+                error = np.abs(solved.numbers[quantity][part] - reference.numbers[quantity][part])
+                claim = solved.accuracy.claims[quantity][part] + reference.accuracy.claims[quantity][part]
+                assert (error <= claim).all(), (name, quantity, part)
+        asked = told_by(reference, scene)
+        assert not compare_solutions(scene, reference, solved, name, asked).disagreements
+
+
+class Faulty(InMujoco):
+    """Off by a nanometre in a place, and by a billionth in a rate."""
+
+    def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
+        poses = super().poses(driven, tolerance, start)
+        off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.linkage.unit, 0.0])
+        return replace(poses, places={**poses.places, "tie_rod_outer": off})
+
+    def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
+        return replace(rates := super().rates(poses, rate, bend), spin_rate=rates.spin_rate * (1.0 + 1e-9))
+
+
+def test_a_fault_of_a_program_does_not_widen_what_it_claims() -> None:
+    scene = Scene.load("off-axis-strut")
+    outcome = compare(scene, "pointcoord", OutsideProgram("faulty", Faulty))
+    assert {(row.quantity, row.name) for row in outcome.disagreements} == {
+        ("position", "tie_rod_outer"),
+        ("angular_acceleration", "knuckle"),
+    }
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+def test_a_motion_through_a_fold_is_refused_at_its_instant(who: str) -> None:
+    # The paper's tie rod ends at a rack travel of 130 mm.
+    scene = Scene.from_mapping(scene_content(PAPER_CAR, np.pi / 2, [0.0, 100.0], stop=2.0, samples=41), "far")
+    with pytest.raises(FormulationError, match="no pose is reached") as caught:
+        formulation(who).solve(scene)
+    assert why_refused(caught.value) == MOTION
+    reason = caught.value.reason
+    assert isinstance(reason, PeerError)
+    assert reason.instant is not None
+    assert scene.instants[reason.instant] == pytest.approx(1.3, abs=0.06)
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+def test_a_drawing_that_closing_makes_another_car_of_is_refused(who: str) -> None:
+    x, y, z = BESIDE_CAR.points["tie_rod_inner"]
+    points = {**BESIDE_CAR.points, "tie_rod_inner": (x + 40.0, y, z)}
+    points["rack_centre"] = BESIDE_CAR.points.get("rack_centre", (x, y, z))
+    scene = Scene.from_mapping(scene_content(replace(BESIDE_CAR, points=points), 1.6))
+    with pytest.raises(FormulationError, match="that is another car"):
+        formulation(who).solve(scene)
+
+
+def test_programs_are_named_among_the_formulations() -> None:
+    assert set(OUTSIDE) <= set(WORDS)
+    assert [formulation(name).name for name in OUTSIDE] == list(OUTSIDE)
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
+def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
+    who: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, who, None)
+    monkeypatch.delitem(sys.modules, f"validate.peers.in_{who}", raising=False)
+    with pytest.raises(MissingPackage) as caught:
+        formulation(who)
+    assert f"needs the package {who!r}, which is not installed" in str(caught.value)
+    assert "pip install 'pointcoord[peers]'" in str(caught.value)

@@ -1,0 +1,379 @@
+"""`pointcoord cost`: what accuracy costs in time, measured and shown."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import shlex
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, get_args
+
+from pointcoord import UnknownName
+from validate.commands.usage import (
+    SCENE_HELP,
+    STANDARD_INPUT,
+    UsageError,
+    add_quiet,
+    load_scene,
+    name_of,
+    require_target,
+    told_as,
+)
+from validate.cost.report import Report
+from validate.cost.row import Part, Row
+from validate.cost.store import Header, Key, Store, StoreError, read_rows
+from validate.cost.tables import csv_text
+from validate.exit_status import ExitStatus
+from validate.extras import MissingPackage
+from validate.output.console import Console
+from validate.output.document import Head, Journal
+from validate.output.files import OutputError, require_writable, unwritable, write_whole
+
+if TYPE_CHECKING:
+    from validate.cost.scenes import StudyScene
+    from validate.cost.way import Way
+
+PARTS: tuple[Part, ...] = get_args(Part)
+# Each is imported when it is measured: they need packages that a report does without.
+MODULES: Mapping[Part, str] = {"accuracy": "accuracy", "growth": "growth.rows", "loading": "loading"}
+ROWS = "pointcoord-cost.jsonl"
+PAUSE = 0.2  # seconds between two lines of progress
+
+DESCRIPTION = """\
+Measure what accuracy costs in time: every way to solve a scene, over the range of its settings,
+held to a many-digit reference and timed phase by phase. Said is who reaches an accuracy of
+1e-3, 1e-6 and 1e-9 in what time, where another way is quicker than ours, and from how many
+instants on; how time and memory grow with instants, designs and unknowns; what loading takes.
+
+A row is kept in a file when it is measured: a run that is stopped goes on where it was, and
+--from-rows makes the report again without measuring."""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser(
+        "cost",
+        help="measure and show what accuracy costs in time",
+        description=DESCRIPTION,
+    )
+    parser.add_argument(
+        "scenes",
+        nargs="*",
+        metavar="SCENE",
+        help=f"{SCENE_HELP}; none: the scenes of the study",
+    )
+    parser.add_argument("--list", action="store_true", help="name the ways, scenes and parts, and end")
+    parser.add_argument("--quick", action="store_true", help="a first look, in about a minute")
+    parser.add_argument("--ways", metavar="A,B", help="measure these ways only; --list names them")
+    parser.add_argument(
+        "--parts",
+        metavar="A,B",
+        help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene",
+    )
+    parser.add_argument(
+        "--rows", metavar="FILE", default=ROWS, help=f"the file that keeps what is measured ({ROWS})"
+    )
+    parser.add_argument(
+        "--from-rows", action="store_true", help="report what the file holds, and measure nothing"
+    )
+    parser.add_argument("--json", metavar="FILE", help="write everything as JSON; - for standard output")
+    parser.add_argument("--csv", metavar="FILE", help="write every row as CSV; - for standard output")
+    parser.add_argument(
+        "--report",
+        metavar="FOLDER",
+        help="write pictures (SVG, PNG), the full tables as Markdown and CSV, and the rows as JSON",
+    )
+    add_quiet(parser)
+    parser.set_defaults(run=run)
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is to be measured.
+
+    Attributes:
+        scenes: for the accuracy; the first one's cost is measured as it grows.
+    """
+
+    parts: tuple[Part, ...]
+    scenes: tuple[StudyScene, ...]
+    ways: tuple[Way, ...]
+    quick: bool
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Measure what the file of rows does not hold yet, and report.
+
+    Raises:
+        UsageError: the options do not go together, or the file of rows cannot be used.
+        SceneError, UnknownName: a scene is wrong, or there is no such way.
+        MissingPackage: the reference or matplotlib is not there.
+        OutputError: something cannot be written.
+    """
+    _check_options(options)
+    console.quiet = options.quiet
+    console.mute = "-" in (options.json, options.csv)
+    if not console.quiet or console.mute:
+        console.require("use --quiet, with --json FILE, --csv FILE or --report FOLDER")
+    if options.list:
+        console.say(_listing())
+        return ExitStatus.AGREE
+    parts = _parts(options)
+    if options.report:
+        _require_folder(options.report)
+    if options.csv not in (None, "-"):
+        require_writable(options.csv)
+    journal = Journal(options.json, Head.of("cost", options.command), console)
+    if options.from_rows:
+        return _told(_from_rows(options, parts), options, journal, console)
+    study = _study(options, parts)
+    try:
+        store = Store(Path(options.rows), Header.here(shlex.join(options.command)))
+    except StoreError as error:
+        raise UsageError(f"--rows {error}") from None
+    return _measured(study, store, options, journal, console)
+
+
+def _listing() -> str:
+    """Ways, scenes and parts by name."""
+    of_study, registry = _modules()
+    wide = max(len(way.name) for way in registry.WAYS)
+    return "\n".join(
+        (
+            "ways:",
+            *(f"  {way.name.ljust(wide)}  {way.words}{_needs(way)}" for way in registry.WAYS),
+            "scenes of the study; a scene of your own is measured by its file:",
+            *(f"  {name}" for name in of_study.STUDY_SCENES),
+            f"parts: {', '.join(PARTS)}",
+        )
+    )
+
+
+def _needs(way: Way) -> str:
+    return f" (needs the package {way.package})" if way.package else ""
+
+
+def _modules() -> tuple[Any, Any]:
+    """The study's scenes and ways.
+
+    Raises:
+        MissingPackage: they need what the solvers do without.
+    """
+    try:
+        return (
+            importlib.import_module("validate.cost.scenes"),
+            importlib.import_module("validate.cost.ways.registry"),
+        )
+    except ImportError as error:
+        raise MissingPackage("cost", error) from None
+
+
+def _check_options(options: argparse.Namespace) -> None:
+    scenes = tuple(options.scenes)
+    for target, option in ((options.json, "--json"), (options.csv, "--csv")):
+        require_target(target, option, (*scenes, options.rows))
+    if options.json == options.csv == "-":
+        raise UsageError("--json - and --csv - both take standard output; give one of them a file")
+    if options.rows == STANDARD_INPUT or not options.rows.strip():
+        raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
+    require_target(options.rows, "--rows", scenes)
+    if options.report is not None and not options.report.strip():
+        raise UsageError(f"--report {options.report!r} names no folder")
+    if scenes.count(STANDARD_INPUT) > 1:
+        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
+
+
+def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
+    """The parts that are asked for, in their order."""
+    if options.parts is None:
+        about_scenes: tuple[Part, ...] = ("accuracy", "growth")
+        return about_scenes if options.scenes and not options.from_rows else PARTS
+    asked = _listed(options.parts, "--parts", PARTS)
+    for name in asked:
+        if name not in PARTS:
+            raise UnknownName("part of the study", name, PARTS)
+    return tuple(part for part in PARTS if part in asked)
+
+
+def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
+    names = [word.strip() for word in words.split(",") if word.strip()]
+    if not names:
+        raise UsageError(f"{option} {words!r} names nothing; there are: {', '.join(allowed)}")
+    return names
+
+
+def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
+    """What is to be measured; everything is found before anything is measured."""
+    of_study, registry = _modules()
+    ways = registry.WAYS
+    if options.ways is not None:
+        ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
+    scenes = []
+    for name in dict.fromkeys(options.scenes):
+        with told_as(name_of(name)):
+            own = name in of_study.STUDY_SCENES
+            scene = of_study.own_scene(name) if own else load_scene(name)
+            scenes.append(of_study.study_scene(name_of(name), scene))
+    chosen = tuple(scenes) or of_study.own_scenes()
+    return Study(parts, chosen, ways, options.quick)
+
+
+def _measured(
+    study: Study, store: Store, options: argparse.Namespace, journal: Journal, console: Console
+) -> ExitStatus:
+    """Measure, and report; what was measured is kept and named however it ends."""
+    there = len(store.rows())
+    console.note(f"rows are kept in {options.rows} ({there} there); a run that is stopped goes on with them")
+    progress = Progress(console)
+    rows: list[Row] = []
+    try:
+        for part in study.parts:
+            rows += _of_part(part, study, store, progress)
+    except StoreError as error:
+        raise OutputError("rows", str(error)) from None
+    finally:
+        console.end_progress()
+        console.written = [f"{options.rows} holds {_rows(len(store.rows()))}"]
+    report = Report(options.rows, store.header, shlex.join(options.command), options.quick, tuple(rows))
+    return _told(report, options, journal, console)
+
+
+def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tuple[Row, ...]:
+    """Measure what is missing of a part, and give its rows."""
+    try:
+        module = importlib.import_module(f"validate.cost.{MODULES[part]}")
+    except ImportError as error:
+        raise MissingPackage("cost", error) from None
+    if part == "accuracy":
+        found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=progress)
+    elif part == "growth":
+        found = module.measure_growth(store, study.scenes, study.ways, study.quick, progress)
+    else:
+        found = module.measure_loading(store, study.quick, progress)
+    return tuple(found)
+
+
+class Progress:
+    """Tells a terminal what is measured now, how much is done, and about how long the rest takes."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._began = self._told = time.monotonic()
+        self._first = 0
+
+    def __call__(self, what: str, done: int, of: int) -> None:
+        """Called before anything is measured."""
+        now = time.monotonic()
+        if now - self._told < PAUSE and done:
+            return
+        if done < self._first or not done:
+            self._began, self._first = now, done
+        self._told = now
+        share = f"{done} of {of}" if of else f"{done}"
+        self._console.progress(f"{share}{self._rest(now, done, of)}  {what}")
+
+    def _rest(self, now: float, done: int, of: int) -> str:
+        """About how long the rest takes, at the pace so far."""
+        if done <= self._first or of <= done:
+            return ""
+        seconds = (now - self._began) / (done - self._first) * (of - done)
+        return f", {seconds / 60.0:.0f} min left" if seconds > 90.0 else f", {seconds:.0f} s left"
+
+
+def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
+    """The rows of a file, chosen as they would be measured."""
+    try:
+        header, entries = read_rows(Path(options.rows))
+    except StoreError as error:
+        raise UsageError(f"--rows {error}") from None
+    quick = options.quick or all(key.quick for key, _ in entries)
+    rows = [row for row in latest(entries, quick) if row.part in parts]
+    if options.scenes:
+        names = [name_of(name) for name in options.scenes]
+        for name in names:
+            if not any(_about(row, name) for row in rows):
+                raise UnknownName(
+                    f"scene of the rows in {options.rows}", name, _names(row.scene for row in rows)
+                )
+        rows = [row for row in rows if any(_about(row, name) for name in names)]
+    if options.ways is not None:
+        there = _names(row.way for row in rows)
+        asked = _listed(options.ways, "--ways", there)
+        for name in asked:
+            if name not in there:
+                raise UnknownName(f"way in the rows of {options.rows}", name, there)
+        rows = [row for row in rows if row.way in asked]
+    return Report(options.rows, header, shlex.join(options.command), quick, tuple(rows))
+
+
+def latest(entries: Sequence[tuple[Key, Row]], quick: bool) -> list[Row]:
+    """One row for each way with its setting on each scene.
+
+    Of a scene that was changed between two runs, and has rows of both, those of the last one count.
+    """
+    entries = [(key, row) for key, row in entries if key.quick == quick]
+    last = {(key.part, key.scene): (key.digest, key.configurations) for key, _ in entries}
+    return [row for key, row in entries if last[key.part, key.scene] == (key.digest, key.configurations)]
+
+
+def _about(row: Row, scene: str) -> bool:
+    """Whether a row is about a scene; a part of its effects is told after a comma."""
+    return row.scene == scene or row.scene.startswith(f"{scene}, ")
+
+
+def _names(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(name for name in names if name))
+
+
+def _told(report: Report, options: argparse.Namespace, journal: Journal, console: Console) -> ExitStatus:
+    """Say and write the report; the status is that of a run that comes to its end."""
+    status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
+    console.say(report.text())
+    if options.csv == "-":
+        console.write(csv_text(report.rows))
+        console.flush()
+    elif options.csv:
+        _put(options.csv, csv_text(report.rows).encode())
+    if options.report:
+        for name, content in report.files():
+            _put(os.path.join(options.report, name), content)
+    journal.close(report.data, status, True, _rows(len(report.rows)))
+    places = [place for place in (options.json, options.csv, options.report) if place not in (None, "-")]
+    if places:
+        console.note(f"written: {', '.join(places)}")
+    if not report.measured:
+        console.complain(f"nothing could be measured; {options.rows} says why, row by row")
+    return status
+
+
+def _rows(count: int) -> str:
+    return f"{count} row{'' if count == 1 else 's'}"
+
+
+def _put(target: str, content: bytes) -> None:
+    def put(stream: BinaryIO) -> None:
+        stream.write(content)
+
+    write_whole(target, put)
+
+
+def _require_folder(folder: str) -> None:
+    """Make the folder, and see that it takes files and that there is a painter, before anything is measured.
+
+    Raises:
+        MissingPackage: matplotlib is not there.
+        OutputError: the folder cannot be had.
+    """
+    try:
+        importlib.import_module("matplotlib")
+    except ImportError as error:
+        raise MissingPackage("--report", error, "plot") from None
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise unwritable(folder, error) from None
+    require_writable(os.path.join(folder, "report.md"))

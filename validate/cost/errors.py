@@ -1,0 +1,162 @@
+r"""Errors of a way's numbers against the many-digit reference.
+
+The reference knows a number x to 60 digits, a way gives a double d near it, and d - x must be known to many
+of its own digits, however small it is. So x is kept as a sum of two doubles, h = x rounded and l = x - h
+rounded, and
+
+    d - x = (d - h) - l
+
+where d - h is exact for d within a factor of two of h (Sterbenz), and rounded by 2^-53 of itself elsewhere.
+What h + l is not of x, 2^-106 of it, and what the reference does not prove of x, make the radius of the
+row.
+
+The reference solves the scene with its inputs rounded to doubles at each instant (`input_rates`), which is
+what anybody can be given: half a unit in the last place of an angle is no error of a way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
+from validate.adjudication.reference_solution import DIGITS, inputs_at, reference_instant
+from validate.cost.row import QuantityError
+from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.protocol import Numbers, shape_of
+from validate.reference import Instant
+
+Array = NDArray[np.float64]
+
+
+class NoNumbers(Exception):
+    """What a way gives is not what it was asked for: a number that is none, or that is not there."""
+
+
+@dataclass(frozen=True)
+class Exact:
+    """The reference of one point, body or angle at the instants: the sum of two arrays of doubles."""
+
+    high: Array
+    low: Array
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The reference at the instants of a study.
+
+    Attributes:
+        exact: by quantity and name, of what the scene asks for and what is not fixed to the chassis.
+        radius: by quantity, the largest proven error of any of these numbers.
+    """
+
+    instants: Array
+    exact: Mapping[str, Mapping[str, Exact]]
+    radius: Mapping[str, float]
+
+    def every(self, stride: int) -> Truth:
+        """The same at every how many-th instant."""
+        exact = {
+            quantity: {name: Exact(x.high[::stride], x.low[::stride]) for name, x in names.items()}
+            for quantity, names in self.exact.items()
+        }
+        return Truth(self.instants[::stride], exact, self.radius)
+
+
+def truth_of(scene: Scene, instants: Array) -> Truth:
+    """Solve the reference at instants, (N,), s.
+
+    Raises:
+        NoReferenceError: an instant has no pose, or none can be proven.
+    """
+    solved = [reference_instant(scene, inputs_at(scene, t)) for t in instants.tolist()]
+    # A point of the chassis is where it is drawn: it would dilute the mean, and says nothing of a way.
+    fixed = set(scene.mechanism.topology.chassis)
+    exact: dict[str, dict[str, Exact]] = {}
+    radius: dict[str, float] = {}
+    with mp.workdps(2 * DIGITS + 40):
+        for quantity, names in asked_numbers(scene).items():
+            of_car = QUANTITIES[quantity].of == "car"
+            kept = (n for n in names if n not in fixed and all(n in _told(i, quantity) for i in solved))
+            numbers = {
+                name: _split([_told(i, quantity)[name] for i in solved], shape_of(quantity, len(solved)))
+                for name in kept
+            }
+            if numbers:
+                exact[quantity] = numbers
+                proven = max(i.error_bound["effects" if of_car else quantity] for i in solved)
+                rounded = max(float(np.abs(x.low).max()) for x in numbers.values()) * 2.0**-53
+                radius[quantity] = float(proven) + rounded
+    return Truth(instants, exact, radius)
+
+
+def errors_of(numbers: Numbers, truth: Truth) -> tuple[dict[str, QuantityError], dict[str, str]]:
+    """Errors by quantity, and why there is none of the others that the scene asks for.
+
+    A quantity that is given at all must be given whole.
+
+    Raises:
+        NoNumbers: a number is none, or it or its point is missing.
+    """
+    found: dict[str, QuantityError] = {}
+    not_given: dict[str, str] = {}
+    for quantity, names in truth.exact.items():
+        given = numbers.get(quantity) or {}
+        if not any(name in given for name in names):
+            if quantity == "position":
+                raise NoNumbers("gives no positions")
+            not_given[quantity] = f"gives no {QUANTITIES[quantity].words}"
+            continue
+        parts = [_error(quantity, name, given, exact) for name, exact in names.items()]
+        errors = np.abs(np.concatenate([part.ravel() for part in parts]))
+        largest = float(errors.max())
+        # In parts of the largest, so that no square is too large or too small for a double.
+        mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
+        found[quantity] = QuantityError(largest, largest * mean**0.5, truth.radius[quantity], errors.size)
+    return found, not_given
+
+
+def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -> Array:
+    """Errors of the numbers of one point, body or angle."""
+    what = f"{QUANTITIES[quantity].words} of {name}"
+    if name not in given:
+        raise NoNumbers(f"gives no {what}")
+    array = np.asarray(given[name])
+    if array.shape != exact.high.shape or array.dtype.kind != "f":
+        raise NoNumbers(
+            f"gives the {what} as {array.dtype} numbers of shape {array.shape}, not {exact.high.shape}"
+        )
+    bad = ~np.isfinite(array)
+    if bad.any():
+        at = int(np.argwhere(bad)[0][0])
+        count = int(np.count_nonzero(bad.reshape(len(array), -1).any(axis=-1)))
+        raise NoNumbers(
+            f"the {what} is {array[bad][0]} at {count} of {len(array)} instants, first at number {at}"
+        )
+    with np.errstate(over="ignore"):
+        off = (array.astype(float) - exact.high) - exact.low
+    if not np.isfinite(off).all():
+        raise NoNumbers(f"the {what} is off by more than a double can tell")
+    return np.asarray(off)
+
+
+def _told(instant: Instant, quantity: str) -> Mapping[str, Any]:
+    """The reference's numbers of a quantity by name: triples, or one number of what the car has one of."""
+    if QUANTITIES[quantity].of == "car":
+        return instant.effects
+    numbers: Mapping[str, Any] = getattr(instant, quantity)
+    return numbers
+
+
+def _split(numbers: list[Any], shape: tuple[int, ...]) -> Exact:
+    """Many-digit numbers, one or three an instant, as sums of two doubles."""
+    flat = [x for row in numbers for x in (row if len(shape) == 2 else (row,))]
+    high = [float(x) for x in flat]
+    low = [float(x - mpf(h)) for x, h in zip(flat, high, strict=True)]
+    return Exact(np.array(high).reshape(shape), np.array(low).reshape(shape))

@@ -1,0 +1,1 @@
+"""Pictures of what accuracy costs; they need matplotlib, of the extra `plot`."""

@@ -1,0 +1,149 @@
+"""How each way looks: a colour that colour-blind eyes tell apart, and a marker for those that do without."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+# Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
+BLACK, ORANGE, SKY, GREEN, BLUE, RED, PINK = (
+    "#000000",
+    "#e69f00",
+    "#56b4e9",
+    "#009e73",
+    "#0072b2",
+    "#d55e00",
+    "#cc79a7",
+)
+GREY = "#777777"
+FAINT = "#cccccc"
+INK = "#222222"
+# Text becomes outlines, so that a picture looks alike everywhere; ids do not change from run to run.
+SETTINGS: Any = {
+    "svg.hashsalt": "pointcoord",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 8.0,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 9.0,
+    "axes.linewidth": 0.7,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+DOTS = 200  # to an inch, of a PNG
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colour, marker and weight of a way."""
+
+    colour: str
+    marker: str
+    width: float = 1.2
+    size: float = 5.0
+
+
+# No two ways share a marker.
+LOOKS = {
+    "series": Look(BLUE, "o", 2.0, 5.5),
+    "newton": Look(RED, "s", 1.4),
+    "chord": Look(ORANGE, "^", 1.4, 6.0),
+    "newton-cold": Look(RED, "1", 1.4, 8.0),
+    "series-differences": Look(SKY, "p", 1.2, 6.0),
+    "newton-differences": Look(PINK, "h", 1.2, 6.0),
+    "printed": Look(GREY, "x", 1.2, 6.0),
+    "absolute": Look(GREEN, "D"),
+    "relative": Look(PINK, "P", 1.2, 6.5),
+    "scipy-root": Look(SKY, "v", 1.2, 6.0),
+    "scipy-root-jac": Look(BLUE, "<", 1.2, 6.0),
+    "least-squares": Look(ORANGE, ">", 1.2, 6.0),
+    "least-squares-jac": Look(RED, "8", 1.2, 6.0),
+    "mujoco": Look(BLACK, "*", 1.2, 9.0),
+    "exudyn": Look(GREEN, "X", 1.2, 6.5),
+}
+# For ways that have no look of their own yet, in their order.
+FURTHER = tuple(
+    Look(colour, marker, 1.2, 7.0) for colour in (BLACK, BLUE, RED) for marker in ("H", "+", "2", "4")
+)
+
+
+def looks(ways: Iterable[str]) -> dict[str, Look]:
+    """A look for each way; the same for the same ways."""
+    names = list(dict.fromkeys(ways))
+    order = [*(name for name in LOOKS if name in names), *sorted(set(names) - set(LOOKS))]
+    new = [name for name in order if name not in LOOKS]
+    return {name: LOOKS[name] if name in LOOKS else FURTHER[new.index(name) % len(FURTHER)] for name in order}
+
+
+def style(look: Look, dense: bool) -> dict[str, Any]:
+    """As matplotlib's options: filled markers on a full line for a dense way, else hollow on a broken one."""
+    return {
+        "color": look.colour,
+        "marker": look.marker,
+        "markersize": look.size,
+        "markerfacecolor": look.colour if dense else "white",
+        "markeredgecolor": look.colour,
+        "markeredgewidth": 1.1,
+        "linewidth": look.width,
+        "linestyle": "-" if dense else (0, (5, 1)),
+    }
+
+
+def handles(ways: Iterable[tuple[str, bool]]) -> list[Line2D]:
+    """Entries of a legend, of ways and whether they are dense."""
+    named = list(ways)
+    found = looks(way for way, _ in named)
+    dense = {way: any(d for w, d in named if w == way) for way in found}
+    return [
+        Line2D([], [], label=f"{way}*" if dense[way] else way, **style(look, dense[way]))
+        for way, look in found.items()
+    ]
+
+
+def plain(axes: Axes) -> None:
+    """A frame of two sides and a faint grid of the decades."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(True, which="major", color=FAINT, linewidth=0.4)
+    axes.set_axisbelow(True)
+    axes.minorticks_off()
+
+
+def spread(places: Sequence[float], room: float) -> list[float]:
+    """Places moved apart until each has room, those that crowd around their middle; their order stays."""
+    order = sorted(range(len(places)), key=lambda i: places[i])
+    groups: list[list[int]] = []
+
+    def bottom(group: Sequence[int]) -> float:
+        return sum(places[i] for i in group) / len(group) - 0.5 * room * (len(group) - 1)
+
+    for i in order:
+        groups.append([i])
+        while len(groups) > 1 and bottom(groups[-1]) - bottom(groups[-2]) < room * len(groups[-2]):
+            last = groups.pop()
+            groups[-1] += last
+    found = [0.0] * len(places)
+    for group in groups:
+        for k, i in enumerate(group):
+            found[i] = bottom(group) + k * room
+    return found
+
+
+def drawn(figure: Figure, ending: str) -> bytes:
+    """A figure as the bytes of a file, `svg` or `png`; the same for the same figure."""
+    stream = io.BytesIO()
+    with mpl.rc_context(SETTINGS):
+        # A date, or the version of a library, would make a file of the same rows another one.
+        metadata: dict[str, Any] = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
+        figure.savefig(stream, format=ending, dpi=DOTS, metadata=metadata)
+    return stream.getvalue()
