@@ -46,12 +46,13 @@ WORDS = {
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
     "mujoco": "the same suspension in MuJoCo, an outside witness",
+    "exudyn": "the same suspension in Exudyn, another one",
 }
 """Every formulation by its name, in words."""
 
 NAMES = tuple(WORDS)
 
-OUTSIDE = ("mujoco",)
+OUTSIDE = ("mujoco", "exudyn")
 """Other people's programs, which the extra `peers` brings."""
 
 
@@ -104,7 +105,11 @@ def engine_of(name: str) -> Callable[[Linkage], Engine]:
         MissingPackage: the program is not installed, or does not load.
     """
     try:
-        from validate.peers.in_mujoco import InMujoco
+        if name == "mujoco":
+            from validate.peers.in_mujoco import InMujoco
+
+            return InMujoco
+        from validate.peers.in_exudyn import InExudyn
     except ImportError as error:
         raise MissingPackage(name, error, "peers") from error
-    return InMujoco
+    return InExudyn
