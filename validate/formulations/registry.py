@@ -104,12 +104,10 @@ def engine_of(name: str) -> Callable[[Linkage], Engine]:
     Raises:
         MissingPackage: the program is not installed, or does not load.
     """
-    try:
-        if name == "mujoco":
-            from validate.peers.in_mujoco import InMujoco
+    if name == "mujoco":
+        from validate.peers.in_mujoco import InMujoco
 
-            return InMujoco
-        from validate.peers.in_exudyn import InExudyn
-    except ImportError as error:
-        raise MissingPackage(name, error, "peers") from error
+        return InMujoco
+    from validate.peers.in_exudyn import InExudyn
+
     return InExudyn

@@ -16,14 +16,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.extras import MissingPackage
 from validate.peers.linkage import CHASSIS, DRIVEN, KNUCKLE, TIE_ROD, Joint, Linkage, axes_along
 from validate.peers.program import Program
 
 Array = NDArray[np.float64]
 
 # By name, since what exudyn says of its types is not what its compiled functions take.
-exudyn: Any = import_module("exudyn")
-items: Any = import_module("exudyn.itemInterface")
+try:
+    exudyn: Any = import_module("exudyn")
+    items: Any = import_module("exudyn.itemInterface")
+except ImportError as error:
+    raise MissingPackage("exudyn", error, "peers") from error
 
 TURNS = (exudyn.JointType.RevoluteX, exudyn.JointType.RevoluteY, exudyn.JointType.RevoluteZ)
 MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")

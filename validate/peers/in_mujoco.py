@@ -8,12 +8,17 @@ doubles: an XML file is written with fewer digits.
 
 from __future__ import annotations
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.extras import MissingPackage
 from validate.peers.linkage import CHASSIS, DRIVEN, KNUCKLE, TIE_ROD, Linkage, axes_along
 from validate.peers.program import Program
+
+try:
+    import mujoco
+except ImportError as error:
+    raise MissingPackage("mujoco", error, "peers") from error
 
 Array = NDArray[np.float64]
 

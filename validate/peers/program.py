@@ -26,6 +26,11 @@ LIMIT = 12
 # rad and car sizes: a step that is longer may lead to another assembly, and the way is halved.
 LONGEST_STEP = 0.25
 HALVINGS = 12
+# Where that did lead to another assembly, or nowhere, it is tried with steps that are so much shorter.
+SHORTER = 0.125
+SHORTEST_STEP = 1e-6
+# Poses whose sides are checked at once.
+TOGETHER = 32
 # Below the root of the rounding unit a step that does not halve is rounding.
 ROUNDING_STEP = 1e-8
 
@@ -95,12 +100,12 @@ class Program(ABC):
         counted = _Count()
         self.put_as_drawn()
         driven = self.linkage.drawn_inputs
-        step = self._newton(driven, tolerance, counted, shorten=True)
+        step = self._newton(driven, tolerance, LONGEST_STEP, counted, shorten=True)
         if step is None:
             raise PeerError("the drawing cannot be closed")
         here, places = self.coordinates[None], self.places()[None]
         poses = self._named(driven[None], here, places, np.array([step]), counted)
-        if self.linkage.on_other_side(self.linkage.with_chassis(poses.places)).any():
+        if self._on_other_side(places).any():
             raise PeerError("closing the drawing leads to another assembly than is drawn")
         return poses
 
@@ -118,20 +123,51 @@ class Program(ABC):
         coordinates = np.empty((count, start.coordinates.shape[1]))
         places = np.empty((count, len(self.linkage.points), 3))
         steps = np.empty(count)
-        here = start.driven[-1]
-        self.put(start.coordinates[-1])
-        for i in range(count):
-            step = self._go(here, driven[i], tolerance, counted)
-            if step is None:
-                raise PeerError("no pose is reached from the one before", i)
-            here, steps[i] = driven[i], step
-            places[i] = self.places()
-            coordinates[i] = self.coordinates
-        poses = self._named(driven, coordinates, places, steps, counted)
-        other = self.linkage.on_other_side(self.linkage.with_chassis(poses.places))
-        if other.any():
-            raise PeerError("Newton's method came to another assembly than is drawn", int(np.argmax(other)))
-        return poses
+
+        def before(i: int) -> tuple[Array, Array]:
+            """Inputs and coordinates of the pose before another one."""
+            return (driven[i - 1], coordinates[i - 1]) if i else (start.driven[-1], start.coordinates[-1])
+
+        done = 0
+        while done < count:
+            here, pose = before(done)
+            self.put(pose)
+            stop = reached = min(done + TOGETHER, count)
+            for i in range(done, stop):
+                step = self._go(here, driven[i], tolerance, LONGEST_STEP, counted)
+                if step is None:
+                    reached = i
+                    break
+                here, steps[i], places[i], coordinates[i] = driven[i], step, self.places(), self.coordinates
+            other = self._on_other_side(places[done:reached])
+            done = done + int(np.argmax(other)) if other.any() else reached
+            if done < stop:
+                steps[done] = self._go_by_sides(*before(done), driven[done], tolerance, counted, done)
+                places[done], coordinates[done] = self.places(), self.coordinates
+                done += 1
+        return self._named(driven, coordinates, places, steps, counted)
+
+    def _go_by_sides(
+        self, start: Array, pose: Array, goal: Array, tolerance: float, counted: _Count, i: int
+    ) -> float:
+        """Go from a pose to a goal by ever shorter steps until it is on the drawing's side; the last step."""
+        longest, elsewhere = LONGEST_STEP, False
+        while longest > SHORTEST_STEP:
+            self.put(pose)
+            step = self._go(start, goal, tolerance, longest, counted)
+            if step is not None:
+                if not self._on_other_side(self.places()[None]).any():
+                    return step
+                elsewhere = True
+            longest *= SHORTER
+        if elsewhere:
+            raise PeerError("Newton's method came to another assembly than is drawn", i)
+        raise PeerError("no pose is reached from the one before", i)
+
+    def _on_other_side(self, places: Array) -> NDArray[np.bool_]:
+        """Which poses, by the places of their points, (N, points, 3), are not of the drawing's assembly."""
+        named = {name: places[:, k] for k, name in enumerate(self.linkage.points)}
+        return self.linkage.on_other_side(self.linkage.with_chassis(named))
 
     def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
         """Velocities and accelerations of poses.
@@ -161,13 +197,15 @@ class Program(ABC):
         )
         return Rates(velocities, accelerations, first[:, -1], second[:, -1])
 
-    def _go(self, start: Array, goal: Array, tolerance: float, counted: _Count) -> float | None:
+    def _go(
+        self, start: Array, goal: Array, tolerance: float, longest: float, counted: _Count
+    ) -> float | None:
         """Follow the inputs to a goal, by halves where Newton's method would step too far; its last step."""
         done, share, step = 0.0, 1.0, None
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
-            step = self._newton(there, tolerance, counted)
+            step = self._newton(there, tolerance, longest, counted)
             if step is None:
                 self.put(kept)
                 share *= 0.5
@@ -178,12 +216,13 @@ class Program(ABC):
         return step
 
     def _newton(
-        self, driven: Array, tolerance: float, counted: _Count, shorten: bool = False
+        self, driven: Array, tolerance: float, longest: float, counted: _Count, shorten: bool = False
     ) -> float | None:
         """Close the loops at driven inputs; the last step, None if it fails.
 
         Args:
-            shorten: whether a step that is too long is shortened, or fails.
+            longest: step that is taken.
+            shorten: whether a longer one is shortened, or fails.
         """
         self.drive(driven)
         unknown, previous = self.unknown, np.inf
@@ -198,10 +237,10 @@ class Program(ABC):
             except np.linalg.LinAlgError:
                 return None
             size = float(np.abs(step).max())
-            if not size <= LONGEST_STEP:
+            if not size <= longest:
                 if not (shorten and np.isfinite(size)):
                     return None
-                step *= LONGEST_STEP / size
+                step *= longest / size
             self.move(step)
             counted.steps += 1
             if size <= tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):

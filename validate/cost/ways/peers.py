@@ -14,7 +14,7 @@ from validate.cost.way import Setting
 from validate.formulations.outside_programs import Engine, asked_of, linkage_in, require_the_drawn_car
 from validate.formulations.protocol import Numbers
 from validate.formulations.registry import WORDS, engine_of
-from validate.peers.linkage import Inputs, Linkage
+from validate.peers.linkage import Inputs, Linkage, PeerError
 from validate.peers.motion import Poses, Rates, numbers
 
 Array = NDArray[np.float64]
@@ -94,8 +94,14 @@ class ReadyPeer:
         Raises:
             PeerError: a pose is not reached, or is one of another assembly.
         """
-        inputs = self.linkage.inputs(_laws(self.scene, instants))
-        return Solved(inputs, self.engine.poses(inputs.driven[:, 0], self.tolerance, self.start))
+        try:
+            inputs = self.linkage.inputs(_laws(self.scene, instants))
+            return Solved(inputs, self.engine.poses(inputs.driven[:, 0], self.tolerance, self.start))
+        except PeerError as error:
+            if error.instant is None:
+                raise
+            when = f"at t = {instants[error.instant]:.6g} s: {error.problem}"
+            raise PeerError(when, error.instant) from None
 
     def rates(self, solved: Solved) -> Solved:
         """Velocities and accelerations of everything, where the scene asks for any."""

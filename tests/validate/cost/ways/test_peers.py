@@ -9,10 +9,12 @@ import pytest
 
 from pointcoord import Scene, SceneError, built_in_scenes
 from validate.adjudication.reference_solution import reference_solution, told_by
+from validate.cost.scenes import own_scene
 from validate.cost.way import Setting
 from validate.cost.ways.peers import WAYS, PeerWay, ReadyPeer
 from validate.extras import MissingPackage
 from validate.formulations.protocol import Numbers, Solution
+from validate.peers import program
 from validate.peers.linkage import PeerError
 
 FINE = Setting("", 1e-12)
@@ -63,6 +65,21 @@ def test_the_error_and_the_work_follow_the_tolerance(way: PeerWay) -> None:
     assert 1e-4 < error[0] < 10.0
     assert error[1] < 1e-11
     assert steps[0] < 0.8 * steps[1]
+
+
+@by_way
+def test_a_program_keeps_to_the_drawings_assembly_beside_a_toggle(
+    way: PeerWay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The arm comes to a ten-thousandth of its toggle, and Newton's first try jumps to the other assembly."""
+    scene = own_scene("near-toggle")
+    reference = reference_solution(scene)
+    ready = way.prepare(scene, FINE)
+    # Rounding is raised by some ten thousand there.
+    assert errors(found(ready, scene), reference, scene)["position"] < 1e-8
+    monkeypatch.setattr(program, "SHORTEST_STEP", 0.2)  # no second try
+    with pytest.raises(PeerError, match=r"at t = .* s: Newton's method came to another assembly"):
+        ready.solve(scene.instants)
 
 
 @by_way
