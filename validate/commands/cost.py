@@ -225,7 +225,7 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             own = name in of_study.STUDY_SCENES
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
-    chosen = tuple(scenes) or of_study.own_scenes()
+    chosen = tuple(scenes) or of_study.own_scenes(quick=options.quick)
     return Study(parts, chosen, ways, options.quick)
 
 
