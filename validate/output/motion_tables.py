@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 # as objects of Python take some 10 MB.
 ROWS = 2048
 # Blocks of a group of rows of Parquet, which is compressed by itself: more make smaller files.
-GROUP = 32
+GROUP = 16
 # Numbers of a column that are copied at a time.
 PIECE = 2**19
 
@@ -147,7 +147,7 @@ def _parquet_file(stream: BinaryIO, motion: Motion, instants: int | None) -> Non
         while group := tuple(islice(blocks, GROUP)):
             table = pyarrow.table({n: np.concatenate([block[n] for block in group]) for n in group[0]})
             if writer is None:
-                writer = pyarrow.parquet.ParquetWriter(stream, table.schema)
+                writer = pyarrow.parquet.ParquetWriter(stream, table.schema, use_dictionary=False)
             writer.write_table(table)
     finally:
         if writer is not None:
