@@ -21,8 +21,8 @@ from pointcoord.numerics.quadratic import QuadraticMap
 
 Array = NDArray[np.float64]
 
-# Products of pairs of coefficients at once: 4 MB for a map of a hundred terms.
-PAIRS = 4096
+# Products of pairs of coefficients at once: 7 MB for a map of a hundred terms.
+PAIRS = 8192
 
 
 def expand_in_inputs(

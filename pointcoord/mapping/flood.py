@@ -24,9 +24,10 @@ from pointcoord.mapping.domain import Domain
 from pointcoord.mapping.evaluation import monomials
 from pointcoord.mapping.expansion import expand_in_inputs
 from pointcoord.mapping.jet import Jet
+from pointcoord.mapping.multi_index import powers
 from pointcoord.mapping.patch_proof import PatchProof, prove_patches
 from pointcoord.mapping.reported_points import reported_points
-from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve.assembly import follow
 
 Array = NDArray[np.float64]
@@ -34,10 +35,12 @@ Whole = NDArray[np.int64]
 Corner = tuple[int, ...]
 Key = tuple[Corner, Corner]
 
-# Boxes that are expanded and proven at once: their products stay below some 100 MB.
-BATCH = 8
+# Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
+BATCH = 32
 # A part whose bound is no smaller than this share of the whole's is as exact as rounding lets it be.
 NO_BETTER = 0.9
+# Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
+COARSE = 1e3
 
 FOLD = "no patch can be proven here down to the smallest: a fold, where assemblies meet or end, is near"
 ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
@@ -161,25 +164,50 @@ class _Flood:
         y = path.y[arrived]
         y[:, system.unknowns :] = known[arrived, 0]
         factors = factorise(system.jacobian(y))
-        here = data.each(lambda part: part[arrived])
         count = len(domain.free)
         series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
-        proof = prove_patches(system, factors, series, self.order, lacking[arrived], here)
+        last, along = last_terms(series[..., : system.unknowns], count, self.order)
+        coarse = last * float(mechanism.unit) > COARSE * self.tolerance
+        for place in np.flatnonzero(coarse).tolist():
+            self._halve(*boxes[int(arrived[place])], y[place], (along[place], np.inf))
+        fine = np.flatnonzero(~coarse)
+        if fine.size:
+            self._prove(
+                [boxes[int(place)] for place in arrived[fine]],
+                y[fine],
+                series[fine],
+                factors.taken(fine),
+                lacking[arrived[fine]],
+                data.each(lambda part: part[arrived[fine]]),
+            )
+
+    def _prove(
+        self,
+        boxes: list[tuple[Key, Entry]],
+        y: Array,
+        series: Array,
+        factors: Factors,
+        lacking: Array,
+        data: Jet,
+    ) -> None:
+        """Prove series about the middles of boxes, and keep what is near enough."""
+        system, mechanism = self.domain.mechanism.map, self.domain.mechanism
+        proof = prove_patches(system, factors, series, self.order, lacking, data)
         proven = np.flatnonzero(proof.proven)
         error = proof.error.each(lambda part: part[proven])
         points, off = reported_points(mechanism, series[proven], error, self.order)
-        bound = np.full(len(arrived), np.inf)
+        bound = np.full(len(boxes), np.inf)
         bound[proven] = off.value.max(axis=-1)
-        for place, box in enumerate(arrived.tolist()):
+        for place, box in enumerate(boxes):
             if bound[place] > self.tolerance:
-                self._halve(*boxes[box], y[place], self._failure(proof, place, float(bound[place])))
+                self._halve(*box, y[place], self._failure(proof, place, float(bound[place])))
         near = bound[proven] <= self.tolerance
         if near.any():
             good = proven[near]
             self.kept.append(
                 Patches(
-                    low=low[arrived[good]],
-                    high=high[arrived[good]],
+                    low=np.array([boxes[place][0][0] for place in good], dtype=np.int64),
+                    high=np.array([boxes[place][0][1] for place in good], dtype=np.int64),
                     series=series[good, :, : system.unknowns],
                     error=proof.error.value[good],
                     unique_within=proof.unique_within[good],
@@ -278,6 +306,14 @@ def flood(domain: Domain, order: int, tolerance: float, start: tuple[Whole, Arra
         key = (tuple(patches.low[place].tolist()), tuple(patches.high[place].tolist()))
         state.given_up[key] = SEAM
     return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()))
+
+
+def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:
+    """Largest sum of terms of the highest total degree, (P,), and how much of it is by each input, (P, p)."""
+    every = powers(inputs, order)
+    first = every.first_of(order)
+    sizes = Jet.of(series[:, first:], every.exponents[first:])
+    return sizes.value.max(axis=-1), sizes.first.max(axis=-1)
 
 
 def touching(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> NDArray[np.bool_]:

@@ -295,7 +295,7 @@ class KinematicMap:
         flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
         patch = self._patches_of(flat[0])
         found = sum_series(table, middle, half, order, patch, flat)
-        return found.reshape(len(states), *batch, -1, 3)
+        return found.reshape(len(states), *batch, len(self.points), 3)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""

@@ -139,7 +139,7 @@ def _save(stream: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
     with zipfile.ZipFile(stream, "w") as archive:
         for name, array in arrays.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as part:
-                np.lib.format.write_array(part, np.ascontiguousarray(array), allow_pickle=False)
+                np.lib.format.write_array(part, np.asarray(array, order="C"), allow_pickle=False)
 
 
 def read(path: str | PathLike[str]) -> tuple[Scene, float, Stored]:
@@ -147,7 +147,7 @@ def read(path: str | PathLike[str]) -> tuple[Scene, float, Stored]:
     what = f"file {fspath(path)!r}"
     allowed = "a map as KinematicMap.save writes it"
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             found = {name: file[name] for name in file.files}
     except FileNotFoundError as error:
         raise MapError(what, "does not exist", allowed) from error

@@ -23,6 +23,8 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
 from validate.cost.errors import errors_of, truth_of
+from validate.cost.growth.unknowns import LongChain
+from validate.cost.loading import Loading
 from validate.cost.store import Header
 from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
@@ -190,6 +192,24 @@ RECIPES: dict[str, Recipe] = {
         ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
         {"instant": 2.7, "start": 0.0, "stop": 2.6},
     ),
+    "pointcoord.errors.MapError": Recipe(
+        lambda *_: pointcoord.kinematic_map(BOUNCE, {"arm_angle": (1.0, 0.9), "rack": (0.0, 1.0)}),
+        ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers, the lower first"),
+        {"what": "ranges['arm_angle']", "problem": "is (1.0, 0.9)", "allowed": bool},
+    ),
+    "pointcoord.errors.NotCovered": Recipe(
+        # One box of a range that reaches beyond what the links allow, and not to be cut.
+        lambda *_: pointcoord.kinematic_map(
+            BOUNCE, {"arm_angle": (0.5, 2.5), "rack": (-90.0, 90.0)}, halvings=0
+        ),
+        ("the map does not cover arm_angle = ", "a fold", "make the map of a smaller range"),
+        {
+            "inputs": lambda inputs: set(inputs) == {"arm_angle", "rack"},
+            "reason": bool,
+            "count": 1,
+            "asked": 1,
+        },
+    ),
     "absolute.continuation.BlockedError": Recipe(
         lambda *_: blocked(),
         ("blocked at 0.", "of the way"),
@@ -266,6 +286,13 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.cost.errors.NoNumbers": Recipe(
         lambda *_: errors_of({}, truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
+    ),
+    "validate.cost.growth.task.WrongNumber": Recipe(
+        lambda *_: LongChain("series", 6).check(np.zeros((5, 2, 3))), ("tip_", "mm from the closed form")
+    ),
+    "validate.cost.loading.NotRun": Recipe(
+        lambda *_: Loading("nothing", words=("-c", "raise SystemExit('no such thing')")).seconds(),
+        ("ended with status 1", "no such thing"),
     ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),

@@ -1,0 +1,315 @@
+"""A map as a user has it: shapes, ranges, laws composed with it, effects, and files."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sample_cars import PAPER_STRUT, SampleCar, by_car
+
+from pointcoord import (
+    InputOutOfRange,
+    KinematicMap,
+    MapError,
+    NotComputed,
+    NotCovered,
+    PointcoordError,
+    Scene,
+    UnknownName,
+    kinematic_map,
+    simulate,
+)
+from pointcoord.effects.registry import EFFECTS
+
+Array = NDArray[np.float64]
+MakeScene = Callable[..., Scene]
+RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
+
+
+def around(car: SampleCar, angle: float = 0.1, travel: float = 10.0) -> dict[str, tuple[float, float]]:
+    drawn = car.drawn_inputs
+    # The paper's drawing stands beyond where its strut is used.
+    middle = 1.0 if car is PAPER_STRUT else drawn["arm_angle"]
+    return {
+        "arm_angle": (middle - angle, middle + angle),
+        "rack": (drawn["rack"] - travel, drawn["rack"] + travel),
+    }
+
+
+@pytest.fixture(scope="module")
+def steered() -> KinematicMap:
+    return kinematic_map(Scene.load("steer"), RANGES)
+
+
+@by_car
+def test_laws_of_time_composed_with_the_map_give_what_simulation_gives(
+    make_scene: MakeScene, car: SampleCar
+) -> None:
+    ranges = around(car)
+    (low, high), (left, right) = ranges["arm_angle"], ranges["rack"]
+    arm = {"amplitude": 0.45 * (high - low), "angular_frequency": 7.0, "offset": 0.5 * (low + high)}
+    rack = {"amplitude": 0.45 * (right - left), "angular_frequency": 5.0, "offset": 0.5 * (left + right)}
+    heave = (1.0, 20.0, -7.0)
+    scene = make_scene({"sine": arm}, {"sine": rack}, heave=heave, car=car, samples=41)
+    motion = simulate(scene, "newton")
+    laws = {n: f.series(scene.instants, 2) for n, f in scene.functions.items()}
+    value, rate, half = ({n: law[:, d] for n, law in laws.items()} for d in range(3))
+    map = kinematic_map(scene, ranges)
+    found = map(value, rate, {n: 2.0 * a for n, a in half.items()})
+    proof = motion.proof(rates=True)
+    b = map.bound
+    speed = [sum(b.velocity[i] * np.abs(rate[i]) for i in map.inputs)]
+    speed.append(
+        sum(b.velocity[i] * 2.0 * np.abs(half[i]) for i in map.inputs)
+        + sum(b.acceleration[i, j] * np.abs(rate[i] * rate[j]) for i in map.inputs for j in map.inputs)
+    )
+    limits = {"position": np.full(41, b.position), "velocity": speed[0], "acceleration": speed[1]}
+    # The inputs are doubles near what the laws are: 2e-16 of each law's terms, by rates of 1000 mm a rad, and
+    # their rates likewise, by the frequency, twice for the acceleration.
+    rounded = {"position": 1e-12, "velocity": 1e-11, "acceleration": 1e-10}
+    for quantity, limit in limits.items():
+        for name in motion.position:
+            apart = np.abs(found.numbers[quantity][name] - motion.numbers[quantity][name])
+            allowed = limit[:, None] + proof.proven[quantity][name] + rounded[quantity]
+            assert (apart <= allowed).all(), (quantity, name)
+    for quantity in ("angular_velocity", "angular_acceleration", "wheel"):
+        for name, numbers in motion.numbers[quantity].items():
+            # Of points 50 mm and more apart: bounds above are below 1e-5 mm / s^2 and 1e-7 rad / s^2 of them.
+            np.testing.assert_allclose(found.numbers[quantity][name], numbers, rtol=0.0, atol=1e-6)
+
+
+def test_inputs_of_any_shape_give_arrays_of_that_shape(steered: KinematicMap) -> None:
+    angles = np.linspace(0.9, 1.1, 6).reshape(2, 1, 3)
+    racks = np.linspace(-10.0, 10.0, 4).reshape(4, 1)
+    found = steered({"arm_angle": angles, "rack": racks}, {"arm_angle": 1.0, "rack": racks})
+    assert found.position["wheel_centre"].shape == (2, 4, 3, 3)
+    assert found.position["strut_top"].shape == (2, 4, 3, 3)
+    assert found.velocity["wheel_centre"].shape == (2, 4, 3, 3)
+    assert found.wheel["camber"].shape == (2, 4, 3)
+    assert not found.acceleration.computed
+    one = steered({"arm_angle": float(angles[1, 0, 2]), "rack": float(racks[3, 0])})
+    assert one.position["wheel_centre"].shape == (3,)
+    np.testing.assert_allclose(
+        one.position["wheel_centre"], found.position["wheel_centre"][1, 3, 2], rtol=0.0, atol=1e-11
+    )
+    assert steered({"arm_angle": np.empty((0, 2)), "rack": 0.0}).position["wheel_centre"].shape == (0, 2, 3)
+
+
+def test_one_pose_and_many_are_summed_alike(steered: KinematicMap) -> None:
+    generator = np.random.default_rng(1)
+    values = generator.uniform((0.9, -10.0), (1.1, 10.0), (50, 2))
+    speeds, changes = generator.normal(size=(2, 50, 2))
+    many = steered.evaluate(values, speeds, changes)
+    assert many.shape == (3, 50, len(steered.points), 3)
+    for i in range(50):
+        one = steered.evaluate(values[i], speeds[i], changes[i])
+        # Rounding: relative to terms below 1e3 mm, 1e3 mm / s and 1e4 mm / s^2, with the sums' hundred terms.
+        for d, size in enumerate((1e3, 1e3, 1e4)):
+            assert np.abs(one[d] - many[d, i]).max() <= 100 * 2.0**-52 * size
+        assert np.abs(steered.evaluate(values[i])[0] - many[0, i]).max() <= 100 * 2.0**-52 * 1e3
+
+
+def test_each_patch_is_within_the_tolerance_and_they_cover_the_range(steered: KinematicMap) -> None:
+    assert len(steered.patches) > 1
+    assert all(patch.bound.position <= steered.tolerance == 1e-9 for patch in steered.patches)
+    assert max(patch.bound.position for patch in steered.patches) == steered.bound.position
+    area = sum(np.prod([high - low for low, high in patch.ranges.values()]) for patch in steered.patches)
+    assert area == pytest.approx(0.2 * 20.0)
+    assert steered.share_covered == 1.0
+    assert steered.uncovered == ()
+
+
+@by_car
+def test_a_finer_tolerance_is_kept_too(car: SampleCar, make_scene: MakeScene) -> None:
+    scene = make_scene(car=car)
+    coarse, fine = (kinematic_map(scene, around(car), limit) for limit in (1e-4, 1e-11))
+    assert fine.bound.position <= 1e-11
+    assert coarse.order < fine.order
+    low, high = np.array([*around(car).values()]).T
+    values = np.random.default_rng(2).uniform(low, high, (200, 2))
+    apart = np.abs(coarse.evaluate(values) - fine.evaluate(values)).max()
+    assert 1e-11 < apart <= coarse.bound.position + fine.bound.position
+
+
+def test_an_input_can_be_held(steered: KinematicMap) -> None:
+    map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (4.0, 4.0)})
+    assert map.inputs == ("arm_angle",)
+    angles = np.linspace(0.9, 1.1, 7)
+    for given in ({"arm_angle": angles}, {"arm_angle": angles, "rack": 4.0}):
+        found = map(given, {"arm_angle": 1.0})
+        wanted = steered({"arm_angle": angles, "rack": 4.0}, {"arm_angle": 1.0, "rack": 0.0})
+        apart = np.abs(found.position["wheel_centre"] - wanted.position["wheel_centre"])
+        assert apart.max() <= map.bound.position + steered.bound.position
+        rate = np.abs(found.velocity["wheel_centre"] - wanted.velocity["wheel_centre"])
+        assert rate.max() <= map.bound.velocity["arm_angle"] + steered.bound.velocity["arm_angle"]
+    with pytest.raises(InputOutOfRange, match="'rack' is 5; allowed: 4, as the map holds this input"):
+        map({"arm_angle": angles, "rack": 5.0})
+    with pytest.raises(InputOutOfRange, match="'rack' is 1; allowed: 0"):
+        map({"arm_angle": angles}, {"arm_angle": 1.0, "rack": 1.0})
+
+
+@pytest.mark.parametrize("value", [1.1 + 1e-12, 0.9 - 1e-12, np.nan, np.inf])
+def test_a_value_out_of_range_is_refused_with_its_name_and_the_range(
+    steered: KinematicMap, value: float
+) -> None:
+    for values in (value, [1.0, value]):
+        with pytest.raises(InputOutOfRange, match=r"'arm_angle' is .*; allowed: 0.9 to 1.1") as caught:
+            steered({"arm_angle": values, "rack": 0.0})
+        assert caught.value.name == "arm_angle"
+        assert not steered.covers({"arm_angle": values, "rack": 0.0}).all()
+    with pytest.raises(InputOutOfRange, match="'arm_angle'"):
+        steered.evaluate([value, 0.0])
+
+
+def test_the_ends_of_the_range_are_inside(steered: KinematicMap) -> None:
+    corners = {"arm_angle": np.array([0.9, 0.9, 1.1, 1.1]), "rack": np.array([-10.0, 10.0, -10.0, 10.0])}
+    assert steered.covers(corners).all()
+    assert np.isfinite(steered(corners).position["wheel_centre"]).all()
+
+
+REFUSED: list[tuple[Callable[[KinematicMap], object], type[PointcoordError], str]] = [
+    (lambda m: m({"arm_angle": 1.0}), UnknownName, "no given input named 'rack'"),
+    (lambda m: m({"arm_angle": 1.0, "rack": 0.0, "roll": 1.0}), UnknownName, "no input named 'roll'"),
+    (lambda m: m({"arm_angle": 1.0, "rack": 0.0}, {"rack": 1.0}), UnknownName, "a rate named 'arm_angle'"),
+    (
+        lambda m: m({"arm_angle": 1.0, "rack": 0.0}, None, {"arm_angle": 1.0, "rack": 1.0}),
+        NotComputed,
+        "give the rates of the inputs as well",
+    ),
+    (
+        lambda m: m({"arm_angle": 1.0, "rack": 0.0}, {"arm_angle": 1.0, "rack": np.inf}),
+        InputOutOfRange,
+        "'rack' is inf; allowed: rates that are finite",
+    ),
+    (
+        lambda m: m({"arm_angle": 1.0, "rack": 0.0, "heave": np.nan}),
+        InputOutOfRange,
+        "'heave' is nan",
+    ),
+    (lambda m: m.evaluate([1.0, 0.0, 3.0]), MapError, r"values have the shape \(3,\); allowed: \(..., 2\)"),
+    (
+        lambda m: m({"arm_angle": 1.0, "rack": 0.0}).velocity["wheel_centre"],
+        NotComputed,
+        "velocity of wheel_centre was not computed",
+    ),
+]
+
+
+@pytest.mark.parametrize(("use", "kind", "words"), REFUSED)
+def test_what_a_map_cannot_give_is_refused_in_words(
+    steered: KinematicMap, use: Callable[[KinematicMap], object], kind: type[PointcoordError], words: str
+) -> None:
+    with pytest.raises(kind, match=words):
+        use(steered)
+
+
+UNUSABLE: list[tuple[dict[str, Any], type[PointcoordError], str]] = [
+    ({"ranges": {"arm_angle": (0.9, 1.1)}}, UnknownName, "no range of an input named 'rack'"),
+    ({"ranges": {**RANGES, "heave": (0.0, 1.0)}}, MapError, "it moves the whole chassis"),
+    ({"ranges": {**RANGES, "rack": (5.0, -5.0)}}, MapError, r"ranges\['rack'\] is \(5.0, -5.0\)"),
+    ({"ranges": {**RANGES, "rack": 5.0}}, MapError, r"ranges\['rack'\] is 5.0; allowed: two finite numbers"),
+    ({"ranges": {**RANGES, "rack": (0.0, np.inf)}}, MapError, r"ranges\['rack'\]"),
+    ({"ranges": {"arm_angle": (1.0, 1.0), "rack": (0.0, 0.0)}}, MapError, "leave 0 inputs free"),
+    ({"ranges": {**RANGES, "arm_angle": (3.0, 3.5)}}, InputOutOfRange, "'arm_angle' is 3.5"),
+    ({"ranges": RANGES, "tolerance": 0.0}, MapError, "tolerance is 0.0"),
+    ({"ranges": RANGES, "halvings": 11}, MapError, "halvings is 11"),
+    ({"ranges": 7}, MapError, "ranges is a int"),
+]
+
+
+@pytest.mark.parametrize(("settings", "kind", "words"), UNUSABLE)
+def test_ranges_that_make_no_map_are_refused_in_words(
+    settings: Mapping[str, Any], kind: type[PointcoordError], words: str
+) -> None:
+    with pytest.raises(kind, match=words):
+        kinematic_map(Scene.load("steer"), **settings)
+
+
+def test_a_tolerance_below_rounding_is_refused_with_that_reason() -> None:
+    with pytest.raises(NotCovered, match="rounding alone exceeds the tolerance"):
+        kinematic_map(Scene.load("steer"), RANGES, 1e-15)
+
+
+def test_a_saved_map_comes_back_to_the_last_bit(steered: KinematicMap, tmp_path: Path) -> None:
+    generator = np.random.default_rng(3)
+    values = generator.uniform((0.9, -10.0), (1.1, 10.0), (100, 2))
+    steered.save(tmp_path / "map.npz")
+    for again in (KinematicMap.load(tmp_path / "map.npz"), pickle.loads(pickle.dumps(steered))):
+        assert (again.evaluate(values, values, values) == steered.evaluate(values, values, values)).all()
+        assert again.bound == steered.bound
+        assert again.patches == steered.patches
+        assert dict(again.ranges) == dict(steered.ranges)
+        assert again.scene == steered.scene
+        assert repr(again) == repr(steered)
+        at = {"arm_angle": 1.0, "rack": 1.0}
+        assert again(at).wheel["camber"] == steered(at).wheel["camber"]
+
+
+def test_a_map_gives_every_effect_that_its_scene_asks_for(steered: KinematicMap) -> None:
+    at = {"arm_angle": 1.0, "rack": 1.0}
+    found = steered(at, at, at)
+    for name in steered.scene.effects:
+        for quantity, names in EFFECTS[name].gives_numbers.items():
+            assert set(names or ()) <= set(found.numbers[quantity])
+            assert found.numbers[quantity].computed
+
+
+def _changed(path: Path, name: str, change: Callable[[Any], Any]) -> None:
+    with np.load(path) as file:
+        arrays = {key: file[key] for key in file.files}
+    arrays[name] = change(arrays[name])
+    np.savez(path, **arrays)
+
+
+def _cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:1000])
+
+
+def _array(path: Path) -> None:
+    with path.open("wb") as stream:
+        np.save(stream, np.zeros(3))
+
+
+def _nudged(coefficients: Array) -> Array:
+    coefficients = coefficients.copy()
+    coefficients[0, 3, 7] += 1e-8
+    return coefficients
+
+
+DAMAGE: dict[str, tuple[Callable[[Path], object], str]] = {
+    "none there": (lambda p: p.unlink(), "does not exist"),
+    "a text": (lambda p: p.write_text("arm_angle"), "is no npz file"),
+    "empty": (lambda p: p.write_bytes(b""), "is no npz file"),
+    "cut off": (_cut, "is no npz file, or a damaged one"),
+    "another npz": (lambda p: np.savez(p, a=np.zeros(3)), "is no kinematic map"),
+    "one array": (_array, "is no npz file"),
+    "another version": (
+        lambda p: _changed(p, "version", lambda v: v + 1),
+        "is of version 2; allowed: version 1",
+    ),
+    "a coefficient off by 1e-8": (
+        lambda p: _changed(
+            p, "coefficients", lambda c: c + 1e-8 * (np.arange(c.size) == 40).reshape(c.shape)
+        ),
+        "is damaged: its numbers are not those that were saved",
+    ),
+    "another bound": (lambda p: _changed(p, "off", lambda c: 0.5 * c), "is damaged"),
+    "another scene": (lambda p: _changed(p, "head", lambda t: str(t).replace("460", "461")), "is damaged"),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_file_that_is_no_map_is_refused_in_words(
+    steered: KinematicMap, tmp_path: Path, damage: str
+) -> None:
+    path = tmp_path / "map.npz"
+    steered.save(path)
+    spoil, words = DAMAGE[damage]
+    spoil(path)
+    with pytest.raises(MapError, match=words):
+        KinematicMap.load(path)
