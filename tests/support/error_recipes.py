@@ -373,7 +373,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
-        ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
+        ("motion.xlsx", "no known ending", "allowed: .csv, .npz, .parquet"),
         {"target": "motion.xlsx"},
     ),
     "validate.hard.catalogue.UnknownCase": Recipe(
