@@ -114,6 +114,16 @@ def test_one_pose_and_many_are_summed_alike(steered: KinematicMap) -> None:
         assert np.abs(steered.evaluate(values[i])[0] - many[0, i]).max() <= 100 * 2.0**-52 * 1e3
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_what_is_given_stays_as_it_is(steered: KinematicMap, count: int) -> None:
+    values, speeds = np.full((2, count, 2), 1.0)
+    steered.evaluate(values, speeds)
+    assert (values == 1.0).all()
+    assert (speeds == 1.0).all()
+    held = np.broadcast_to(1.0, (count, 2))
+    assert (steered.evaluate(held, held) == steered.evaluate(values, speeds)).all()
+
+
 def test_each_patch_is_within_the_tolerance_and_they_cover_the_range(steered: KinematicMap) -> None:
     assert len(steered.patches) > 1
     assert all(patch.bound.position <= steered.tolerance == 1e-9 for patch in steered.patches)
