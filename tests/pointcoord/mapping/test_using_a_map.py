@@ -146,6 +146,22 @@ def test_a_finer_tolerance_is_kept_too(car: SampleCar, make_scene: MakeScene) ->
     assert 1e-11 < apart <= coarse.bound.position + fine.bound.position
 
 
+def test_a_car_that_is_drawn_far_away_is_mapped_as_well_near_itself(steered: KinematicMap) -> None:
+    content = steered.scene.model_dump(exclude_none=True)
+    far = (2.0**30, -(2.0**29), 2.0**31)
+    points = content["mechanism"]["points"]
+    content["mechanism"]["points"] = {
+        name: tuple(c + shift for c, shift in zip(place, far, strict=True)) for name, place in points.items()
+    }
+    map = kinematic_map(Scene.from_mapping(content), RANGES)
+    # Whole numbers of mm below 2^53 are moved without rounding, so what is solved is the same.
+    assert (map.evaluate([1.01, 2.0]) == steered.evaluate([1.01, 2.0]))[0].all()
+    near, moved = (one({"arm_angle": 1.01, "rack": 2.0}).position["wheel_centre"] for one in (steered, map))
+    assert (np.abs(moved - far - near) <= map.bound.position + steered.bound.position).all()
+    # A number near 2^31 is rounded by up to 2^-22, and the bound says so.
+    assert 2.0**-23 <= map.bound.position <= 2.0**-21
+
+
 def test_an_input_can_be_held(steered: KinematicMap) -> None:
     map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (4.0, 4.0)})
     assert map.inputs == ("arm_angle",)
