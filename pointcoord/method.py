@@ -7,7 +7,14 @@ from dataclasses import dataclass, field
 
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
-from pointcoord.solve.pointwise import SquareVelocityTerm, square_velocity_term
+from pointcoord.solve.chord import solve_by_chord
+from pointcoord.solve.pointwise import (
+    InstantSolver,
+    SquareVelocityTerm,
+    solve_from_drawing,
+    solve_instants,
+    square_velocity_term,
+)
 from pointcoord.suspensions import SUSPENSIONS
 from pointcoord.suspensions.suspension import Suspension
 
@@ -18,7 +25,8 @@ class Method:
 
     Attributes:
         name: in results and messages.
-        by_series: a chain of power series, dense in time; or Newton's method at each of the scene's instants.
+        by_series: a chain of power series, dense in time; or poses at each of the scene's instants.
+        at_instants: how these are solved for.
         suspensions: those that it can solve, by type, with the closures that it can.
         only: why there are no others, in words.
         square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
@@ -28,6 +36,7 @@ class Method:
 
     name: str
     by_series: bool = False
+    at_instants: InstantSolver = solve_instants
     suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
     only: str = ""
     square_velocity_term: SquareVelocityTerm = square_velocity_term
@@ -41,9 +50,15 @@ SERIES = Method("series", by_series=True)
 """A chain of power series, dense in time."""
 
 NEWTON = Method("newton")
-"""The paper's algorithm, at the scene's instants only."""
+"""The paper's algorithm, at the scene's instants only, each from the one before."""
 
-METHODS: Mapping[str, Method] = {method.name: method for method in (SERIES, NEWTON)}
+NEWTON_COLD = Method("newton-cold", at_instants=solve_from_drawing)
+"""The same with each instant by itself, from the drawing."""
+
+CHORD = Method("chord", at_instants=solve_by_chord)
+"""The same as `newton` with one factorisation kept for many instants."""
+
+METHODS: Mapping[str, Method] = {method.name: method for method in (SERIES, NEWTON, NEWTON_COLD, CHORD)}
 
 
 def method_of(name: Method | str) -> Method:

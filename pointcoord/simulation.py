@@ -20,6 +20,7 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES, Method, method_of
+from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.closing import ALLOWED, Closing, closing
 from pointcoord.results.motion import Motion
@@ -30,8 +31,8 @@ from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.pointwise import solve_instants
-from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Settings, build_chain
+from pointcoord.solve.status import Status
+from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -45,8 +46,9 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     """Solve a scene by point coordinates.
 
     Args:
-        method: `series` (a chain of power series, dense in time), `newton` (the paper's algorithm, at the
-            scene's instants only), or a method of your own.
+        method: `series` (a chain of power series, dense in time); at the scene's instants only `newton` (the
+            paper's algorithm), `newton-cold` (each instant from the drawing) and `chord` (a factorisation
+            kept); or a method of your own.
     Raises:
         UnknownName: there is no such method.
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
@@ -73,6 +75,51 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
         raise error
     assert motion is not None  # what is complete has its first instant at least
     return motion
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What the accuracy that a scene asks for makes the method `series` do.
+
+    Attributes:
+        tolerance: of positions, mm: the scene's, or the nearest that a series holds.
+        part: the same as a part of the car's size, which rates are held to.
+        orders: of each series.
+        start: what assembling the start takes.
+        work: what all of it takes, but for the sums at the instants.
+        stop: how far the series reach, s.
+        status: whether that is the end, and if not, why.
+    """
+
+    tolerance: float
+    part: float
+    orders: tuple[int, ...]
+    start: Work
+    work: Work
+    stop: float
+    status: Status
+
+
+def effort(scene: Scene) -> Effort:
+    """Find what solving a scene takes, by building its series; nothing is summed at its instants.
+
+    Raises:
+        PointcoordError: what `simulate` raises before a motion begins.
+    """
+    require_scene(scene)
+    task = _prepared(Scene.checked(scene, scene.title or "scene"), SERIES)
+    mechanism = task.readout.mechanism
+    chain = _chain(task)
+    kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
+    return Effort(
+        tolerance=kept * float(mechanism.unit) / TRUNCATION_SHARE,
+        part=kept / TRUNCATION_SHARE,
+        orders=tuple(segment.order for segment in chain.segments),
+        start=task.start.work,
+        work=task.start.work + chain.work,
+        stop=chain.stop if chain.segments else scene.time.start,
+        status=chain.status,
+    )
 
 
 @dataclass(frozen=True)
@@ -116,12 +163,15 @@ def _prepared(scene: Scene, method: Method) -> Task:
 
 def _by_series(task: Task) -> SolvedScene:
     """Solve a motion as a chain of power series."""
+    notes = _tolerance_notes(task.scene, task.readout.mechanism)
+    states = StatesOfChain(task.readout, task.functions, _chain(task), task.scene.time.start, notes)
+    return SolvedScene(task.readout, task.functions, states)
+
+
+def _chain(task: Task) -> Chain:
     mechanism, time = task.readout.mechanism, task.scene.time
     settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
-    chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
-    notes = _tolerance_notes(task.scene, mechanism)
-    states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
-    return SolvedScene(task.readout, task.functions, states)
+    return build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
 
 
 def _at_instants(task: Task) -> SolvedScene:
@@ -129,7 +179,8 @@ def _at_instants(task: Task) -> SolvedScene:
     mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
     term = task.method.square_velocity_term
     allowed = pose_tolerance(task.scene, task.method, mechanism)
-    solved = solve_instants(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
+    solver = task.method.at_instants
+    solved = solver(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
     return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
 
 

@@ -80,10 +80,12 @@ class Polynomial:
             for k in range(min(order + 1, len(self.coefficients))):
                 factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
                 terms = np.array(self.coefficients[k:])
-                plain = np.polynomial.polynomial.polyval(t, factors * terms)
                 doubled = _doubled_horner(two_product(np.array(factors), terms), t)
-                # Splitting a number above 1e300 overflows; there only the plain sum is left.
-                result[..., k] = np.where(np.isfinite(doubled), doubled, plain)
+                if not np.isfinite(doubled).all():
+                    # Splitting a number above 1e300 overflows; there only the plain sum is left.
+                    plain = np.polynomial.polynomial.polyval(t, factors * terms)
+                    doubled = np.where(np.isfinite(doubled), doubled, plain)
+                result[..., k] = doubled
         return result
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
@@ -126,12 +128,17 @@ class Sine:
             angle, *rests = self._angle(np.asarray(instants, dtype=float))
             sine, cosine = np.sin(angle), np.cos(angle)
             for low in rests:
-                across, along = np.sin(low), np.cos(low)
+                if not low.any():
+                    continue
+                # The sine of a small angle is the angle itself, to the last digit.
+                small = bool((np.abs(low) <= SMALL_ANGLE).all())
+                across, along = (low, 1.0) if small else (np.sin(low), np.cos(low))
                 sine, cosine = sine * along + cosine * across, cosine * along - sine * across
             quarter_turns = (sine, cosine, -sine, -cosine)
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
-            factors = [self.amplitude * powers[k] / factorial(k) for k in range(order + 1)]
-            result = np.stack([factors[k] * quarter_turns[k % 4] for k in range(order + 1)], axis=-1)
+            result = np.empty((*np.shape(angle), order + 1))
+            for k in range(order + 1):
+                result[..., k] = self.amplitude * powers[k] / factorial(k) * quarter_turns[k % 4]
             # The offset may all but cancel a large swing: product and sum are rounded once together.
             swing, rest = two_product(np.array(self.amplitude), sine)
             value, carry = two_sum(swing, np.array(self.offset))

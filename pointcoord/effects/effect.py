@@ -94,6 +94,11 @@ class Effect(ABC):
         return ()
 
     @property
+    def reports_states(self) -> bool:
+        """Whether its numbers are the states of every point of its derivative, with what reporting adds."""
+        return False
+
+    @property
     def no_number(self) -> str:
         """Why a number that it gives may be none, in words; empty if each always is one."""
         return ""

@@ -20,6 +20,11 @@ Array = NDArray[np.float64]
 class PointStates(Effect):
     """The time derivative of every point's position, of the order `derivative`."""
 
+    @property
+    def reports_states(self) -> bool:
+        """It does."""
+        return True
+
     def needs(self, topology: Topology) -> Collection[str]:
         """Every point."""
         return topology.points

@@ -60,8 +60,9 @@ class ChassisMotion:
                     f"{what} below {LARGEST:g} mm{('', '/s', '/s^2')[order]} in size",
                     float(instants[place]),
                 )
-            along = self.directions[name][..., None, :]
-            parts = [series[..., d, None] * along for d in range(derivatives + 1)]
+            # The instants lie side by side in memory, as in a table of results.
+            along = self.directions[name][..., None]
+            parts = [(along * series[..., None, :, d]).swapaxes(-1, -2) for d in range(derivatives + 1)]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
         return sums
 

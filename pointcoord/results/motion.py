@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from pointcoord.bounds.proof import Proof
 from pointcoord.errors import NotComputed
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
+from pointcoord.results.even_instants import even_instants
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.assembly import Pose
@@ -68,23 +70,85 @@ class Motion(Samples):
         """The same of samples at other instants, as `at` gives them for instants of shape (N,)."""
         return self.solved.proof(samples, rates=rates)
 
-    def at(self, instants: ArrayLike) -> Samples:
+    @property
+    def height(self) -> int:
+        """How many numbers there are at an instant: rows of an array that `at` can write into."""
+        return self.solved.readout.table.height
+
+    def at(self, instants: ArrayLike, out: Array | None = None) -> Samples:
         """The same results at any instants inside the motion, without a new solve.
 
         Args:
             instants: a number or an array of them, s.
+            out: an array of floats of shape (height, number of instants) that the numbers are written into;
+                the results are views of it, and change when it is written again.
         Returns:
             Arrays of the instants' shape, vectors with a last dimension of 3.
         Raises:
             OutsideMotion: an instant before the start, after the stop, or not a number.
             NotComputed: the method knows the motion at the scene's instants only.
+            ValueError: `out` is no such array.
+
+        >>> from pointcoord import Scene, simulate
+        >>> motion = simulate(Scene.load("steer"))
+        >>> motion.at([0.5, 1.0]).position["wheel_centre"].shape
+        (2, 3)
         """
+        self._require_dense()
+        asked = np.asarray(instants, dtype=float)
+        if out is not None:
+            self._require_room(out, asked.size)
+        samples = self.solved.samples(asked.ravel(), out)
+        return samples if asked.ndim == 1 else samples.shaped(asked.shape)
+
+    def blocks(self, instants: ArrayLike | int | None = None, size: int = 16384) -> Iterator[Samples]:
+        """The same results in blocks of consecutive instants: any number of them, in a block's memory.
+
+        Args:
+            instants: a number n for n instants evenly from the first of the motion to its last, as a scene
+                has them; or the instants themselves, shape (N,), s, in any order; the motion's own if not
+                given.
+            size: how many instants a block has; the last may have fewer.
+        Raises:
+            OutsideMotion: as `at`, at the block that has the instant.
+            NotComputed: instants are given, and the method knows the motion at the scene's only.
+            ValueError: a number below 1, or instants of another shape.
+
+        >>> from pointcoord import Scene, simulate
+        >>> motion = simulate(Scene.load("steer"))
+        >>> max(float(block.wheel["camber"].max()) for block in motion.blocks(100_000)) < 0.01
+        True
+        """
+        if size < 1:
+            raise ValueError(f"a block of {size} instants; allowed: 1 or more")
+        if instants is None:
+            return (self.part(low, low + size) for low in range(0, len(self.times), size))
+        self._require_dense()
+        if isinstance(instants, int | np.integer):
+            if instants < 1:
+                raise ValueError(f"{instants} instants; allowed: 1 or more")
+            count, ends = int(instants), (float(self.times[0]), float(self.times[-1]))
+            return (
+                self.at(even_instants(*ends, count, low, min(low + size, count)))
+                for low in range(0, count, size)
+            )
+        asked = np.asarray(instants, dtype=float)
+        if asked.ndim != 1:
+            raise ValueError(f"instants of shape {asked.shape}; allowed: (N,), or how many")
+        return (self.at(asked[low : low + size]) for low in range(0, len(asked), size))
+
+    def _require_dense(self) -> None:
         if not self.solved.states.dense:
             raise NotComputed(
                 f"a motion between its instants, by the method {self.method!r},",
                 "",
                 "solve the scene by the method 'series'",
             )
-        asked = np.asarray(instants, dtype=float)
-        samples = self.solved.samples(asked.ravel())
-        return samples if asked.ndim == 1 else samples.shaped(asked.shape)
+
+    def _require_room(self, out: Array, count: int) -> None:
+        wanted = (self.height, count)
+        if out.shape != wanted or out.dtype != np.float64 or not out.flags.writeable:
+            raise ValueError(
+                f"out is {'writeable' if out.flags.writeable else 'read-only'}, of {out.dtype} and of shape "
+                f"{out.shape}; allowed: a writeable array of float64 and of shape {wanted}"
+            )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,15 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.results.samples import Channel, Samples
+from pointcoord.results.table import Table, triples, vectors
 
 Array = NDArray[np.float64]
 States = Sequence[Mapping[str, Array]]
 """For each time derivative, the points' states of shape (..., N, 3), mm, in the chassis' frame, from the
 mechanism's origin."""
+
+# Instants at a time: what is made on the way stays in a second-level cache, and is long enough for numpy.
+BLOCK = 4096
 
 
 @dataclass(frozen=True)
@@ -47,18 +52,54 @@ class Readout:
         """Highest time derivative that is evaluated of every point."""
         return min(self.derivatives.values())
 
+    @cached_property
+    def table(self) -> Table:
+        """Where the numbers of a motion are, side by side."""
+        return Table.of(self.plan, self.mechanism.topology, self.derivatives)
+
     def samples(self, times: Array, states: States) -> Samples:
         """Compute the effects of the plan from states, and name the numbers."""
+        batch = np.broadcast_shapes(*(state.shape[:-2] for each in states for state in each.values()))
+        rows = np.empty((*batch, self.table.height, len(times)))
+        for low in range(0, len(times), BLOCK):
+            block = rows[..., low : low + BLOCK]
+            here = [{name: each[..., low : low + BLOCK, :] for name, each in s.items()} for s in states]
+            for i, (derivative, point) in enumerate((*self.table.moving, *self.table.still)):
+                vectors(block, 3 * i)[...] = here[derivative][point]
+            self.complete(times[low : low + BLOCK], here, block)
+        return self.named(times, rows)
+
+    def named(self, times: Array, rows: Array) -> Samples:
+        """The numbers of a whole table, by name."""
+        found = self.table.numbers(rows)
+        numbers = {
+            name: Channel(quantity, found.get(name, {}), self._left_out(name))
+            for name, quantity in QUANTITIES.items()
+        }
+        return Samples(times.copy(), numbers)
+
+    def complete(self, times: Array, states: States, rows: Array) -> None:
+        """Compute the numbers that are made of states, and add to those what reporting adds.
+
+        Args:
+            rows: a table or some columns of one, shape (..., height, N), with the states in their places.
+        """
+        table = self.table
         shifts = self.chassis.states(times, self.derivative_of_every_point)
         rest = [None] * (len(states) - 1)
-        added = (self.offset(times), *(shifts[1:] or rest))
-        poses = Poses(self.mechanism, self.axes, states, added)
-        found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
-        for effect in self.plan.computed:
-            for quantity, arrays in effect.evaluate(poses).items():
-                found[quantity] |= arrays
-        numbers = {name: Channel(QUANTITIES[name], found[name], self._left_out(name)) for name in found}
-        return Samples(times.copy(), numbers)
+        added = (self._offset(shifts), *(shifts[1:] or rest))
+        if table.computed:
+            poses = Poses(self.mechanism, self.axes, states, added)
+            for effect in table.computed:
+                for quantity, arrays in effect.evaluate(poses).items():
+                    for name, array in arrays.items():
+                        table.put(rows, quantity, name, array)
+        for derivative in table.reported:
+            more = added[derivative]
+            if more is not None:
+                for part in table.states_of(derivative):
+                    places = triples(rows, part)
+                    places += more.swapaxes(-1, -2)[..., None, :, :]
 
     def _left_out(self, quantity: str) -> dict[str, tuple[str, ...] | None]:
         """The effects that would give more of a quantity, and what each gives of it."""
@@ -69,8 +110,10 @@ class Readout:
 
     def offset(self, times: Array) -> Array | None:
         """What is added to every position, the origin and the chassis' displacement; None if it is zero."""
+        return self._offset(self.chassis.states(times, 0))
+
+    def _offset(self, shifts: Sequence[Array]) -> Array | None:
         origin = self.mechanism.origin[..., None, :]
-        shift = self.chassis.states(times, 0)
-        if not shift:
+        if not shifts:
             return origin if origin.any() else None
-        return origin + shift[0]
+        return np.asarray(origin + shifts[0])

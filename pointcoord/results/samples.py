@@ -132,3 +132,15 @@ class Samples:
                 arrays[part] = array.reshape((*batch, *shape, *vector))
             numbers[name] = channel.with_arrays(arrays)
         return Samples(self.times.reshape(shape), numbers)
+
+    def part(self, first: int, last: int) -> Samples:
+        """Some of the instants of samples at instants of shape (N,), from number `first` to before `last`."""
+        numbers = {}
+        for name, channel in self.numbers.items():
+            along = -1 if channel.quantity.of == "car" else -2
+            arrays = {
+                part: np.moveaxis(np.moveaxis(array, along, 0)[first:last], 0, along)
+                for part, array in channel.items()
+            }
+            numbers[name] = channel.with_arrays(arrays)
+        return Samples(self.times[first:last], numbers)

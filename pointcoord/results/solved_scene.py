@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.proof import Proof, prove
 from pointcoord.bounds.reported_bounds import Reported
-from pointcoord.results.readout import Readout
+from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
+
+# Instants in any order are sorted this many at a time, which takes 24 MB.
+SORTED = 2**20
 
 
 @dataclass(frozen=True)
@@ -31,13 +34,37 @@ class SolvedScene:
     functions: Mapping[str, TimeFunction]
     states: SolvedStates
 
-    def samples(self, times: Array) -> Samples:
-        """What the scene asks for at instants of shape (N,).
+    def samples(self, times: Array, out: Array | None = None) -> Samples:
+        """What the scene asks for at instants of shape (N,), in any order.
 
+        Args:
+            out: where the numbers go, shape (rows, N); a new array if not given.
         Raises:
             OutsideMotion: an instant that was not solved for, or not a number.
         """
-        return self.readout.samples(times, self.states.states(times))
+        readout = self.readout
+        rows = (
+            np.empty((*readout.mechanism.drawn.shape[:-1], readout.table.height, len(times)))
+            if out is None
+            else out
+        )
+        for low in range(0, len(times), SORTED):
+            self._fill(times[low : low + SORTED], rows[..., low : low + SORTED])
+        return readout.named(times, rows)
+
+    def _fill(self, times: Array, rows: Array) -> None:
+        order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
+        for low in range(0, len(times), BLOCK):
+            high = min(low + BLOCK, len(times))
+            if order is None:
+                self._fill_block(times[low:high], rows[..., low:high])
+            else:
+                block = np.empty((*rows.shape[:-1], high - low))
+                self._fill_block(times[order[low:high]], block)
+                rows[..., order[low:high]] = block
+
+    def _fill_block(self, times: Array, rows: Array) -> None:
+        self.readout.complete(times, self.states.states(times, rows), rows)
 
     def doubts(self, times: Array) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""

@@ -19,7 +19,8 @@ from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
-from pointcoord.solve.dense_output import evaluate
+from pointcoord.results.table import triples, vectors
+from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.pointwise import Solved
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
@@ -55,9 +56,13 @@ class SolvedStates(SolvedCoordinates, Protocol):
         """Those of a scene's instants at which they are known."""
         ...
 
-    def states(self, instants: Array) -> list[dict[str, Array]]:
+    def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
         """By time derivative, the states of the points that the plan asks for (see `readout.States`).
 
+        Args:
+            instants: shape (N,), s; they do not decrease.
+            rows: a table of results or some columns of one, shape (..., height, N). The states that are
+                reported are put into their places, and those that are returned may be views of them.
         Raises:
             OutsideMotion: an instant that is not covered, or not a number.
         """
@@ -82,7 +87,7 @@ class StatesAtInstants:
         """Up to the last one that was reached."""
         return instants[: len(self.solved.times)]
 
-    def states(self, instants: Array) -> list[dict[str, Array]]:
+    def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
         """States at some of the instants."""
         mechanism, derivatives = self.readout.mechanism, self.readout.derivatives
         layout, topology = mechanism.layout, mechanism.topology
@@ -92,7 +97,7 @@ class StatesAtInstants:
         series = {name: taylor[..., place] for name, place in places.items()}
         for name, carriers in topology.carried.items():
             series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
-        return [
+        states = [
             {
                 name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
                 for name in topology.points
@@ -100,6 +105,11 @@ class StatesAtInstants:
             }
             for order in range(len(coordinates))
         ]
+        if rows is not None:
+            table = self.readout.table
+            for i, (order, name) in enumerate((*table.moving, *table.still)):
+                vectors(rows, 3 * i)[...] = states[order][name]
+        return states
 
     def coordinates(self, instants: Array) -> list[Array]:
         """y and the derivatives that were solved for, at some of the instants, each (N, size)."""
@@ -149,8 +159,8 @@ class StatesOfChain:
         segments = self.chain.segments
         return instants[instants <= self.chain.stop] if segments else instants[:0]
 
-    def states(self, instants: Array) -> list[dict[str, Array]]:
-        """States at instants of shape (N,).
+    def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
+        """States at instants of shape (N,) that do not decrease.
 
         Raises:
             OutsideMotion: an instant outside the chain, or not a number.
@@ -158,23 +168,30 @@ class StatesOfChain:
         outside = ~((instants >= self.start) & (instants <= self.chain.stop))
         if outside.any():
             raise OutsideMotion(float(instants[outside][0]), self.start, self.chain.stop)
-        points = self.readout.mechanism.topology.points
+        table, (reported, needed) = self.readout.table, self._series
+        batch, count = reported.shape[:-1], len(instants)
+        if rows is None:
+            rows = np.empty((*batch, 3 * (len(table.moving) + len(table.still)), count))
+        moving, still = 3 * len(table.moving), 3 * len(table.still)
+        reported.sum(instants, rows[..., :moving, :])
+        triples(rows, slice(moving, moving + still))[...] = self._still
+        spare = np.empty((*batch, 3 * len(table.spare), count))
+        if table.spare:
+            needed.sum(instants, spare)
         states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
-        for order in range(self.readout.derivative_of_every_point + 1):
-            states[order] |= self._chassis(len(instants), order)
-        for names, derivatives in self._requests:
-            columns = [np.concatenate([series[n] for n in names], axis=-1) for series in self._point_series]
-            values = evaluate(self.chain, columns, instants, derivatives)
-            for order in range(derivatives + 1):
-                for i, name in enumerate(names):
-                    states[order][name] = values[order, ..., 3 * i : 3 * i + 3]
-        return [{name: state[name] for name in points if name in state} for state in states]
+        for i, (order, name) in enumerate((*table.moving, *table.still)):
+            states[order][name] = vectors(rows, 3 * i)
+        for i, (order, name) in enumerate(table.spare):
+            states[order][name] = vectors(spare, 3 * i)
+        return states
 
     def coordinates(self, instants: Array) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
         mechanism, derivative = self.readout.mechanism, self.readout.plan.derivative
         pieces = [segment.coefficients for segment in self.chain.segments]
-        y, *rates = evaluate(self.chain, pieces, instants, derivative)
+        y, *rates = (
+            np.ascontiguousarray(state) for state in evaluate(self.chain, pieces, instants, derivative)
+        )
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
         y[..., mechanism.map.unknowns :] = known[..., 0, :]
         return [y, *rates]
@@ -203,45 +220,43 @@ class StatesOfChain:
     @property
     def work(self) -> Work:
         """What solving took, and the sums of each instant."""
+        table = self.readout.table
         return self.chain.work + Work(
             derivatives_evaluated=self.readout.plan.derivative + 1,
-            coordinates_evaluated=sum(
-                3 * len(names) * (derivatives + 1) for names, derivatives in self._requests
-            ),
+            coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
 
-    @property
-    def _requests(self) -> list[tuple[list[str], int]]:
-        """Which points to sum to which derivative: all, and then those that need more."""
-        topology, highest = self.readout.mechanism.topology, self.readout.derivatives
-        moving, every = [*topology.moving, *topology.carried], self.readout.derivative_of_every_point
-        requests = [(moving, every)]
-        for derivative in range(every + 1, self.readout.plan.derivative + 1):
-            if names := [name for name in moving if highest[name] == derivative]:
-                requests.append((names, derivative))
-        return requests
-
     @cached_property
-    def _point_series(self) -> list[dict[str, Array]]:
-        """For each segment the series of every moving and carried point, (..., order + 1, 3), mm."""
-        mechanism = self.readout.mechanism
+    def _series(self) -> tuple[SeriesRows, SeriesRows]:
+        """The series of solved points that are reported, and those that are only needed, mm."""
+        mechanism, table = self.readout.mechanism, self.readout.table
         layout, topology = mechanism.layout, mechanism.topology
-        result = []
+        unit = np.asarray(mechanism.unit)[..., None, None]
+        columns = []
         for segment in self.chain.segments:
             series = {name: segment.coefficients[..., list(layout.vector(name))] for name in topology.moving}
             for name, carriers in topology.carried.items():
                 series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
-            unit = np.asarray(mechanism.unit)[..., None, None]
-            result.append({name: points * unit for name, points in series.items()})
-        return result
+            columns.append(np.concatenate(list(series.values()), axis=-1) * unit)
+        first = {name: 3 * i for i, name in enumerate((*topology.moving, *topology.carried))}
+        wanted = (
+            [
+                [first[name] + axis for d, name in states if d == derivative for axis in range(3)]
+                for derivative in range(self.readout.plan.derivative + 1)
+            ]
+            for states in (table.moving, table.spare)
+        )
+        reported, needed = (SeriesRows.of(self.chain, columns, each) for each in wanted)
+        return reported, needed
 
-    def _chassis(self, count: int, order: int) -> dict[str, Array]:
-        """States of the chassis points, which stand still in the chassis' frame."""
+    @cached_property
+    def _still(self) -> Array:
+        """States of the chassis points in the chassis' frame, where they stand, (..., states, 3, 1), mm."""
         mechanism = self.readout.mechanism
-        unit = np.asarray(mechanism.unit)[..., None, None]
-        shape = (*self.chain.segments[0].coefficients.shape[:-2], count, 3)
-        states = {}
-        for name in mechanism.topology.chassis:
-            place = mechanism.drawing.vectors[name][..., None, :] * unit
-            states[name] = np.broadcast_to(place if order == 0 else np.zeros(3), shape)
-        return states
+        unit = np.asarray(mechanism.unit)[..., None]
+        batch = self.chain.segments[0].coefficients.shape[:-2]
+        places = np.zeros((*batch, len(self.readout.table.still), 3, 1))
+        for i, (order, name) in enumerate(self.readout.table.still):
+            if order == 0:
+                places[..., i, :, 0] = mechanism.drawing.vectors[name] * unit
+        return places

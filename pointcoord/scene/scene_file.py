@@ -20,8 +20,8 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
+from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.even_instants import even_instants
 from pointcoord.scene.messages import meant, plain_number, shown
 from pointcoord.scene.scene_part import Part
 from pointcoord.scene.scene_text import parsed, read_file, read_stream

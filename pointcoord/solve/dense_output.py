@@ -1,6 +1,13 @@
-"""A chain of series and its derivatives summed at any instants, by matrix products."""
+"""A chain of series and its derivatives summed at any instants, by matrix products.
+
+Sums are laid out with the instants side by side in memory: a row of instants for each number. So a product
+writes where its result belongs, and whatever is made of the sums runs along them.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +20,62 @@ Array = NDArray[np.float64]
 BLOCK = 1024
 
 
-def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: int) -> Array:
-    """Sum series at instants by matrix products.
+@dataclass(frozen=True)
+class SeriesRows:
+    """A chain's series, and derivatives of them, ready to be summed: a row for each.
+
+    Attributes:
+        starts, scales: of each segment, s.
+        tables: of each segment the coefficients, shape (..., rows, order + 1), per s**derivative.
+    """
+
+    starts: tuple[float, ...]
+    scales: tuple[float, ...]
+    tables: tuple[Array, ...]
+
+    @classmethod
+    def of(cls, chain: Chain, columns: Sequence[Array], wanted: Sequence[Sequence[int]]) -> SeriesRows:
+        """The rows of some derivatives of some coordinates.
+
+        Args:
+            columns: for each segment its coefficients of the coordinates, shape (..., order + 1, m).
+            wanted: by time derivative, which of the m coordinates; the rows are in this order.
+        """
+        tables = []
+        for segment, piece in zip(chain.segments, columns, strict=True):
+            each = derivative_tables(piece, segment.scale, len(wanted) - 1)
+            rows = [table[..., list(places)] for table, places in zip(each, wanted, strict=True)]
+            tables.append(np.ascontiguousarray(np.concatenate(rows, axis=-1).swapaxes(-1, -2)))
+        starts, scales = zip(*((segment.start, segment.scale) for segment in chain.segments), strict=True)
+        return cls(starts, scales, tuple(tables))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading dimensions and rows of the sums."""
+        return self.tables[0].shape[:-1]
+
+    def sum(self, instants: Array, out: Array) -> None:
+        """Sum the rows at instants that do not decrease, shape (N,), into an array of shape (..., rows, N).
+
+        With s = (t - start) / scale of the segment that t is in, each is sum_k table_k s^k.
+        """
+        edges = [0, *np.searchsorted(instants, self.starts[1:], side="left").tolist(), len(instants)]
+        powers = np.empty((max(table.shape[-1] for table in self.tables), min(BLOCK, len(instants))))
+        for i, table in enumerate(self.tables):
+            for low in range(edges[i], edges[i + 1], BLOCK):
+                high = min(low + BLOCK, edges[i + 1])
+                block = powers[: table.shape[-1], : high - low]
+                block[0] = 1.0
+                if len(block) > 1:
+                    np.subtract(instants[low:high], self.starts[i], out=block[1])
+                    block[1] /= self.scales[i]
+                for k in range(2, len(block)):
+                    np.multiply(block[k - 1], block[1], out=block[k])
+                np.matmul(table, block, out=out[..., low:high])
+
+
+def evaluate(chain: Chain, columns: Sequence[Array], instants: Array, derivatives: int) -> Array:
+    """Sum series at instants.
 
     Args:
         columns: for each segment its coefficients of the wanted coordinates, shape (..., order + 1, m).
@@ -23,24 +84,18 @@ def evaluate(chain: Chain, columns: list[Array], instants: Array, derivatives: i
     Returns:
         Shape (derivatives + 1, ..., N, m), per s**derivative.
     """
-    order = np.argsort(instants, kind="stable")
-    ordered = instants[order]
-    result = np.empty((derivatives + 1, *columns[0].shape[:-2], len(instants), columns[0].shape[-1]))
-    starts = [segment.start for segment in chain.segments]
-    edges = [0, *np.searchsorted(ordered, starts[1:], side="left").tolist(), len(instants)]
-    for segment, piece, first, last in zip(chain.segments, columns, edges[:-1], edges[1:], strict=True):
-        tables = derivative_tables(piece, segment.scale, derivatives) if first < last else []
-        for low in range(first, last, BLOCK):
-            high = min(low + BLOCK, last)
-            s = (ordered[low:high] - segment.start) / segment.scale
-            powers = np.vander(s, piece.shape[-2], increasing=True)
-            for values, table in zip(result, tables, strict=True):
-                np.matmul(powers, table, out=values[..., low:high, :])
-    if (order[1:] > order[:-1]).all():
-        return result
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    return result[..., back, :]
+    count = columns[0].shape[-1]
+    rows = SeriesRows.of(chain, columns, [range(count)] * (derivatives + 1))
+    sums = np.empty((*rows.shape, len(instants)))
+    if (instants[1:] >= instants[:-1]).all():
+        rows.sum(instants, sums)
+    else:
+        order = np.argsort(instants, kind="stable")
+        ordered = np.empty_like(sums)
+        rows.sum(instants[order], ordered)
+        sums[..., order] = ordered
+    split = sums.reshape(*rows.shape[:-1], derivatives + 1, count, len(instants))
+    return np.moveaxis(split, -3, 0).swapaxes(-1, -2)
 
 
 def derivative_tables(coefficients: Array, scale: float, derivatives: int) -> list[Array]:

@@ -2,14 +2,15 @@ r"""The paper's own algorithm: Newton at every instant, then two linear solves.
 
     C(u, w) = 0,    C_u u' = -C_w w',    C_u u'' = -C_w w'' - 2 B(y', y')      (eqs. 1, 19, 22)
 
-Each instant starts from the one before it, so time is a loop; the rates are solved for many instants
-at once. This is what the series are measured against.
+Each instant starts from the one before it, so time is a loop; or from the drawing, and then all are solved at
+once. The rates are solved for many instants at once either way. This is what the series are measured against.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +19,15 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.assembly import Pose, blocked, follow
+from pointcoord.solve.assembly import Pose, blocked, close_drawing, follow
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
+
+# Instants that are solved at once: their matrices, some six of them, stay below 100 MB.
+BLOCK = 4096
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,24 @@ class Solved:
         """The states at some of the times, each of shape (..., size)."""
         places = np.searchsorted(self.times, instants)
         return [state[places] for state in self.states]
+
+
+class InstantSolver(Protocol):
+    """A way to solve for poses and their rates at instants; see `solve_instants` for what it is given."""
+
+    def __call__(
+        self,
+        mechanism: Mechanism,
+        functions: Mapping[str, TimeFunction],
+        pose: Pose,
+        times: Array,
+        derivative: int,
+        square_term: SquareVelocityTerm,
+        tolerance: float,
+        /,
+    ) -> Solved:
+        """The states, up to the first instant that cannot be reached."""
+        ...
 
 
 def square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:
@@ -91,11 +113,50 @@ def solve_instants(
             here, factors, rest = path.y, path.factors, path.left
         y[i], left[i] = here, rest
     y[:, n:] = known[:, 0]
-    solved = _with_rates(system, y, known, times, derivative, square_term, work, left)
+    solved = with_rates(system, y, known, times, derivative, square_term, work, left)
     return replace(solved, status=status)
 
 
-def _with_rates(
+def solve_from_drawing(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    times: Array,
+    derivative: int,
+    square_term: SquareVelocityTerm = square_velocity_term,
+    tolerance: float = 0.0,
+) -> Solved:
+    """Solve at each instant by itself, on a straight way from the closed drawing; all of them at once.
+
+    Which branch that leads to does not depend on the motion, but it depends on the way: where poses that do
+    not exist lie between, it is refused, though a motion might lead around them.
+
+    Args, result: as of `solve_instants`; the pose at the first instant is solved again with the others.
+    """
+    system = mechanism.map
+    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
+    drawing = close_drawing(mechanism, float(times[0]), tolerance)
+    work, parts = drawing.work, []
+    status: Status = COMPLETE
+    for low in range(0, len(times), BLOCK):
+        target = known[low : low + BLOCK, 0]
+        path = follow(system, drawing.y, target, tolerance=tolerance)
+        work += path.work
+        unfinished = path.done < 1.0
+        first = int(np.argmax(unfinished)) if unfinished.any() else len(target)
+        parts.append((path.y[:first], path.left[:first]))
+        if unfinished.any():
+            problem, when = "the mechanism cannot be assembled", float(times[low + first])
+            status = blocked(mechanism, problem, path, target, unfinished, when)
+            known, times = known[: low + first], times[: low + first]
+            break
+    y, left = (np.concatenate(part) for part in zip(*parts, strict=True))
+    y[:, system.unknowns :] = known[:, 0]
+    solved = with_rates(system, y, known, times, derivative, square_term, work, left)
+    return replace(solved, status=status)
+
+
+def with_rates(
     system: QuadraticMap,
     y: Array,
     known: Array,
@@ -105,6 +166,13 @@ def _with_rates(
     work: Work,
     left: Array | None = None,
 ) -> Solved:
+    """Solved poses y, (N, size), with as many of their time derivatives as asked for.
+
+    Args:
+        known: series of the known coordinates, (N, derivative + 1, known coordinates).
+        work: what the poses took.
+        left: how far these may be from the exact ones, (N,), in units; nothing unless given.
+    """
     states = [y]
     if derivative >= 1:
         # Newton's factors are of the place before its last step, which may be farther off than the bound.

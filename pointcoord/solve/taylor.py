@@ -89,6 +89,11 @@ class Segment:
     coefficients: Array
     left: Array | float = 0.0
 
+    @property
+    def order(self) -> int:
+        """Of the series."""
+        return int(self.coefficients.shape[-2]) - 1
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -157,7 +162,7 @@ def build_chain(
         if len(segments) == MOST_SEGMENTS:
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
         segment = course.segment_from(joint)
-        orders = segment.coefficients.shape[-2] - 1
+        orders = segment.order
         work += Work(segments=1, series_orders=orders, rate_solves=orders * members)
         finite = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
         if not finite.all():

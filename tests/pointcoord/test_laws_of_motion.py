@@ -15,6 +15,7 @@ from sample_cars import GENERAL_STRUT, PAPER_STRUT, WISHBONE, SampleCar, by_car
 from scipy.linalg import expm
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
+from pointcoord.method import METHODS
 
 Array = NDArray[np.float64]
 Car = dict[str, Array]
@@ -183,7 +184,7 @@ def compare(
 
 
 vectors = st.tuples(*[st.floats(-3.0, 3.0)] * 3).map(np.array)
-methods = st.sampled_from(["series", "newton"])
+methods = st.sampled_from(list(METHODS))
 
 
 def changed_car(

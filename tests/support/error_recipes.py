@@ -23,6 +23,8 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
 from validate.cost.errors import errors_of, truth_of
+from validate.cost.growth.unknowns import LongChain
+from validate.cost.loading import Loading
 from validate.cost.store import Header
 from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
@@ -284,6 +286,13 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.cost.errors.NoNumbers": Recipe(
         lambda *_: errors_of({}, truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
+    ),
+    "validate.cost.growth.task.WrongNumber": Recipe(
+        lambda *_: LongChain("series", 6).check(np.zeros((5, 2, 3))), ("tip_", "mm from the closed form")
+    ),
+    "validate.cost.loading.NotRun": Recipe(
+        lambda *_: Loading("nothing", words=("-c", "raise SystemExit('no such thing')")).seconds(),
+        ("ended with status 1", "no such thing"),
     ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),

@@ -75,7 +75,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene",
     )
     parser.add_argument(
-        "--rows", metavar="FILE", default=ROWS, help=f"the file that keeps what is measured ({ROWS})"
+        "--rows", metavar="FILE", default=ROWS, help=f"keeps what is measured; {ROWS} if not given"
     )
     parser.add_argument(
         "--from-rows", action="store_true", help="report what the file holds, and measure nothing"
@@ -129,7 +129,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         require_writable(options.csv)
     journal = Journal(options.json, Head.of("cost", options.command), console)
     if options.from_rows:
-        return _told(_from_rows(options, parts), options, journal, console)
+        report = _from_rows(options, parts)
+        status = _told(report, options, console)
+        journal.close(report.data, status, True, _rows(len(report.rows)))
+        return status
     study = _study(options, parts)
     try:
         store = Store(Path(options.rows), Header.here(shlex.join(options.command)))
@@ -158,16 +161,18 @@ def _needs(way: Way) -> str:
 
 
 def _modules() -> tuple[Any, Any]:
-    """The study's scenes and ways.
+    """The study's scenes and ways."""
+    return _module("scenes"), _module("ways.registry")
+
+
+def _module(name: str) -> Any:
+    """A module of the study.
 
     Raises:
-        MissingPackage: they need what the solvers do without.
+        MissingPackage: it needs what the solvers do without.
     """
     try:
-        return (
-            importlib.import_module("validate.cost.scenes"),
-            importlib.import_module("validate.cost.ways.registry"),
-        )
+        return importlib.import_module(f"validate.cost.{name}")
     except ImportError as error:
         raise MissingPackage("cost", error) from None
 
@@ -209,6 +214,8 @@ def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
 def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     """What is to be measured; everything is found before anything is measured."""
     of_study, registry = _modules()
+    for part in parts:
+        _module(MODULES[part])
     ways = registry.WAYS
     if options.ways is not None:
         ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
@@ -218,7 +225,7 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             own = name in of_study.STUDY_SCENES
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
-    chosen = tuple(scenes) or of_study.own_scenes()
+    chosen = tuple(scenes) or of_study.own_scenes(quick=options.quick)
     return Study(parts, chosen, ways, options.quick)
 
 
@@ -226,28 +233,36 @@ def _measured(
     study: Study, store: Store, options: argparse.Namespace, journal: Journal, console: Console
 ) -> ExitStatus:
     """Measure, and report; what was measured is kept and named however it ends."""
-    there = len(store.rows())
-    console.note(f"rows are kept in {options.rows} ({there} there); a run that is stopped goes on with them")
+    held = len(store.rows())
+    console.note(f"rows are kept in {options.rows} ({held} there); a run that is stopped goes on with them")
     progress = Progress(console)
+
+    def report(rows: Iterable[Row]) -> Report:
+        return Report(options.rows, store.header, shlex.join(options.command), options.quick, tuple(rows))
+
     rows: list[Row] = []
     try:
-        for part in study.parts:
-            rows += _of_part(part, study, store, progress)
+        with journal.closing(lambda: report(rows).data(), lambda: rows, lambda: _rows(len(rows))) as ending:
+            try:
+                for part in study.parts:
+                    rows += _of_part(part, study, store, progress)
+            except BaseException:
+                # What the part that was stopped has kept is in the file only.
+                rows[:] = [row for row in latest(store.entries(), study.quick) if row.part in study.parts]
+                raise
+            console.end_progress()
+            ending.status = _told(report(rows), options, console)
     except StoreError as error:
         raise OutputError("rows", str(error)) from None
     finally:
         console.end_progress()
-        console.written = [f"{options.rows} holds {_rows(len(store.rows()))}"]
-    report = Report(options.rows, store.header, shlex.join(options.command), options.quick, tuple(rows))
-    return _told(report, options, journal, console)
+        console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows()))}")
+    return ending.status
 
 
 def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tuple[Row, ...]:
     """Measure what is missing of a part, and give its rows."""
-    try:
-        module = importlib.import_module(f"validate.cost.{MODULES[part]}")
-    except ImportError as error:
-        raise MissingPackage("cost", error) from None
+    module = _module(MODULES[part])
     if part == "accuracy":
         found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=progress)
     elif part == "growth":
@@ -274,7 +289,7 @@ class Progress:
             self._began, self._first = now, done
         self._told = now
         share = f"{done} of {of}" if of else f"{done}"
-        self._console.progress(f"{share}{self._rest(now, done, of)}  {what}")
+        self._console.progress(f"{share}{self._rest(now, done, of)}: {what}")
 
     def _rest(self, now: float, done: int, of: int) -> str:
         """About how long the rest takes, at the pace so far."""
@@ -301,12 +316,12 @@ def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
                 )
         rows = [row for row in rows if any(_about(row, name) for name in names)]
     if options.ways is not None:
-        there = _names(row.way for row in rows)
+        there = _names(row.way for row in rows if row.part != "loading")
         asked = _listed(options.ways, "--ways", there)
         for name in asked:
             if name not in there:
                 raise UnknownName(f"way in the rows of {options.rows}", name, there)
-        rows = [row for row in rows if row.way in asked]
+        rows = [row for row in rows if row.way in asked or row.part == "loading"]
     return Report(options.rows, header, shlex.join(options.command), quick, tuple(rows))
 
 
@@ -329,8 +344,8 @@ def _names(names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(name for name in names if name))
 
 
-def _told(report: Report, options: argparse.Namespace, journal: Journal, console: Console) -> ExitStatus:
-    """Say and write the report; the status is that of a run that comes to its end."""
+def _told(report: Report, options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
     status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
     console.say(report.text())
     if options.csv == "-":
@@ -341,10 +356,6 @@ def _told(report: Report, options: argparse.Namespace, journal: Journal, console
     if options.report:
         for name, content in report.files():
             _put(os.path.join(options.report, name), content)
-    journal.close(report.data, status, True, _rows(len(report.rows)))
-    places = [place for place in (options.json, options.csv, options.report) if place not in (None, "-")]
-    if places:
-        console.note(f"written: {', '.join(places)}")
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status

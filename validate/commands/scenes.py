@@ -6,12 +6,13 @@ import argparse
 
 import numpy as np
 
-from pointcoord import AssemblyError, Scene, built_in_scenes, standing
+from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import End, Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.closing import ALLOWED
+from pointcoord.simulation import effort
 from pointcoord.suspensions import SUSPENSIONS
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_scene, load_scene, name_of, told_as
@@ -24,7 +25,8 @@ SOLVED = ("positions", "positions and velocities", "positions, velocities and ac
 DESCRIPTION = """\
 Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
 value of each input, how far each can go from there, the wheel's angles, and how far the
-drawing is from closing. The motion itself is not computed."""
+drawing is from closing. What the asked accuracy takes is found by building the series; the
+motion itself is not computed."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -63,6 +65,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
             for effect in plan.left_out
         ),
         *_work(plan, part.topology),
+        *_effort(scene, plan),
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
@@ -78,6 +81,27 @@ def _work(plan: Plan, topology: Topology) -> list[str]:
     each = (f"{words} of {', '.join(names)}" for words, names in groups)
     evaluated = f"{groups[0][0]} of every point" if len(groups) == 1 else "; ".join(each)
     return [f"solved for: {SOLVED[plan.derivative]}", f"evaluated: {evaluated}"]
+
+
+def _effort(scene: Scene, plan: Plan) -> list[str]:
+    """What the accuracy that is asked for makes the solver do."""
+    try:
+        found = effort(scene)
+    except PointcoordError as error:
+        return [f"takes: not known, because it cannot be solved: {error}"]
+    rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
+    lines = [f"accuracy: positions to {found.tolerance:.3g} mm{rates}"]
+    if found.orders:
+        few, many = min(found.orders), max(found.orders)
+        order = f"order {few}" if few == many else f"orders {few} to {many}"
+        series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
+        lines.append(
+            f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
+            f"factorisations, {found.start.factorisations} of them to assemble the start"
+        )
+    if not found.status.complete:
+        lines.append(f"up to t = {found.stop:.6g} s, where the motion stops")
+    return lines
 
 
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:

@@ -19,6 +19,7 @@ from validate.cost.findings import (
     quantities_of,
     reach,
     scenes_of,
+    together,
     unit_of,
     words_of,
 )
@@ -28,6 +29,8 @@ from validate.output import report
 
 WIDTH = 110  # columns of a terminal
 PHASES = ("set-up", "solve", "rates", "output", "first")
+OF_A_SCENE = ("set-up", "first")
+"""Phases that are of a scene and not of each of its configurations."""
 SHORT = {
     "position": "pos",
     "velocity": "vel",
@@ -151,7 +154,7 @@ def scene_table(here: Sequence[Row]) -> Table:
         (
             name_of(row),
             *(_error_words(row.errors[q].largest) if q in row.errors else "-" for q in quantities),
-            *(_micro(a_configuration(row, (phase,))) for phase in PHASES),
+            *(_cells(row, phase)[0] for phase in PHASES),
             _spread(row),
         )
         for row in measured
@@ -160,8 +163,8 @@ def scene_table(here: Sequence[Row]) -> Table:
     configurations = sorted({row.configurations for row in measured})
     units = "; ".join(f"{SHORT[q]} {unit_of(q)}" for q in quantities)
     return Table(
-        f"{here[0].scene}: largest errors ({units}), and times in us a configuration "
-        f"({' or '.join(map(str, configurations)) or 'no'} configurations a solve)",
+        f"{here[0].scene}: largest errors ({units}); set-up and first run in ms a scene, solve, rates and "
+        f"output in us a configuration ({' or '.join(map(str, configurations)) or 'no'} a solve)",
         head,
         tuple(lines),
         (
@@ -220,16 +223,20 @@ def time_table(here: Sequence[Row]) -> Table:
         (
             name_of(row),
             "yes" if row.dense else "no",
-            *(_quartiles(a_configuration(row, (p,))) for p in PHASES),
+            *(_cells(row, phase)[1] for phase in PHASES),
         )
         for row in here
         if row.status == "measured"
     ]
     return Table(
-        f"{here[0].scene}: times, us a configuration: median (lower to upper quartile)",
-        ("way and setting", "dense", *PHASES),
+        f"{here[0].scene}: times, median (lower to upper quartile)",
+        (
+            "way and setting",
+            "dense",
+            *(f"{p}, {'ms a scene' if p in OF_A_SCENE else 'us a conf.'}" for p in PHASES),
+        ),
         tuple(lines),
-        ("first: all four phases of the first run in a process; set-up: once for all configurations",),
+        ("us a conf.: us a configuration; first: all phases of the first run in a process, measured once",),
     )
 
 
@@ -327,14 +334,14 @@ def _both(error: QuantityError | None) -> str:
     return "-" if error is None else f"{_error_words(error.largest)} ({_error_words(error.rms)})"
 
 
-def _micro(time: Time | None) -> str:
-    return "-" if time is None else digits(time.median * 1e6)
-
-
-def _quartiles(time: Time | None) -> str:
+def _cells(row: Row, phase: str) -> tuple[str, str]:
+    """Median of a phase, and the same with its quartiles: ms of a scene, or us of a configuration."""
+    of_scene = phase in OF_A_SCENE
+    time, unit = (together(row, (phase,)), 1e3) if of_scene else (a_configuration(row, (phase,)), 1e6)
     if time is None:
-        return "-"
-    return f"{digits(time.median * 1e6)} ({digits(time.lower * 1e6)} to {digits(time.upper * 1e6)})"
+        return "-", "-"
+    median, lower, upper = (digits(value * unit) for value in (time.median, time.lower, time.upper))
+    return median, median if time.repeats == 1 else f"{median} ({lower} to {upper})"
 
 
 def _spread(row: Row) -> str:
@@ -376,7 +383,7 @@ def csv_text(rows: Sequence[Row]) -> str:
                 for phase in phases
                 for name in ("median_s", "lower_s", "upper_s", "repeats")
             ),
-            *(f"{phase}_s_per_configuration" for phase in phases),
+            *(f"{phase}_s_per_configuration" for phase in phases if phase not in OF_A_SCENE),
             *counts,
         ]
     )
@@ -387,7 +394,7 @@ def csv_text(rows: Sequence[Row]) -> str:
                 *(_cell(data[name]) for name in plain),
                 *(cell for q in quantities for cell in _error_cells(row, q)),
                 *(cell for phase in phases for cell in _time_cells(row.times.get(phase))),
-                *(_cell(row.seconds(phase)) for phase in phases),
+                *(_cell(row.seconds(phase)) for phase in phases if phase not in OF_A_SCENE),
                 *(_cell(row.counts.get(name)) for name in counts),
             ]
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pointcoord.method import NEWTON, SERIES
+from pointcoord.method import CHORD, NEWTON, NEWTON_COLD, SERIES
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
@@ -29,6 +29,8 @@ _POINT_COORDINATES: dict[str, Formulation] = {
     for f in (
         PointCoordinates("pointcoord", SERIES),
         PointCoordinates("pointcoord-newton", NEWTON),
+        PointCoordinates("pointcoord-newton-cold", NEWTON_COLD),
+        PointCoordinates("pointcoord-chord", CHORD),
         PointCoordinates("pointcoord-as-asked", SERIES, as_asked=True),
         PointCoordinates("printed", PRINTED),
     )
@@ -37,17 +39,20 @@ _POINT_COORDINATES: dict[str, Formulation] = {
 WORDS = {
     "pointcoord": "point coordinates, by a chain of power series in time",
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
-    "pointcoord-as-asked": "the same series, only as fine as the scene's tolerance asks",
+    "pointcoord-newton-cold": "the same with each instant by itself, from the drawing",
+    "pointcoord-chord": "the same with one factorisation kept for many instants",
+    "pointcoord-as-asked": "the series again, only as fine as the scene's tolerance asks",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
     "mujoco": "the same suspension in MuJoCo, an outside witness",
+    "exudyn": "the same suspension in Exudyn, another one",
 }
 """Every formulation by its name, in words."""
 
 NAMES = tuple(WORDS)
 
-OUTSIDE = ("mujoco",)
+OUTSIDE = ("mujoco", "exudyn")
 """Other people's programs, which the extra `peers` brings."""
 
 
@@ -100,7 +105,11 @@ def engine_of(name: str) -> Callable[[Linkage], Engine]:
         MissingPackage: the program is not installed, or does not load.
     """
     try:
-        from validate.peers.in_mujoco import InMujoco
+        if name == "mujoco":
+            from validate.peers.in_mujoco import InMujoco
+
+            return InMujoco
+        from validate.peers.in_exudyn import InExudyn
     except ImportError as error:
         raise MissingPackage(name, error, "peers") from error
-    return InMujoco
+    return InExudyn

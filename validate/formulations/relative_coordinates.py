@@ -17,7 +17,7 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
-from validate.relative.errors import PoseError, RelativeError
+from validate.relative.errors import InputError, PoseError, RelativeError
 
 try:
     from validate.relative.follow import Poses
@@ -42,6 +42,7 @@ class RelativeCoordinates:
         """
         inputs = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
         try:
+            _require_finite(inputs)
             model = model_of(scene.mechanism)
             require_the_drawn_car(scene, model)
             reading = _Reading(scene, model, inputs)
@@ -132,6 +133,20 @@ class _Reading:
             return None
 
 
+def _require_finite(inputs: Mapping[str, Array]) -> None:
+    """Refuse an input that overflows, or one of its rates.
+
+    Raises:
+        InputError: it is not finite.
+    """
+    for name, series in inputs.items():
+        wrong = ~np.isfinite(series).all(axis=1)
+        if wrong.any():
+            first = int(np.argmax(wrong))
+            value = series[first][~np.isfinite(series[first])][0]
+            raise InputError(name, float(value), "finite values and rates", first)
+
+
 def _of(names: Sequence[str], arrays: Arrays) -> dict[str, Array]:
     return {name: arrays[name] for name in names if name in arrays}
 
@@ -160,7 +175,8 @@ def _on_chassis(
         return numbers, claims
     if of == "point" and chassis is not None:
         moved = chassis[:, order]
-        numbers = {name: array + moved for name, array in numbers.items()}
+        with np.errstate(over="ignore"):  # what is too large has no claim either
+            numbers = {name: array + moved for name, array in numbers.items()}
         added = EPS * np.abs(moved)
         claims = {name: claim + added + EPS * np.abs(numbers[name]) for name, claim in claims.items()}
     if order == 0:

@@ -15,7 +15,7 @@ from validate.output.report import table
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
 # The formulation that is held against the others where they give up.
-OURS, OTHER = "pointcoord", "absolute"
+OURS, OTHERS = "pointcoord", ("absolute", "relative")
 
 
 # What nothing has to be said of.
@@ -96,13 +96,19 @@ def short(reason: str) -> str:
 
 
 def _who_gives_up_first(result: Examined) -> list[str]:
-    if OURS not in result.case.expected or OTHER not in result.case.expected:
-        return []
-    ours, other = result.gives_up(OURS), result.gives_up(OTHER)
-    places = [math.inf if stop is None else stop[0] for stop in (ours, other)]
+    return [
+        line
+        for other in OTHERS
+        if {OURS, other} <= result.case.expected.keys()
+        for line in _which_gives_up_first(result, other)
+    ]
+
+
+def _which_gives_up_first(result: Examined, other: str) -> list[str]:
+    places = [math.inf if (stop := result.gives_up(name)) is None else stop[0] for name in (OURS, other)]
     if places[0] == places[1]:
         return []
-    earlier, later = (OURS, OTHER) if places[0] < places[1] else (OTHER, OURS)
+    earlier, later = (OURS, other) if places[0] < places[1] else (other, OURS)
     first, last = int(min(places)), max(places)
     rest = "never gives up" if last == math.inf else f"gives up at {result.trials[int(last)].value:g}"
     return [f"{earlier} gives up at {result.trials[first].value:g}, before {later}, which {rest}."]

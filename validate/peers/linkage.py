@@ -321,6 +321,21 @@ def _upper_arm(p: Mapping[str, Array]) -> tuple[Joint, Loop, Riding]:
     return joint, loop, {"upper_ball_joint": (KNUCKLE, ball)}
 
 
+def axes_along(axis: Array, first: Array | None = None) -> Array:
+    """Right-handed axes as columns, of which the third lies along a unit vector.
+
+    Args:
+        first: what the first lies along as nearly as it can; any direction if None, or if it is no other.
+    """
+    other = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    for guess in (other,) if first is None else (first, other):
+        across = guess - (guess @ axis) * axis
+        if np.linalg.norm(across) > CLEAR_SIDE:
+            break
+    across = across / np.linalg.norm(across)
+    return np.stack([across, np.cross(axis, across), axis], axis=-1)
+
+
 def _edges(a: Array, b: Array, c: Array) -> tuple[Array, Array, Array]:
     first, second = b - a, c - a
     return first, second, np.cross(first, second)

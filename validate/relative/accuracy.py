@@ -27,14 +27,22 @@ from numpy.typing import NDArray
 
 from validate.relative.follow import Poses, at_place
 from validate.relative.linkage import CHASSIS, Coincide, Distance, Line, Place
-from validate.relative.rates import Rates, chain_sum, cross, link, screw_product, screws_by_joint
+from validate.relative.rates import (
+    Rates,
+    chain_sum,
+    cross,
+    link,
+    point_velocity,
+    screw_product,
+    screws_by_joint,
+)
 from validate.relative.tree import TURNED, Tree, U
 
 Array = NDArray[np.float64]
 
 # Of some 1e5 numbers one goes beyond 4.4 standard deviations if they are normal; roundings of one pose are
 # shared by its numbers and not all independent.
-DEVIATIONS = 6.0
+DEVIATIONS = 5.0
 FOLD = 0.125
 
 
@@ -229,21 +237,21 @@ def _settled(
 
 
 def _reach(tree: Tree, poses: Poses, place: Place) -> Array:
-    """Length of the chain of joints to a point, (N,)."""
+    """Root of the sum of squares of a chain's lengths, to a point, (N,)."""
     if place.body == CHASSIS:
         return np.full(len(poses.q), float(np.linalg.norm(place.at)))
     body = tree.bodies.index(place.body)
     at = at_place(tree, poses, place)
-    reach = np.zeros(len(at))
+    squares = np.zeros(len(at))
     while body >= 0:
         joint = poses.translations[:, body]
-        reach += np.linalg.norm(at - joint, axis=-1)
+        squares += np.square(at - joint).sum(axis=-1)
         at, body = joint, int(tree.parents[body])
-    return np.asarray(reach + np.linalg.norm(at, axis=-1))
+    return np.asarray(np.sqrt(squares + np.square(at).sum(axis=-1)))
 
 
 def _sizes(tree: Tree, poses: Poses, screws: Array, rates: Rates, place: Place) -> tuple[Array, Array, Array]:
-    """Sums of the sizes of the terms of a point's place, velocity and acceleration, (N,) each."""
+    """Roots of the sums of squares of the terms of a point's place, velocity and acceleration, (N,) each."""
     place_size = _reach(tree, poses, place)
     if place.body == CHASSIS:
         return place_size, np.zeros_like(place_size), np.zeros_like(place_size)
@@ -253,12 +261,12 @@ def _sizes(tree: Tree, poses: Poses, screws: Array, rates: Rates, place: Place) 
     linear, angular = (np.linalg.norm(part, axis=-1) for part in (screws[..., :3], screws[..., 3:]))
     own = rates.twists[:, tree.body_of]
     fast, turn = (np.linalg.norm(part, axis=-1) for part in (own[..., :3], own[..., 3:]))
-    arm = linear + angular * far
-    velocity = (arm * np.abs(rates.first)) @ chain
-    turned = fast * angular + turn * arm
-    acceleration = (arm * np.abs(rates.second) + turned * np.abs(rates.first)) @ chain
+    arm = np.hypot(linear, angular * far)
+    velocity = np.sqrt(np.square(arm * rates.first) @ chain)
+    turned = np.hypot(fast * angular, turn * arm)
+    acceleration = (np.square(arm * rates.second) + np.square(turned * rates.first)) @ chain
     spin = np.linalg.norm(rates.twists[:, body, 3:], axis=-1)
-    return place_size, velocity, np.asarray(acceleration + spin * velocity)
+    return place_size, velocity, np.sqrt(acceleration + np.square(spin * velocity))
 
 
 def _noise(tree: Tree, poses: Poses, screws: Array, rates: Rates, inputs: Array) -> Array:
@@ -267,10 +275,13 @@ def _noise(tree: Tree, poses: Poses, screws: Array, rates: Rates, inputs: Array)
     row = 0
     for closure in tree.linkage.closures:
         one, two = (_sizes(tree, poses, screws, rates, place) for place in (closure.first, closure.second))
-        both = [a + b for a, b in zip(one, two, strict=True)]
+        both = [np.hypot(a, b) for a, b in zip(one, two, strict=True)]
         rows = 3 if isinstance(closure, Coincide) else 1
         if isinstance(closure, Distance):
-            both[2] = both[2] + both[1] ** 2 / closure.length
+            fast = point_velocity(tree, poses, rates.twists, closure.first) - point_velocity(
+                tree, poses, rates.twists, closure.second
+            )
+            both[2] = np.hypot(both[2], 2.0 * np.linalg.norm(fast, axis=-1) * both[1] / closure.length)
         for order in range(3):
             noise[order, :, row : row + rows] = both[order][:, None]
         row += rows
@@ -284,7 +295,7 @@ def _noise(tree: Tree, poses: Poses, screws: Array, rates: Rates, inputs: Array)
         )
         foot = (abs(float(drive.foot @ drive.direction)), 0.0, 0.0)
         for order in range(3):
-            noise[order, :, row] = sizes[order] + wanted[order] + foot[order]
+            noise[order, :, row] = np.sqrt(sizes[order] ** 2 + wanted[order] ** 2 + foot[order] ** 2)
         row += 1
     return np.asarray(TURNED * noise)
 
@@ -331,8 +342,8 @@ def body_claims(
     screws, chain = screws_by_joint(poses), tree.chains[k]
     turns = np.linalg.norm(screws[..., 3:], axis=-1)
     spin = np.linalg.norm(rates.twists[:, tree.body_of, 3:], axis=-1)
-    own1 = (turns * np.abs(rates.first)) @ chain
-    own2 = (turns * np.abs(rates.second) + turns * spin * np.abs(rates.first)) @ chain
+    own1 = np.sqrt(np.square(turns * rates.first) @ chain)
+    own2 = np.sqrt((np.square(turns * rates.second) + np.square(turns * spin * rates.first)) @ chain)
     n, n1, n2 = deviations.noise
     w, w_rate = (m.twists_by[..., k, 3:] for m in (pose, rate))
     a, a_rate = (m.accelerations_by[..., k, 3:] for m in (pose, rate))
@@ -346,9 +357,7 @@ def body_claims(
 def line_vector(tree: Tree, poses: Poses, line: Line) -> Array:
     """From a line's start to its end, (N, 3); turned with the body where one carries both."""
     if line.fixed:
-        body, start = tree.place_in_body(line.start)
-        _, end = tree.place_in_body(line.end)
-        return np.asarray(poses.rotations[:, body] @ (end - start))
+        return np.asarray(poses.rotations[:, tree.bodies.index(line.start.body)] @ line.drawn)
     return at_place(tree, poses, line.end) - at_place(tree, poses, line.start)
 
 
@@ -367,11 +376,11 @@ def angle_claims(
             point_derivatives(tree, poses, deviations.by_pose, place)[0] for place in (line.end, line.start)
         )
         by = end - start
-        own = _reach(tree, poses, line.end) + _reach(tree, poses, line.start)
+        own = np.hypot(_reach(tree, poses, line.end), _reach(tree, poses, line.start))
     up, over = vector @ sine, vector @ cosine
     squared = up * up + over * over
     with np.errstate(divide="ignore", invalid="ignore"):
         turned = (over[:, None] * (by @ sine) - up[:, None] * (by @ cosine)) / squared[:, None]
-        last = TURNED * (own + length) / np.sqrt(squared)
+        last = TURNED * np.hypot(own, length) / np.sqrt(squared)
     angle = np.abs(np.arctan2(up, over))
     return _claim(deviations, [(turned, deviations.noise[0])], np.hypot(last, U * angle), turned)

@@ -77,4 +77,4 @@ class PoseError(RelativeError):
 
 
 def _told(inputs: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} = {value:.17g}" for name, value in inputs.items())
+    return ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())

@@ -123,7 +123,8 @@ def sides(tree: Tree, poses: Poses) -> Array:
         else:
             third = at_place(tree, poses, last) - a
             value = np.einsum("ni,ni->n", np.cross(first, second), third)
-        found.append(value * (np.sign(side.drawn) / side.size))
+        # Vectors of no length have no side.
+        found.append(value * (np.sign(side.drawn) / (side.size or 1.0)))
     return np.stack(found, axis=-1)
 
 

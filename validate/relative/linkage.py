@@ -121,15 +121,16 @@ class Line:
 
     Attributes:
         start, end: its points.
-        fixed: whether one body carries both, so that only its turn moves the direction.
+        drawn: from one to the other, (3,), as drawn: exact where they lie near to each other.
     """
 
     start: Place
     end: Place
+    drawn: Array
 
     @property
     def fixed(self) -> bool:
-        """Whether one body carries both points."""
+        """Whether one body carries both points, so that only its turn moves the direction."""
         return self.start.body == self.end.body
 
 

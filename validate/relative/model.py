@@ -110,7 +110,9 @@ class Model:
         values = self._values(inputs, len(instants))
         goal = max(tolerance / self.unit, float(np.linalg.norm(self.tree.noise)))
         try:
-            return follow(self.tree, self.home, values, instants, goal)
+            # An input that is far too large leads to no pose, which is found out by overflow.
+            with np.errstate(over="ignore", invalid="ignore"):
+                return follow(self.tree, self.home, values, instants, goal)
         except Blocked as end:
             raise self._refusal(end, values[end.instant]) from end
 

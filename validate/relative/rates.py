@@ -175,15 +175,26 @@ def rates_of(tree: Tree, poses: Poses, inputs: Array) -> Rates:
     screws = screws_by_joint(poses)
     jacobian = row_jacobian(tree, screws, poses)
     wanted, wanted_second = drive_rates(tree, inputs)
-    first = _solved(jacobian, wanted)
+    first = solved(tree, jacobian, wanted)
     moved = screws * first[..., None]
     twists = chain_sum(tree, moved)
     turning = screw_product(twists[:, tree.body_of], moved)
     bias = row_accelerations(tree, poses, twists, chain_sum(tree, turning))
-    second = _solved(jacobian, wanted_second - bias)
+    second = solved(tree, jacobian, wanted_second - bias)
     accelerations = chain_sum(tree, turning + screws * second[..., None])
     return Rates(jacobian, first, second, twists, accelerations)
 
 
-def _solved(jacobian: Array, right_hand_side: Array) -> Array:
-    return np.asarray(np.linalg.solve(jacobian, right_hand_side[..., None])[..., 0], dtype=float)
+def solved(tree: Tree, jacobian: Array, right_hand_side: Array) -> Array:
+    """Rates of the joint coordinates from those of the rows, (N, size).
+
+    A drive's row has the driven coordinate alone: it is solved first, so that what rests does so exactly.
+    """
+    driven, free, first = tree.driven, tree.free, tree.first_drive
+    found = np.empty_like(right_hand_side)
+    rows = np.arange(first, tree.size)
+    found[:, driven] = right_hand_side[:, first:] / jacobian[:, rows, driven]
+    closures = jacobian[:, :first]
+    rest = right_hand_side[:, :first] - np.einsum("nij,nj->ni", closures[:, :, driven], found[:, driven])
+    found[:, free] = np.linalg.solve(closures[:, :, free], rest[..., None])[..., 0]
+    return found

@@ -60,6 +60,7 @@ class Tree:
         noise: standard deviation of what rounding does to each row, (size,).
         bodies: names in the order of the joints; `body_of` the place of each joint coordinate's body in them;
             `chains` whether a coordinate moves a body, (bodies, size).
+        driven, free: joint coordinates that the drives' rows have alone, in their order, and the others.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -105,6 +106,7 @@ class Tree:
         self._r, self._jacobian = np.zeros(row), np.zeros((row, row), order="F")
         self.bodies = tuple(joint.body for joint in linkage.joints)
         self._describe_chains()
+        self._find_driven()
         self.noise = self._row_noise()
 
     @property
@@ -218,28 +220,36 @@ class Tree:
                 self.chains[k, self.body_of == self.bodies.index(name)] = 1.0
                 name = parents[name]
 
+    def _find_driven(self) -> None:
+        places = (drive.place.body for drive in self.linkage.drives)
+        columns = [np.flatnonzero(self.chains[self.bodies.index(body)]) for body in places]
+        if any(len(found) != 1 for found in columns):
+            raise ValueError("a drive moves a body on more than one joint coordinate")
+        self.driven = np.concatenate(columns)
+        self.free = np.setdiff1d(np.arange(self.size), self.driven)
+
     def _row_noise(self) -> Array:
         noise = np.zeros(self.size)
         row = 0
         for closure in self.linkage.closures:
-            both = self._reach(closure.first) + self._reach(closure.second)
+            both = math.hypot(self._reach(closure.first), self._reach(closure.second))
             rows = 3 if isinstance(closure, Coincide) else 1
             noise[row : row + rows] = TURNED * both
             row += rows
         for drive in self.linkage.drives:
-            noise[row] = TURNED * (self._reach(drive.place) + abs(float(drive.foot @ drive.direction)))
+            noise[row] = TURNED * math.hypot(self._reach(drive.place), float(drive.foot @ drive.direction))
             row += 1
         return noise
 
     def _reach(self, place: Place) -> float:
-        """Length of the chain of joints to a point, in the reference pose."""
-        reach, at, body = 0.0, place.at, place.body
+        """Root of the sum of squares of a chain's lengths, to a point, in the reference pose."""
+        squares, at, body = 0.0, place.at, place.body
         joints = {joint.body: joint for joint in self.linkage.joints}
         while body != CHASSIS:
             joint = joints[body]
-            reach += float(np.linalg.norm(at - joint.at))
+            squares += float(np.square(at - joint.at).sum())
             at, body = joint.at, joint.parent
-        return reach + float(np.linalg.norm(at))
+        return math.sqrt(squares + float(at @ at))
 
 
 def _joint_model(joint: Joint) -> Any:

@@ -6,11 +6,13 @@ from itertools import chain, combinations
 import numpy as np
 import pytest
 
+import pointcoord.solve.chord
 import pointcoord.solve.pointwise
 import pointcoord.solve.taylor
 from pointcoord import Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import METHODS
 from pointcoord.numerics import newton
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve import assembly
@@ -44,7 +46,7 @@ def of_every_point(effects: tuple[str, ...]) -> int:
 
 
 @pytest.mark.parametrize("effects", SUBSETS, ids="+".join)
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", METHODS)
 def test_only_the_derivatives_that_are_asked_for_are_evaluated(
     make_scene: Callable[..., Scene], effects: tuple[str, ...], method: str
 ) -> None:
@@ -71,7 +73,7 @@ def test_newton_solves_for_no_rate_that_is_not_needed(
 
 
 def test_wheel_angles_alone_cost_nothing_but_positions(make_scene: Callable[..., Scene]) -> None:
-    for method in ("series", "newton"):
+    for method in METHODS:
         bare = simulate(make_scene(samples=SAMPLES, effects=()), method).work
         assert simulate(make_scene(samples=SAMPLES, effects=("wheel_angles",)), method).work == bare
 
@@ -86,7 +88,7 @@ def test_series_solve_once_for_any_number_of_instants(make_scene: Callable[..., 
     assert few.series_orders == few.rate_solves
 
 
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", METHODS)
 def test_counts_are_what_was_done(
     make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, method: str
 ) -> None:
@@ -96,7 +98,8 @@ def test_counts_are_what_was_done(
         seen["factorisations"] += int(np.prod(matrix.shape[:-2]))
         return factorise(matrix)
 
-    for module in (newton, assembly, pointcoord.solve.taylor, pointcoord.solve.pointwise):
+    solving = pointcoord.solve
+    for module in (newton, assembly, solving.taylor, solving.pointwise, solving.chord):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0
@@ -115,7 +118,7 @@ def test_proof_is_not_computed_until_it_is_read(
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", METHODS)
 def test_reading_what_was_not_asked_for_names_the_effect(
     make_scene: Callable[..., Scene], effect: str, method: str
 ) -> None:

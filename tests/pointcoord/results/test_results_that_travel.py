@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Motion, Samples, Scene, built_in_scenes, simulate
-from pointcoord.method import NEWTON, SERIES, Method
+from pointcoord.method import METHODS, NEWTON, SERIES, Method
 from validate.paper.printed import PRINTED
 
 HEAVE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0}}
@@ -49,7 +49,7 @@ def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for(
         assert_same(motion.at(0.3), pickle.loads(pickle.dumps(motion.at(0.3))))
 
 
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", built_in_scenes())
 def test_motions_of_the_built_in_scenes_are_pickled_with_their_closing(name: str, method: Method) -> None:
     motion = simulate(Scene.load(name), method)

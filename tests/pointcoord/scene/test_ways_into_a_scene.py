@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
 from pointcoord.errors import visible
-from pointcoord.scene.even_instants import even_instants
+from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.scene_text import LARGEST, read_stream
 from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
 from pointcoord.solve.taylor import COARSEST, FINEST

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from suspensions_in_closed_form import FORMS, ClosedForm, rounded
 
 from pointcoord import AssemblyError, Scene, simulate
+from pointcoord.method import METHODS
 
 Array = NDArray[np.float64]
 Points = dict[str, Any]
@@ -122,7 +123,7 @@ def body_rates(form: ClosedForm, place: Points, speed: Points, change: Points) -
     return omega, turning(e, pull)
 
 
-@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
 @settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8), phases=PHASES)
 @given(data=st.data(), arm=laws, rack=laws, heave=laws, away=coefficients)

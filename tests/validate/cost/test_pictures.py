@@ -7,6 +7,7 @@ from itertools import combinations
 import pytest
 from made_rows import alike, dialled, error, grown, measured, study
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
@@ -154,6 +155,38 @@ def test_the_headline_has_errors_and_growth_and_does_without_what_was_not_measur
     assert headline.figure([], findings([])) is None
     failed = [Row("accuracy", "bounce", "series", status="failed", reason="locked")]
     assert headline.figure(failed, findings(failed)) is None
+
+
+def all_ways() -> list[Row]:
+    """A study of every way that has a look, with growth of some under two settings."""
+    rows = [measured("bounce", way, "", alike(10.0**-k), 10.0**-k) for k, way in enumerate(LOOKS, 1)]
+    for way in ("series", "newton", "relative"):
+        for setting in ("1e-9 mm, one by one", "1e-9 mm, together"):
+            rows += grown("bounce", way, setting, "designs", [1, 10, 100], 0.0, 2e-3, bytes_each=10.0)
+        rows += grown("bounce", way, "", "instants", [100, 1000, 10000], 0.0, 2e-3)
+    return rows
+
+
+@pytest.mark.parametrize("growth", [True, False])
+def test_no_text_runs_out_of_a_picture(growth: bool) -> None:
+    rows = [row for row in all_ways() if growth or row.part == "accuracy"]
+    found = findings(rows)
+    figures = [
+        headline.figure(rows, found),
+        error_time.figure([row for row in rows if row.part == "accuracy"]),
+    ]
+    for against in ("designs", "instants"):
+        grows = [g for g in found.growths if g.against == against]
+        figures += [growing.figure(grows, frozenset({"series"}))] if grows else []
+    for figure in figures:
+        assert figure is not None
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        drawn, (wide, high) = figure.get_tightbbox(canvas.get_renderer()), figure.get_size_inches()
+        assert drawn.x0 >= 0.0
+        assert drawn.x1 <= wide
+        assert drawn.y0 >= 0.0
+        assert drawn.y1 <= high
 
 
 def test_labels_that_crowd_are_moved_apart_and_others_stay() -> None:

@@ -23,8 +23,8 @@ def test_another_way_that_is_quicker_is_named_with_both_times_and_their_ratio() 
     count, sentence = said([position("series", 1e-12, 1e-5), position("mujoco", 1e-12, 8e-6)])
     assert "another way in 3" in count
     assert sentence == (
-        "bounce: mujoco is quickest for position at every accuracy: 0.8 times as long as series, the quickest "
-        "of ours (8 us against 10 us a configuration)."
+        "bounce: mujoco is quickest for position at every accuracy: 0.8 times as long as series, the "
+        "quickest of ours (8 us against 10 us a configuration)."
     )
 
 
@@ -107,8 +107,8 @@ def crossing(fixed: float, each: float, set_up: float) -> str:
 
 def test_the_number_of_instants_from_which_ours_is_quicker_is_said() -> None:
     assert crossing(1e-3, 1e-6, 4e-3) == (
-        "bounce, position at 1e-9 mm: mujoco is quicker below 100 instants, series above (500 with one set-up "
-        "counted); series takes 1 ms and 1 us an instant and mujoco takes 11 us an instant."
+        "bounce, position at 1e-9 mm: mujoco is quicker below 100 instants, series above (500 with one "
+        "set-up counted); series takes 1 ms and 1 us an instant and mujoco takes 11 us an instant."
     )
     assert (
         "series is quicker than mujoco at any number of instants (with one set-up counted mujoco below 400"

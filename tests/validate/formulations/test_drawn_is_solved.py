@@ -30,12 +30,12 @@ Array = NDArray[np.float64]
 Places = Mapping[str, Array]
 
 EPS = float(np.finfo(float).eps)
-MODELS = ("pointcoord", "pointcoord-newton", "absolute")
+MODELS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 SHARES = st.floats(-1.0, 1.0)
 DRAWN = [variant for variant in VARIANTS if variant.closure == "drawn"]
 PUT_IN_PLACE = [variant for variant in VARIANTS if variant.closure != "drawn"]
 CLOSING = cars(DRAWN, left_over=0.0)
-# A car is solved by three models at one or two places, so the short profile searches briefly.
+# A car is solved by four models at one or two places, so the short profile searches briefly.
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
 

@@ -38,7 +38,7 @@ def test_a_program_agrees_in_everything_that_the_built_in_scenes_ask_for(name: s
     assert outcome.agreed, (outcome.disagreements, outcome.undecided)
     assert {row.quantity for row in outcome.rows} == set(QUANTITIES)
     assert not outcome.missing
-    # A witness that claims much tests little. These cars raise 16 u by some ten in a place, and by another
+    # A witness that claims much tests little. These cars raise 32 u by some ten in a place, and by another
     # ten in what is twice differentiated.
     for row in outcome.rows:
         numbers = outcome.solutions[1].numbers[row.quantity].values()

@@ -24,10 +24,13 @@ def partial(solver: str, scene: Scene) -> Solution:
 
 
 @pytest.mark.parametrize("name", ["off-axis-strut", "double-wishbone"])
+@pytest.mark.parametrize("other", ["absolute", "relative"])
 @pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton"])
-def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(name: str, solver: str) -> None:
+def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(
+    name: str, solver: str, other: str
+) -> None:
     scene = locking(name)
-    one, two = partial(solver, scene), partial("absolute", scene)
+    one, two = partial(solver, scene), partial(other, scene)
     np.testing.assert_array_equal(one.times, two.times)
     assert 10 < len(one.times) < len(scene.instants)
     assert one.numbers.keys() == two.numbers.keys()
@@ -40,7 +43,7 @@ def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(name: 
 def test_a_scene_refused_at_its_start_keeps_nothing() -> None:
     scene = Scene.load("double-wishbone").model_dump(exclude_none=True)
     scene["inputs"] = {"arm_angle": {"constant": 3.0}, "rack": {"constant": 0.0}}
-    for solver in ("pointcoord", "pointcoord-newton", "absolute"):
+    for solver in ("pointcoord", "pointcoord-newton", "absolute", "relative"):
         with pytest.raises(FormulationError) as caught:
             formulation(solver).solve(Scene.from_mapping(scene))
         assert caught.value.partial is None

@@ -39,7 +39,7 @@ LAWS: dict[str, dict[str, Any]] = {
 # a hundred, and rates some ten times the lengths.
 CLOSE = 1e4 * np.finfo(float).eps * 1000.0
 
-models = pytest.mark.parametrize("name", ["pointcoord", "pointcoord-newton", "absolute"])
+models = pytest.mark.parametrize("name", ["pointcoord", "pointcoord-newton", "absolute", "relative"])
 cars = pytest.mark.parametrize("car", SCENES)
 
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 from matplotlib.transforms import blended_transform_factory
 
 from validate.cost.findings import ACCURACIES, a_configuration, phases, quantities_of, unit_of, words_of
-from validate.cost.picture.look import GREY, INK, SETTINGS, handles, looks, plain, style
+from validate.cost.picture.look import GREY, INK, SETTINGS, handles, looks, plain, short, style
 from validate.cost.row import Row
 from validate.cost.tables import SHORT
 
@@ -106,9 +106,9 @@ def panel(axes: Axes, here: Sequence[Row], quantity: str) -> None:
         heights = [point.error or math.nan for point in points]
         axes.plot([point.time for point in points], heights, zorder=3, **options)
         nothing = [point.time for point in points if point.error == 0.0]
-        axes.plot(
-            nothing, [middle] * len(nothing), zorder=4, clip_on=False, **{**options, "linestyle": "none"}
-        )
+        if nothing:
+            at_foot = {**options, "linestyle": "none", "clip_on": False}
+            axes.plot(nothing, [middle] * len(nothing), zorder=4, **at_foot)
         dialled = [point for point in points if point.error > 0.0]
         if len(dialled) > 2:
             floor = min(dialled, key=lambda point: point.error)
@@ -142,7 +142,7 @@ def _scale(axes: Axes, times: Sequence[float], foot: float, low: float, high: fl
     steps = (1.0, 2.0, 5.0) if right / left < 300.0 else (1.0,)
     ticks = [step * 10.0**k for k in decades for step in steps if left <= step * 10.0**k <= right]
     axes.xaxis.set_major_locator(FixedLocator(ticks))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
     first, last = round(math.log10(low)), round(math.log10(high))
     # Thirds, so that the accuracies that are raced for have a number.
     every = 3 if last - first > 5 else 1

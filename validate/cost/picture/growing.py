@@ -14,10 +14,11 @@ from matplotlib.ticker import FuncFormatter
 from matplotlib.transforms import blended_transform_factory
 
 from validate.cost.findings import Fit, Growth
-from validate.cost.picture.look import GREY, SETTINGS, Look, looks, plain, spread, style
+from validate.cost.picture.look import GREY, SETTINGS, Look, looks, plain, short, spread, style
 
 LABEL = 0.055  # of a panel's height, from label to label
-WIDE, HIGH, LEFT, RIGHT = 3.3, 3.1, 0.8, 2.0  # inches: of a panel, and beside it
+WIDE, HIGH, LEFT, RIGHT = 3.3, 3.1, 0.8, 0.35  # inches: of a panel, and beside it
+LETTER = 0.062  # inches, of a label
 UNITS = {"time": ("time of a run, s", 1.0), "memory": ("peak above what was held before, MB", 1e-6)}
 KEY = (
     "Beside a line: the exponent p of value = factor x size^p, fitted to the largest sizes (broken line), "
@@ -34,7 +35,8 @@ def figure(growths: Sequence[Growth], dense: frozenset[str]) -> Figure:
         for g in growths
         for size, reason in g.stopped
     )
-    cell = LEFT + WIDE + RIGHT
+    letters = max((len(_name(g, growths, dense) + _exponent(g.fit)) for g in growths), default=0)
+    cell = LEFT + WIDE + RIGHT + LETTER * letters
     wide = cell * max(len(kinds), 1)
     notes = "\n".join(fill(note, int(17 * wide), subsequent_indent="  ") for note in (KEY, *stopped))
     foot = 0.7 + 0.145 * (notes.count("\n") + 1)
@@ -61,7 +63,6 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
     axes.set_title(of, loc="left")
     axes.set_xlabel(against, labelpad=2)
     axes.set_ylabel(words)
-    settings = {growth.way: {g.setting for g in growths if g.way == growth.way} for growth in growths}
     found = looks(g.way for g in growths)
     ends = []
     for growth in growths:
@@ -76,24 +77,24 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
             reach = np.array([growth.fit.smallest, growth.fit.largest])
             law = [growth.fit.at(size) * unit for size in reach]
             axes.plot(reach, law, "--", color=look.colour, linewidth=1.2, zorder=2)
-        name = growth.way + ("*" if growth.way in dense else "")
-        name += f" {growth.setting}" if len(settings[growth.way]) > 1 else ""
-        ends.append((sizes[-1], values[-1], look, name + (_exponent(growth.fit) if exponents else "")))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: _count(size)))
+        name = _name(growth, growths, dense) + (_exponent(growth.fit) if exponents else "")
+        ends.append((sizes[-1], values[-1], look, name))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: short(size)))
     axes.minorticks_off()
     _label(axes, ends)
     _mark_stops(axes, growths)
+
+
+def _name(growth: Growth, growths: Sequence[Growth], dense: frozenset[str]) -> str:
+    """A way, with its setting where there is another one of it."""
+    several = len({g.setting for g in growths if g.way == growth.way}) > 1
+    return growth.way + ("*" if growth.way in dense else "") + (f" {growth.setting}" if several else "")
 
 
 def _exponent(fit: Fit | None) -> str:
     if fit is None:
         return ""
     return f"  p = {fit.exponent:.2f}" + (f" \u00b1 {fit.error:.2f}" if fit.error is not None else "")
-
-
-def _count(size: float) -> str:
-    """A size in few letters: 500, 1e4."""
-    return f"{size:g}" if size < 9999.0 else f"{size:.0e}".replace("e+0", "e").replace("e+", "e")
 
 
 def _label(axes: Axes, ends: Sequence[tuple[float, float, Look, str]]) -> None:
@@ -111,7 +112,14 @@ def _label(axes: Axes, ends: Sequence[tuple[float, float, Look, str]]) -> None:
             fontsize=7.5,
             color=look.colour,
             annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": look.colour, "lw": 0.5, "alpha": 0.7, "shrinkB": 4},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": look.colour,
+                "linewidth": 0.5,
+                "alpha": 0.7,
+                "shrinkB": 4,
+                "relpos": (0.0, 0.5),
+            },
         )
 
 

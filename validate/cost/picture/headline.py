@@ -14,7 +14,8 @@ from validate.cost.row import Row
 
 SCENE = "bounce"
 QUANTITIES = ("position", "acceleration")
-WIDE, HIGH, LEFT, RIGHT, TOP, BELOW = 2.55, 2.5, 0.7, 0.95, 0.35, 1.2  # inches
+WIDE, HIGH, LEFT, RIGHT, TOP, BELOW = 2.55, 2.5, 0.7, 0.95, 0.35, 0.75  # inches
+ENTRY, LINE = 1.7, 0.17  # inches, of the legend
 KEY = (
     "* and filled: one solve serves any instant. Down is more accurate, left is quicker. "
     "Dotted: a way's floor."
@@ -35,12 +36,16 @@ def figure(rows: Sequence[Row], found: Findings) -> Figure | None:
     count = len(quantities) + bool(grown)
     if not count:
         return None
+    ways = handles((row.way, row.dense) for row in here if row.status == "measured")
     cell = LEFT + WIDE
-    wide, high = count * cell + (RIGHT if grown else 0.2), TOP + HIGH + BELOW
+    wide = count * cell + (RIGHT if grown else 0.2)
+    columns = max(int(wide / ENTRY), 1)
+    below = BELOW + LINE * -(-len(ways) // columns)
+    high = TOP + HIGH + below
     with mpl.rc_context(SETTINGS):
         page = Figure(figsize=(wide, high))
         places = [
-            ((LEFT + i * cell) / wide, BELOW / high, (WIDE - 0.05) / wide, HIGH / high) for i in range(count)
+            ((LEFT + i * cell) / wide, below / high, (WIDE - 0.05) / wide, HIGH / high) for i in range(count)
         ]
         for place, quantity in zip(places, quantities, strict=False):
             axes = page.add_axes(place)
@@ -51,10 +56,10 @@ def figure(rows: Sequence[Row], found: Findings) -> Figure | None:
             growing.panel(axes, grown, frozenset(row.way for row in rows if row.dense), exponents=False)
             axes.set_title(f"{grown[0].scene}: growth in instants", loc="left")
         page.legend(
-            handles=handles((row.way, row.dense) for row in here if row.status == "measured"),
+            handles=ways,
             loc="lower left",
             bbox_to_anchor=(0.1 / wide, 0.22 / high),
-            ncols=max(2 * count, 3),
+            ncols=columns,
             frameon=False,
             fontsize=7.5,
             handlelength=3.0,

@@ -119,13 +119,23 @@ def plain(axes: Axes) -> None:
     axes.minorticks_off()
 
 
+def short(number: float) -> str:
+    """A number of an axis in few letters: 0.5, 500, 1e4."""
+    return f"{number:g}" if number < 9999.0 else f"{number:.0e}".replace("e+0", "e").replace("e+", "e")
+
+
 def spread(places: Sequence[float], room: float) -> list[float]:
-    """Places moved apart until each has room, those that crowd around their middle; their order stays."""
+    """Places between 0 and 1 moved apart until each has room, as far as there is any; their order stays.
+
+    Those that crowd stand around their middle.
+    """
     order = sorted(range(len(places)), key=lambda i: places[i])
     groups: list[list[int]] = []
 
     def bottom(group: Sequence[int]) -> float:
-        return sum(places[i] for i in group) / len(group) - 0.5 * room * (len(group) - 1)
+        high = room * (len(group) - 1)
+        middle = sum(places[i] for i in group) / len(group)
+        return max(min(middle - 0.5 * high, 1.0 - high), 0.0)
 
     for i in order:
         groups.append([i])

@@ -18,6 +18,7 @@ from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import QUANTITIES
 from validate.cost.way import Ready, Setting
+from validate.cost.ways.inputs import chassis_motion, laws_at
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Numbers
 
@@ -77,15 +78,12 @@ class _Ready:
         from absolute.results import Asked, Record
         from absolute.solve import solve_instants
 
-        part = self.scene.mechanism
-        moves = part.topology.chassis_motion
-        laws = {name: f.series(instants, 2) * (1.0, 1.0, 2.0) for name, f in self.scene.functions.items()}
+        laws = laws_at(self.scene, instants)
+        chassis = chassis_motion(self.scene, laws)
+        moves = self.scene.mechanism.topology.chassis_motion
         series = input_series(
-            tuple(self.mechanism.model.inputs), {n: law for n, law in laws.items() if n not in moves}
+            tuple(self.mechanism.model.inputs), {name: law for name, law in laws.items() if name not in moves}
         )
-        directions = {"up": part.up, "right": part.right}
-        shifts = [laws[n][:, :, None] * np.array(directions[moves[n]]) for n in laws if n in moves]
-        chassis = np.asarray(sum(shifts[1:], shifts[0])) if shifts else None
         wanted = [n for q, names in self.asked.items() if QUANTITIES[q].of == "car" for n in names]
         rates = plan_effects(self.scene.effects).derivative > 0
         asked = Asked(rates, conditions=False, doubts=None, effects=effects_of(wanted))

@@ -1,4 +1,4 @@
-"""Other people's programs in the race: the suspension in MuJoCo, which the extra `peers` brings."""
+"""Other people's programs in the race: the suspension in MuJoCo and in Exudyn, which the extra brings."""
 
 from __future__ import annotations
 
@@ -119,4 +119,4 @@ def _laws(scene: Scene, instants: Array) -> dict[str, Array]:
     return {name: f.series(instants, 2) * FACTORIALS for name, f in scene.functions.items()}
 
 
-WAYS = (PeerWay("mujoco", "mujoco"),)
+WAYS = (PeerWay("mujoco", "mujoco"), PeerWay("exudyn", "exudyn"))

@@ -1,4 +1,4 @@
-"""The library's own methods: a chain of power series, and Newton's method at each instant.
+"""The library's own methods: a chain of power series, and Newton's method at instants.
 
 What is timed is what `simulate` does, in its own order, without the proofs, which nobody pays for who does
 not ask. The set-up reads and checks the drawing, closes it and assembles the start. `solve` finds the
@@ -19,13 +19,13 @@ from pointcoord import Scene
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan
 from pointcoord.effects.registry import ALWAYS
-from pointcoord.method import NEWTON, SERIES, Method
+from pointcoord.method import CHORD, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout, States
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates, StatesAtInstants, StatesOfChain
-from pointcoord.simulation import Task, _by_series, _prepared
-from pointcoord.solve.pointwise import Solved, _with_rates, solve_instants
+from pointcoord.simulation import Task, _by_series, _prepared, pose_tolerance
+from pointcoord.solve.pointwise import Solved, with_rates
 from validate.cost.way import LeftOut, Ready, Setting
 from validate.formulations.protocol import Numbers
 
@@ -227,9 +227,9 @@ class ReadyInstants:
         early = bool(instants[0] > start)
         times = np.concatenate([[start], instants]) if early else instants
         mechanism = task.readout.mechanism
-        solved = solve_instants(
-            mechanism, task.functions, task.start, times, 0, task.method.square_velocity_term
-        )
+        tolerance = pose_tolerance(task.scene, task.method, mechanism)
+        term = task.method.square_velocity_term
+        solved = task.method.at_instants(mechanism, task.functions, task.start, times, 0, term, tolerance)
         error = solved.status.error(None)
         if error is not None:
             raise error
@@ -250,7 +250,7 @@ class ReadyInstants:
         known = mechanism.known_series(
             {name: f.series(solved.instants, derivative) for name, f in self.task.functions.items()}
         )
-        full = _with_rates(
+        full = with_rates(
             mechanism.map,
             poses.states[0],
             known,
@@ -258,6 +258,7 @@ class ReadyInstants:
             derivative,
             self.task.method.square_velocity_term,
             Work(),
+            poses.left,
         )
         states = StatesAtInstants(readout, full).states(solved.instants)
         found = (*solved.found, readout.samples(solved.instants, states))
@@ -283,7 +284,14 @@ def require_complete(states: SolvedStates) -> None:
         raise error
 
 
-WAYS = (
+WAYS: tuple[Series | AtInstants, ...] = (
     Series(),
-    AtInstants("newton", "point coordinates, by Newton's method from the instant before", NEWTON),
+    *(
+        AtInstants(method.name, f"point coordinates, by {words}", method, tolerance_settings())
+        for method, words in (
+            (NEWTON, "Newton's method from the instant before"),
+            (NEWTON_COLD, "Newton's method from the drawing, each instant by itself"),
+            (CHORD, "Newton's method with one factorisation kept"),
+        )
+    ),
 )

@@ -6,13 +6,22 @@ from collections.abc import Iterable
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
-from validate.cost.ways import absolute, differences, peers, point_coordinates, printed, scipy_solvers
+from validate.cost.ways import (
+    absolute,
+    differences,
+    peers,
+    point_coordinates,
+    printed,
+    relative,
+    scipy_solvers,
+)
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
     *differences.WAYS,
     *printed.WAYS,
     *absolute.WAYS,
+    *relative.WAYS,
     *scipy_solvers.WAYS,
     *peers.WAYS,
 )

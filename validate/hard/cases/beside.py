@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 Points = Mapping[str, Array]
 
 GROUP = "The strut's axis beside the ball joint"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 OFF = 37.0  # mm: how far the axis is from the ball joint in the car that the cases are made from
 # A millimetre or so, as there may be in a car, must be solved; nearer a model may decline.
 SOLVED = Expected(("right", "refused"), right_from=1e-2)

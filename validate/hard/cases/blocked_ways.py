@@ -2,7 +2,8 @@
 
 When both inputs differ from the drawing, a model takes them there together, and what it reaches lies on its
 own way: straight in ball joint height and rack travel for pointcoord, in arm angle and rack travel for the
-absolute model. A little back on that way there must be a pose, and a little further on there must be none.
+models in Pinocchio. A little back on that way there must be a pose, and a little further on there must be
+none.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from validate.hard.case import RIGHT, Answer, Case, Trial
 from validate.hard.last_values import home, last_value, reachable
 
 SHARE = 1e-9  # of the way: how exactly its end must be found
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
+BY_ANGLE = ("absolute", "relative")
 ARM = 1.3  # rad: where the arm is to be, besides the rack beyond its end
 Values = Mapping[str, float]
 
@@ -37,7 +39,7 @@ def moved_on(
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
     start = home(car, level=False)
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
-    if name == "absolute":
+    if name in BY_ANGLE:
         return {
             "arm_angle": here["arm_angle"] + share * (end["arm_angle"] - start["arm_angle"]),
             "rack": rack,
@@ -51,7 +53,7 @@ def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tu
     start = home(car, level=False)
 
     def measure(values: Values) -> float:
-        return values["arm_angle"] if name == "absolute" else math.cos(values["arm_angle"])
+        return values["arm_angle"] if name in BY_ANGLE else math.cos(values["arm_angle"])
 
     arm = (measure(here) - measure(start)) / (measure(end) - measure(start))
     return arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])

@@ -26,7 +26,7 @@ from validate.reference import solve_reference
 
 GROUP = "Body rates"
 VALUES = (*decades(-12, -1), 0.0)
-OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
+OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT, "relative": RIGHT}
 ALL = OURS | {"printed": FAILS}
 # Of points and bodies; where points are, and angles of the wheel, are no rates.
 RATES = tuple(q.name for q in QUANTITIES.values() if q.of != "car" and q.name != "position")

@@ -27,7 +27,7 @@ from validate.hard.last_values import last_value
 from validate.hard.trial import Facts, Tried, try_scene
 
 GROUP = "Branches"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 # rad: half the motion through the place where the branches nearly meet; a dead point is 0.05 rad below it.
 WIDE = {"paper": 0.05, "beside": 0.04}
 # A motion through such a place takes half a second, so few values must do.

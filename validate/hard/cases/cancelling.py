@@ -77,7 +77,7 @@ def _polynomial_cases(power: int) -> tuple[Case, ...]:
         tuple(2.0**-k for k in range(1, MOST + 1)),
         cancelling_polynomial(power),
         f"right from 1/{1 / right_from(power):g} up; later right within its bound, or refused",
-        {"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT},
+        {"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
     )
 
 

@@ -22,7 +22,7 @@ from validate.hard.last_values import home, last_value
 from validate.hard.trial import try_scene
 from validate.reference import Choices, count_assemblies
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 STARTS = 1000
 DEGREE = 64  # of the polynomial of the collinear strut in the literature
 

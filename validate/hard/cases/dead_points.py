@@ -33,6 +33,10 @@ RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
 # its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
 # the range, and at ten times the nearest decade above that no end is near enough to be a reason.
 ABSOLUTE_FROM = 1e-11
+# The relative model stops where the error that rounding may make of a pose changes its Jacobian by an eighth.
+# At the share d of the range from an end that is 2e-15 / d, times five deviations and a factor of the car
+# that is a few: some 1e-12, and ten times that is always reached.
+RELATIVE_FROM = 1e-11
 FULL = decades(-12, -1)
 COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
 SPARSE = (1e-1, 1e-4, 1e-8, 1e-12)
@@ -45,14 +49,16 @@ def near_end(law: str) -> dict[str, Expected]:
     return {
         "pointcoord": Expected(("right", "refused"), RIGHT_FROM[law]),
         "absolute": Expected(("right", "refused"), ABSOLUTE_FROM),
+        "relative": Expected(("right", "refused"), RELATIVE_FROM),
     }
 
 
 def inside(law: str) -> str:
     """What is expected of values inside an end."""
     return (
-        f"right within the bound, by pointcoord down to {RIGHT_FROM[law]:g} and by the absolute model down "
-        f"to {ABSOLUTE_FROM:g}; nearer right or refused with a reason"
+        f"right within the bound, by pointcoord down to {RIGHT_FROM[law]:g}, by the absolute model down to "
+        f"{ABSOLUTE_FROM:g} and by the relative one down to {RELATIVE_FROM:g}; nearer right or refused, with "
+        "a reason"
     )
 
 
@@ -127,7 +133,11 @@ def _cases(
     }
 
     def expected(law: str) -> dict[str, Expected]:
-        found = dict.fromkeys(("pointcoord", "absolute"), REFUSED) if law == "beyond" else near_end(law)
+        found = (
+            dict.fromkeys(("pointcoord", "absolute", "relative"), REFUSED)
+            if law == "beyond"
+            else near_end(law)
+        )
         return found | ({"pointcoord-newton": found["pointcoord"]} if newton else {})
 
     def case(law: str) -> Case:

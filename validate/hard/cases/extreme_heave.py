@@ -32,7 +32,7 @@ from validate.hard.trial import solved, try_scene
 
 Array = NDArray[np.float64]
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 LAWS: dict[str, dict[str, Any]] = {
     "constant": {"constant": 10.0},
     "polynomial": {"polynomial": [10.0, 20.0, 30.0]},

@@ -31,7 +31,7 @@ from validate.hard.trial import Tried, solved, try_scene
 Array = NDArray[np.float64]
 
 GROUP = "Far from the origin, and mixed sizes"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
 # own coordinates are up to 8 sizes instead of 1, and rounded so much more coarsely.
@@ -204,7 +204,7 @@ CASES: tuple[Case, ...] = (
         why="Coordinates far from the origin keep few digits of the car, and differences of them lose more.",
         parameter="1 mm over the distance along x; thrice as far along z",
         values=decades(),
-        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
+        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=far,
     ),
@@ -214,7 +214,7 @@ CASES: tuple[Case, ...] = (
         why="The same with the strut's axis beside the ball joint, which is one more difference of places.",
         parameter="1 mm over the distance along x; thrice as far along z",
         values=decades(),
-        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
+        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=partial(far, car="beside"),
     ),
@@ -250,7 +250,7 @@ CASES: tuple[Case, ...] = (
         why="The same of a double wishbone, whose knuckle has no direction of its own.",
         parameter="1 mm over the distance along x; thrice as far along z",
         values=coarse(decades()),
-        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER},
+        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=partial(far, car="wishbone"),
     ),

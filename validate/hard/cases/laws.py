@@ -19,10 +19,15 @@ from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, c
 from validate.hard.trial import Facts, Measure, Tried, scene_case
 
 GROUP = "Laws of the inputs"
-OURS: Mapping[str, Expected] = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT}
+OURS: Mapping[str, Expected] = {
+    "pointcoord": RIGHT,
+    "pointcoord-newton": RIGHT,
+    "absolute": RIGHT,
+    "relative": RIGHT,
+}
 # A motion by series may take too many of them, or need steps below the rounding of time, and has to say
 # so; solving at its instants needs no steps.
-BY_STEPS = {"pointcoord": RIGHT_OR_REFUSED, "pointcoord-newton": RIGHT, "absolute": RIGHT}
+BY_STEPS = {"pointcoord": RIGHT_OR_REFUSED, "pointcoord-newton": RIGHT, "absolute": RIGHT, "relative": RIGHT}
 # Values of a table are rounded by 2e-16 rad, which within a jump of time h is an acceleration of 2e-16 / h^2.
 # A step of a tenth of h about t = 0.5 s, known to 1e-16 s, keeps nine digits of itself down to h = 1e-6 s.
 JUMP = BY_STEPS | {"pointcoord": Expected(("right", "refused"), right_from=1e-6)}

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 Points = Mapping[str, Array]
 
 GROUP = "Points nearly in line or nearly coincident"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 RIGHT_FROM = 1e-2  # a millimetre or so, as there may be in a car: it must be solved
 SOLVED = Expected(("right", "refused"), right_from=RIGHT_FROM)
 SLOW = decades()[::3]  # a refusal takes half a second here

@@ -23,7 +23,7 @@ from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected,
 from validate.hard.cases.links import GROUP, links_of
 from validate.hard.trial import try_scene
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 LEAST = math.ulp(0.0)  # 5e-324
 Place = tuple[str | int, ...]
 

@@ -32,7 +32,7 @@ from validate.reference import InfeasibleError, NoReferenceError
 GROUP = "Reachable range"
 SHARE = 1e-9  # of the range: how exactly the last value must be found
 SAMPLES = 5
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 STRUT = {"strut_top on the strut axis"}
 ROD = "link tie_rod_inner - tie_rod_outer"
 ARM = {"link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"}

@@ -67,7 +67,11 @@ CASES: tuple[Case, ...] = (
         parameter="distance of the arm from its end, in parts of its range",
         values=decades(-12, -1),
         scene=_searched,
-        expected={"pointcoord": Expected(("right", "refused"), 1e-11), "absolute": RIGHT_OR_REFUSED},
+        expected={
+            "pointcoord": Expected(("right", "refused"), 1e-11),
+            "absolute": RIGHT_OR_REFUSED,
+            "relative": RIGHT_OR_REFUSED,
+        },
         behaviour="pointcoord is right within its bound, by however little; the absolute model may refuse",
     ),
     scene_case(
@@ -83,6 +87,7 @@ CASES: tuple[Case, ...] = (
             "pointcoord-as-asked": Expected(("right", "refused"), 1e-12),
             "pointcoord-newton": Expected(("right", "refused"), 1e-12),
             "absolute": RIGHT_OR_REFUSED,
+            "relative": RIGHT_OR_REFUSED,
         },
         behaviour="the branch is kept at any tolerance: the sign of the Jacobian's determinant is followed",
     ),
@@ -93,7 +98,11 @@ CASES: tuple[Case, ...] = (
         parameter="distance of the rod end behind the top, in parts of the strut",
         values=decades()[::2],  # near the top a refusal takes a second
         scene=_folded,
-        expected={"pointcoord": Expected(("right", "refused"), 1e-2), "absolute": RIGHT_OR_REFUSED},
+        expected={
+            "pointcoord": Expected(("right", "refused"), 1e-2),
+            "absolute": RIGHT_OR_REFUSED,
+            "relative": RIGHT_OR_REFUSED,
+        },
         behaviour="right, as it is drawn, or refused with a reason; the absolute model refuses such drawings",
     ),
 )

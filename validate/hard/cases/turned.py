@@ -14,7 +14,7 @@ from validate.hard.trial import scene_case
 
 GROUP = "Turned cars"
 AXES = "xyz"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute")
+SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 
 
 def quarter_turn_less(axis: int, value: float) -> Array:

@@ -96,7 +96,11 @@ def double_wishbone(points: Points, axes: Axes, closure: str) -> Linkage:
                 p[UPPER_BALL] - p[BALL],
             ),
         ),
-        steering_axis=Line(Place(KNUCKLE, p[BALL]), Place(KNUCKLE, p[UPPER_BALL])),
-        spin_axis=Line(Place(KNUCKLE, p[AXIS_INNER]), Place(KNUCKLE, p[WHEEL])),
+        steering_axis=_knuckle_line(p, BALL, UPPER_BALL),
+        spin_axis=_knuckle_line(p, AXIS_INNER, WHEEL),
         bodies={"knuckle": KNUCKLE},
     )
+
+
+def _knuckle_line(points: Points, start: str, end: str) -> Line:
+    return Line(Place(KNUCKLE, points[start]), Place(KNUCKLE, points[end]), points[end] - points[start])

@@ -71,6 +71,7 @@ def macpherson(points: Points, axes: Axes, closure: str) -> Linkage:
         raise HardpointsError(
             TOP, f"is where {BALL} is, so that the kingpin has no direction", "points apart"
         )
+    direction(points, TOP, ROD_END)
     rod_end = float(np.copysign(length(beyond), beyond @ slid)) * axis
 
     def on_knuckle(name: str) -> Place:
@@ -79,6 +80,7 @@ def macpherson(points: Points, axes: Axes, closure: str) -> Linkage:
     steered = steering(points, axes, points[OUTER] + shift)
     carried = [name for name in (LOWER, OUTER, WHEEL, AXIS_INNER) if name in points]
     ahead = Place(ROD, top + axis)
+    inner = AXIS_INNER if AXIS_INNER in points else LOWER
     return Linkage(
         joints=(
             arm,
@@ -113,10 +115,10 @@ def macpherson(points: Points, axes: Axes, closure: str) -> Linkage:
             ),
         ),
         steering_axis=(
-            Line(Place(ARM, ball), Place(CHASSIS, top))
+            Line(Place(ARM, ball), Place(CHASSIS, top), kingpin)
             if closure == "drawn"
-            else Line(on_knuckle(BALL), on_knuckle(LOWER))
+            else Line(on_knuckle(BALL), on_knuckle(LOWER), points[LOWER] - ball)
         ),
-        spin_axis=Line(on_knuckle(AXIS_INNER if AXIS_INNER in points else LOWER), on_knuckle(WHEEL)),
+        spin_axis=Line(on_knuckle(inner), on_knuckle(WHEEL), points[WHEEL] - points[inner]),
         bodies={"knuckle": KNUCKLE},
     )

@@ -1,0 +1,38 @@
+"""Instants evenly between two others, each the number that a person would write."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Whole numbers up to 2^53 are exact, so that their quotient is rounded once.
+EXACT = 2**53
+
+
+def even_instants(start: float, stop: float, samples: int, first: int = 0, last: int | None = None) -> Array:
+    """`samples` instants evenly from start to stop, or those of them from number `first` to before `last`; s.
+
+    A start of 0, a stop of 2.6 and 131 samples mean 0.02, 0.04, 0.06: of the decimal numbers that start and
+    stop are printed as, the instants are the exact ones, each rounded once, and are printed as short. With
+    start = a / d, stop = b / d and n steps that is (a n + i (b - a)) / (d n), a quotient of whole numbers;
+    where these are too large to be exact, the instants are rounded a few times more.
+    """
+    steps, last = samples - 1, samples if last is None else last
+    numbers = np.arange(first, last)
+    if steps < 1:
+        return np.full(len(numbers), start)
+    exact_start, exact_stop = Fraction(repr(start)), Fraction(repr(stop))
+    common = lcm(exact_start.denominator, exact_stop.denominator)
+    a, b = int(exact_start * common), int(exact_stop * common)
+    if max(abs(a), abs(b), common) * steps > EXACT:
+        step = (stop - start) / steps
+        # A step below the smallest number is none; one below the smallest normal number is rounded so
+        # coarsely that they add up to more than all.
+        instants = start + (numbers * step if step else numbers / steps * (stop - start))
+        return np.minimum(np.where(numbers == steps, stop, instants), stop)
+    return np.asarray((a * steps + numbers * (b - a)) / (common * steps))

@@ -1,0 +1,118 @@
+"""Where the numbers of a motion are in a table: a row for each number, a column for each instant.
+
+The numbers of a row lie side by side in memory. So series are summed right into their place, what is added to
+all points is one sum for each derivative, and a block of columns stays in a cache until it is whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.effect import Effect
+from pointcoord.effects.plan import Plan
+from pointcoord.linkage.topology import Topology
+
+Array = NDArray[np.float64]
+State = tuple[int, str]
+"""A time derivative, and the point that it is of."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """The rows of a table.
+
+    Attributes:
+        moving, still: states that are reported, of points that are solved for and of the chassis: three rows
+            each, in this order from row 0.
+        spare: states of solved points that are only needed; they are in no table.
+        places: by quantity and name the rows of every number, in the order of results.
+        computed: the effects that compute their numbers from states.
+        height: how many rows there are.
+    """
+
+    moving: tuple[State, ...]
+    still: tuple[State, ...]
+    spare: tuple[State, ...]
+    places: Mapping[str, Mapping[str, slice]]
+    computed: tuple[Effect, ...]
+    height: int
+
+    @classmethod
+    def of(cls, plan: Plan, topology: Topology, highest: Mapping[str, int]) -> Table:
+        """The table of the numbers that a plan computes.
+
+        Args:
+            highest: time derivative of each point that is needed.
+        """
+        solved = (*topology.moving, *topology.carried)
+        reported = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
+        moving = tuple((d, point) for d in sorted(reported) for point in solved)
+        still = tuple((d, point) for d in sorted(reported) for point in topology.chassis)
+        spare = tuple(
+            (d, point)
+            for d in range(plan.derivative + 1)
+            for point in solved
+            if d not in reported and highest[point] >= d
+        )
+        first = {state: 3 * i for i, state in enumerate((*moving, *still))}
+        height = 3 * len(first)
+        places: dict[str, dict[str, slice]] = {q.name: {} for e in plan.computed for q in e.quantities}
+        for d, named in reported.items():
+            places[named] = {p: slice(first[d, p], first[d, p] + 3) for p in topology.points}
+        computed = tuple(effect for effect in plan.computed if not effect.reports_states)
+        for effect in computed:
+            for quantity in effect.quantities:
+                every = topology.points if quantity.of == "point" else tuple(topology.bodies)
+                rows = 1 if quantity.of == "car" else 3
+                for name in every if effect.names is None else effect.names:
+                    places[quantity.name][name] = slice(height, height + rows)
+                    height += rows
+        return cls(moving, still, spare, places, computed, height)
+
+    def states_of(self, derivative: int) -> tuple[slice, slice]:
+        """The rows of a reported derivative of all points: of those that are solved for, of the chassis."""
+        found, before = [], 0
+        for states in (self.moving, self.still):
+            own = [i for i, (d, _) in enumerate(states) if d == derivative]
+            found.append(slice(before + 3 * own[0], before + 3 * own[-1] + 3) if own else slice(0, 0))
+            before += 3 * len(states)
+        return found[0], found[1]
+
+    @property
+    def reported(self) -> tuple[int, ...]:
+        """The derivatives of all points that are reported."""
+        return tuple(dict.fromkeys(d for d, _ in self.moving))
+
+    def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:
+        """A table's numbers by quantity and name, of points and bodies (..., N, 3), of the car (..., N).
+
+        Args:
+            rows: the table, shape (..., height, N); the numbers are views of it.
+        """
+        return {
+            quantity: {name: _seen(rows, place) for name, place in places.items()}
+            for quantity, places in self.places.items()
+        }
+
+    def put(self, rows: Array, quantity: str, name: str, array: Array) -> None:
+        """Write one number at all instants, as an effect gives it, into a table."""
+        _seen(rows, self.places[quantity][name])[...] = array
+
+
+def vectors(rows: Array, first: int) -> Array:
+    """Three rows as vectors (..., N, 3), a view."""
+    return rows[..., first : first + 3, :].swapaxes(-1, -2)
+
+
+def triples(rows: Array, part: slice) -> Array:
+    """Rows of points as an array (..., points, 3, N), a view."""
+    chosen = rows[..., part, :]
+    return chosen.reshape(*chosen.shape[:-2], chosen.shape[-2] // 3, 3, chosen.shape[-1])
+
+
+def _seen(rows: Array, place: slice) -> Array:
+    return rows[..., place.start, :] if place.stop == place.start + 1 else vectors(rows, place.start)

@@ -1,0 +1,154 @@
+r"""Chord Newton at instants: one factorisation kept for as long as it is good enough.
+
+    u <- u - X C(u, w),      X = C_u^-1 of an earlier pose,
+
+which converges by a constant factor instead of squaring its error. Each instant starts from the pose y0
+before, along the tangent T that X gives to the new known coordinates. Because C is quadratic,
+
+    C(y0 + s T) = C(y0) + s 2 B(y0, T) + s^2 B(T, T)      exactly,
+
+so that with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every
+s from 0 to 1 if it does with
+
+    eta = |X C(y0)| + |X 2 B(y0, T)| + |X B(T, T)|,    z = |I - X C_u(y0)| + |X C_u(T)|,
+    2 omega eta < (1 - z)^2.
+
+Then there is one assembly near each y0 + s T, they are one branch, and X contracts towards the last by
+k = z + omega r, r the radius of the theorem: after a step d, |u* - u| <= k |d| / (1 - k). Where that is not
+so, X is made anew, and if that is not enough the path is followed in shorter proven steps (see `assembly`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.assembly import Pose, blocked, follow
+from pointcoord.solve.pointwise import Solved, SquareVelocityTerm, square_velocity_term, with_rates
+from pointcoord.solve.status import COMPLETE, Status
+from pointcoord.time_functions import TimeFunction
+
+Array = NDArray[np.float64]
+
+# A slower contraction is worth a new factorisation, which costs as much as some five steps: from 1e-3 to
+# rounding, 1e-16, it takes thirteen.
+SLOW = 0.1
+# Steps from a distance of 1 to rounding at that rate, and as many again for what a bound misjudges.
+LIMIT = 32
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A factorisation that is kept: X, and the Lipschitz constant of X C_u."""
+
+    inverse: Array
+    omega: float
+
+    @classmethod
+    def of(cls, system: QuadraticMap, factors: Factors) -> Kept:
+        """Of the factors of C_u at some pose."""
+        inverse = factors.preconditioner
+        return cls(inverse, float(system.lipschitz(inverse, np.ones(system.unknowns))))
+
+    def step(self, rows: Array) -> Array:
+        """X times rows."""
+        return np.asarray(self.inverse @ rows)
+
+
+@dataclass(frozen=True)
+class Reached:
+    """A pose, how far it is from the exact one by proof, and how many residuals it took."""
+
+    y: Array
+    left: float
+    residuals: int
+
+
+def solve_by_chord(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    times: Array,
+    derivative: int,
+    square_term: SquareVelocityTerm = square_velocity_term,
+    tolerance: float = 0.0,
+) -> Solved:
+    """Solve at each instant, each from the one before; arguments and result as of `solve_instants`."""
+    system, n = mechanism.map, mechanism.map.unknowns
+    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
+    y, left = np.empty((len(times), system.size)), np.empty(len(times))
+    here, rest, work = pose.y, float(pose.left), Work()
+    kept = Kept.of(system, pose.factors)
+    status: Status = COMPLETE
+    for i in range(len(times)):
+        if i > 0:
+            target = known[i, 0]
+            reached = _along_chord(system, kept, here, target, tolerance)
+            if reached is None:
+                factors = factorise(system.jacobian(here))
+                work += Work(factorisations=1)
+                kept = Kept.of(system, factors)
+                reached = _along_chord(system, kept, here, target, tolerance)
+                if reached is None:
+                    path = follow(system, here, target, factors, tolerance)
+                    work += path.work
+                    if path.done < 1.0:
+                        problem = "the mechanism cannot be assembled"
+                        status = blocked(mechanism, problem, path, target, path.done < 1.0, float(times[i]))
+                        y, left, known, times = y[:i], left[:i], known[:i], times[:i]
+                        break
+                    kept = Kept.of(system, path.factors)
+                    reached = Reached(path.y, float(path.left), 0)
+            work += Work(residuals=reached.residuals)
+            here, rest = reached.y, reached.left
+        y[i], left[i] = here, rest
+    y[:, n:] = known[:, 0]
+    solved = with_rates(system, y, known, times, derivative, square_term, work, left)
+    return replace(solved, status=status)
+
+
+def _along_chord(
+    system: QuadraticMap, kept: Kept, y: Array, target: Array, tolerance: float
+) -> Reached | None:
+    """The pose with other known coordinates, on the branch of y; None where X is too old for it, or slow."""
+    n = system.unknowns
+    tangent = np.zeros_like(y)
+    tangent[n:] = target - y[n:]
+    tangent[:n] = -kept.step(2.0 * system.polar(y, tangent))
+    parts = (system.residual(y), 2.0 * system.polar(y, tangent), system.residual(tangent))
+    with np.errstate(all="ignore"):
+        eta = sum(float(np.abs(kept.step(rows)).max()) for rows in parts)
+        turned = np.abs(np.eye(n) - kept.inverse @ system.jacobian(y))
+        z = float((turned + np.abs(kept.inverse @ system.jacobian(tangent))).sum(axis=-1).max())
+        constant = 2.0 * kept.omega * eta / (1.0 - z) ** 2
+        if not (z < 1.0 and constant < 1.0):
+            return None
+        radius = 2.0 * eta / ((1.0 - z) * (1.0 + np.sqrt(1.0 - constant)))
+    rate = z + kept.omega * radius
+    if not rate <= SLOW:
+        return None
+    here = y + tangent
+    here[n:] = target
+    exact_data = np.zeros_like(y)
+    previous = np.inf
+    for count in range(1, LIMIT + 1):
+        step = -kept.step(system.residual(here))
+        here[:n] += step
+        size = float(np.abs(step).max())
+        left = rate * size / (1.0 - rate)
+        if left <= tolerance:
+            return Reached(here, left, count + 2)
+        # Near rounding a step is noise, or no longer shrinks.
+        if size < 1e-8:
+            noise = np.abs(kept.inverse) @ system.uncertainty(here, exact_data)
+            if (np.abs(step) <= noise).all() or size >= 0.5 * previous:
+                return Reached(here, 0.0, count + 2)
+        previous = size
+    return None

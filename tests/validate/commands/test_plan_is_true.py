@@ -1,0 +1,82 @@
+"""What `pointcoord plan` says of the effort is what solving the scene takes."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, simulate
+from pointcoord.simulation import effort
+from pointcoord.solve.taylor import COARSEST, FINEST
+from validate.cli import main
+
+TAKES = re.compile(
+    r"accuracy: positions to (?P<tolerance>\S+) mm, rates to (?P<part>\S+) of their size\n"
+    r"takes: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
+    r"(?P<orders>\d+) orders in all; (?P<all>\d+) factorisations, (?P<start>\d+) of them to assemble the start\n"
+)
+
+
+@pytest.mark.parametrize("name", built_in_scenes())
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_the_effort_that_is_planned_is_the_work_of_the_solved_motion(name: str, tolerance: float) -> None:
+    scene = Scene.load(name).model_copy(update={"tolerance": tolerance})
+    planned, motion = effort(scene), simulate(scene)
+    work = motion.work
+    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert (planned.work.factorisations, planned.work.residuals) == (work.factorisations, work.residuals)
+    assert planned.start.factorisations == motion.start.work.factorisations
+    assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
+    # The tolerance is what was asked for, or the finest that a series holds, and then the motion says so.
+    noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
+    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12)) == (not noted)
+    assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
+    # Nothing is summed at the instants.
+    assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated
+
+
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_plan_prints_the_effort(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", name]) == 0
+    told = TAKES.search(capsys.readouterr().out)
+    assert told is not None
+    scene = Scene.load(name)
+    work = simulate(scene).work
+    assert int(told["segments"]) == work.segments
+    assert int(told["orders"]) == work.series_orders
+    assert int(told["all"]) == work.factorisations
+    assert float(told["tolerance"]) == scene.tolerance
+    assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
+
+
+@pytest.mark.parametrize(("tolerance", "kept"), [(1e-30, FINEST), (1e30, COARSEST)])
+def test_a_tolerance_that_no_series_holds_is_planned_as_the_one_it_does(
+    tolerance: float, kept: float
+) -> None:
+    scene = Scene.load("steer").model_copy(update={"tolerance": tolerance})
+    planned = effort(scene)
+    assert planned.tolerance == pytest.approx(10.0 * kept * simulate(scene).unit, rel=1e-12)
+
+
+def test_a_motion_that_stops_is_planned_up_to_there() -> None:
+    content = Scene.load("bounce").model_dump(mode="json", exclude_none=True)
+    content["inputs"]["arm_angle"] = {"polynomial": [1.5, 1.0]}
+    content["time"]["stop"] = 1.5
+    scene = Scene.from_mapping(content)
+    planned = effort(scene)
+    with pytest.raises(AssemblyError) as caught:
+        simulate(scene)
+    assert not planned.status.complete
+    # The arm turns to 152.013 degrees.
+    assert planned.stop == pytest.approx(np.deg2rad(152.013) - 1.5, abs=2e-5)
+    assert planned.work.factorisations == caught.value.partial.work.factorisations
+
+
+def test_a_scene_that_cannot_be_solved_has_no_effort() -> None:
+    scene = Scene.load("off-axis-strut")
+    points = {**scene.mechanism.points, "strut_rod_end": (300.0, -300.0, 300.0)}
+    other = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+    with pytest.raises(SceneError, match="another car"):
+        effort(other)

@@ -1,0 +1,218 @@
+"""A suspension in Exudyn: a kinematic tree, whose loops are closed by its spherical joints.
+
+Exudyn's constraints are algebraic equations. Its static solver gives them and their Jacobian, and its sensors
+tell how any point of the tree moves (see `program` for what is done with both). A ball joint of the tree is
+three turns in a row about axes at right angles as drawn; the middle one, which must not come to a quarter
+turn, leans the knuckle across the arm's axis and the steering axis. The tie rod's ball joint has two turns
+across the rod: it may turn about itself, which changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.peers.linkage import CHASSIS, DRIVEN, KNUCKLE, TIE_ROD, Joint, Linkage, axes_along
+from validate.peers.program import Program
+
+Array = NDArray[np.float64]
+
+# By name, since what exudyn says of its types is not what its compiled functions take.
+exudyn: Any = import_module("exudyn")
+items: Any = import_module("exudyn.itemInterface")
+
+TURNS = (exudyn.JointType.RevoluteX, exudyn.JointType.RevoluteY, exudyn.JointType.RevoluteZ)
+MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")
+
+
+class InExudyn(Program):
+    """A linkage as an Exudyn system; the pose that was computed last is the system's."""
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage = linkage
+        self.container = exudyn.SystemContainer()
+        self.system = system = self.container.AddSystem()
+        self.links = _links(linkage)
+        tree = _tree(system, self.links)
+        self.places_of = [self._sensor(tree, *linkage.points[name], "Position") for name in linkage.points]
+        self.moves_of = [
+            [self._sensor(tree, *place, what) for place in linkage.points.values()] for what in MOVES[:2]
+        ]
+        on_knuckle = next(place for place in linkage.points.values() if place[0] == KNUCKLE)
+        self.turns_of = [self._sensor(tree, *on_knuckle, what) for what in MOVES[2:]]
+        self.ends = []
+        for loop in linkage.loops:
+            sides = ((loop.body, loop.place), (loop.other, loop.other_place))
+            markers = [self._marker(tree, *side) for side in sides]
+            system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
+            self.ends.append([self._sensor(tree, *side, "Acceleration") for side in sides])
+        system.Assemble()
+        self.solver, self.settings = exudyn.MainSolverStatic(), exudyn.SimulationSettings()
+        self.settings.solution.file.write = False
+        self.settings.staticSolver.verboseMode = 0
+        self.solver.InitializeSolver(system, self.settings)
+        self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
+        self.nothing = np.zeros((self.size + rows, self.size + rows))
+        self.driven = np.array([self.links.last[body] for body in DRIVEN])
+        self.unknown = np.array([i for i in range(self.size) if i not in self.driven])
+
+    @property
+    def coordinates(self) -> Array:
+        """Angles and travels."""
+        return np.array(self.system.systemData.GetODE2Coordinates())
+
+    def put(self, coordinates: Array) -> None:
+        """Set all joints."""
+        self.system.systemData.SetODE2Coordinates(coordinates)
+
+    def drive(self, driven: Array) -> None:
+        """Set the driven joints."""
+        coordinates = self.coordinates
+        coordinates[self.driven] = driven
+        self.put(coordinates)
+
+    def put_as_drawn(self) -> None:
+        """Set all joints as the car is drawn."""
+        coordinates = np.zeros(self.size)
+        for joint in self.linkage.joints:
+            coordinates[self.links.last[joint.child]] = joint.drawn
+        self.put(coordinates)
+
+    def move(self, step: Array) -> None:
+        """Move all joints."""
+        self.put(self.coordinates + step)
+
+    def misses(self) -> tuple[Array, Array]:
+        """What the loops miss, and its Jacobian."""
+        solver, size = self.solver, self.size
+        solver.ComputeAlgebraicEquations(self.system)
+        solver.SetSystemJacobian(self.nothing)
+        solver.ComputeJacobianAE(self.system)
+        jacobian = np.asarray(solver.GetSystemJacobian())
+        return np.asarray(solver.GetSystemResidual())[size:], jacobian[size:, :size]
+
+    def places(self) -> Array:
+        """Where the points are."""
+        return self._read(self.places_of)
+
+    def set_rates(self, rates: Array) -> None:
+        """Set the joints' rates."""
+        self.system.systemData.SetODE2Coordinates_t(rates)
+
+    def apart(self, accelerations: Array) -> Array:
+        """How the sides of the loops accelerate apart."""
+        self.system.systemData.SetODE2Coordinates_tt(accelerations)
+        return np.concatenate([self._read([two])[0] - self._read([one])[0] for one, two in self.ends])
+
+    def moving(self, accelerations: Array) -> tuple[Array, Array]:
+        """Rates and accelerations of the points and of the knuckle's turn."""
+        self.system.systemData.SetODE2Coordinates_tt(accelerations)
+        first, second = (
+            self._read([*points, turn]) for points, turn in zip(self.moves_of, self.turns_of, strict=True)
+        )
+        return first, second
+
+    def _read(self, sensors: Sequence[int | None]) -> Array:
+        """What sensors say, (sensors, 3); of the chassis, where there is none, that it is at rest."""
+        system, still = self.system, np.zeros(3)
+        return np.array([still if s is None else system.GetSensorValues(s) for s in sensors])
+
+    def _sensor(self, tree: int, body: str, place: Array, what: str) -> int | None:
+        """A sensor of a place of a body; of the chassis none."""
+        if body == CHASSIS:
+            return None
+        sensor = items.SensorKinematicTree(
+            objectNumber=tree,
+            linkNumber=self.links.last[body],
+            localPosition=self.links.local(body, place),
+            outputVariableType=getattr(exudyn.OutputVariableType, what),
+            writeToFile=False,
+        )
+        return int(self.system.AddSensor(sensor))
+
+    def _marker(self, tree: int, body: str, place: Array) -> int:
+        if body == CHASSIS:
+            ground = self.system.AddObject(items.ObjectGround())
+            return int(self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=place)))
+        marker = items.MarkerKinematicTreeRigid(
+            objectNumber=tree, linkNumber=self.links.last[body], localPosition=self.links.local(body, place)
+        )
+        return int(self.system.AddMarker(marker))
+
+
+class _Links:
+    """The links of a tree, each with one coordinate, and the frames of the bodies.
+
+    Attributes:
+        last: the last link of each body, on which its points are.
+        kinds, parents, turns, offsets: of each link, as Exudyn takes them.
+    """
+
+    def __init__(self) -> None:
+        self.last: dict[str, int] = {}
+        self.kinds: list[object] = []
+        self.parents: list[int] = []
+        self.turns: list[Array] = []
+        self.offsets: list[Array] = []
+        self._frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
+
+    def local(self, body: str, place: Array) -> Array:
+        """A drawn place of a body in the body's frame."""
+        origin, axes = self._frames[body]
+        return np.asarray(axes.T @ (place - origin))
+
+    def hang(self, joint: Joint, axes: Array, kinds: Sequence[object]) -> None:
+        """Add a body with a link for each kind of joint, its frame's axes as columns."""
+        origin, parent_axes = self._frames[joint.parent]
+        parent = self.last.get(joint.parent, -1)
+        for number, kind in enumerate(kinds):
+            self.turns.append(parent_axes.T @ axes if number == 0 else np.eye(3))
+            self.offsets.append(parent_axes.T @ (joint.on_parent - origin) if number == 0 else np.zeros(3))
+            self.parents.append(parent)
+            self.kinds.append(kind)
+            parent = len(self.kinds) - 1
+        self.last[joint.child] = parent
+        self._frames[joint.child] = (joint.on_child, axes)
+
+
+def _links(linkage: Linkage) -> _Links:
+    links = _Links()
+    steering = linkage.drawn[linkage.kingpin[1]] - linkage.drawn[linkage.kingpin[0]]
+    for joint in linkage.joints:
+        if joint.kind == "ball" and joint.child != TIE_ROD:
+            # The arm's axis first, the steering axis last.
+            links.hang(joint, np.roll(axes_along(joint.axis, steering), 1, axis=1), TURNS)
+        elif joint.kind == "ball":
+            links.hang(joint, axes_along(joint.axis), TURNS[:2])
+        else:
+            kind = TURNS[2] if joint.kind == "hinge" else exudyn.JointType.PrismaticZ
+            links.hang(joint, axes_along(joint.axis), (kind,))
+    return links
+
+
+def _tree(system: Any, links: _Links) -> int:
+    """Links of mass 1, on which nothing depends."""
+    count = len(links.kinds)
+    node = system.AddNode(
+        items.NodeGenericODE2(
+            referenceCoordinates=[0.0] * count,
+            initialCoordinates=[0.0] * count,
+            initialCoordinates_t=[0.0] * count,
+            numberOfODE2Coordinates=count,
+        )
+    )
+    tree = items.ObjectKinematicTree(
+        nodeNumber=node,
+        jointTypes=links.kinds,
+        linkParents=links.parents,
+        jointTransformations=exudyn.Matrix3DList(links.turns),
+        jointOffsets=exudyn.Vector3DList(links.offsets),
+        linkInertiasCOM=exudyn.Matrix3DList([np.eye(3)] * count),
+        linkCOMs=exudyn.Vector3DList([np.zeros(3)] * count),
+        linkMasses=[1.0] * count,
+    )
+    return int(system.AddObject(tree))
