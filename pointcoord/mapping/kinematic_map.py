@@ -488,7 +488,7 @@ class KinematicMap:
         for name, arrays in found.items():
             left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
             numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
-        return MappedPoses(MappingProxyType(numbers))
+        return MappedPoses(numbers)
 
 
 STATES = ("values", "rates", "accelerations")

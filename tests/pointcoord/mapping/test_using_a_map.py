@@ -285,6 +285,15 @@ def test_a_map_gives_every_effect_that_its_scene_asks_for(steered: KinematicMap)
             assert found.numbers[quantity].computed
 
 
+def test_what_a_map_gave_travels_to_another_process(steered: KinematicMap) -> None:
+    found = steered({"arm_angle": 1.0, "rack": [0.0, 1.0]})
+    again = pickle.loads(pickle.dumps(found))
+    assert (again.position["wheel_centre"] == found.position["wheel_centre"]).all()
+    assert not again.position["wheel_centre"].flags.writeable
+    with pytest.raises(AttributeError, match="its quantities: position, velocity"):
+        _ = again.roll
+
+
 def _changed(path: Path, name: str, change: Callable[[Any], Any]) -> None:
     with np.load(path) as file:
         arrays = {key: file[key] for key in file.files}
