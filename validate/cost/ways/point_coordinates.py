@@ -24,7 +24,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout, States
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates, StatesAtInstants, StatesOfChain
-from pointcoord.simulation import Task, pose_tolerance, prepare_task, solve_by_series
+from pointcoord.simulation import Task, finest_tolerance, pose_tolerance, prepare_task, solve_by_series
 from pointcoord.solve.pointwise import Solved, with_rates
 from validate.cost.way import LeftOut, Ready, Setting
 from validate.formulations.protocol import Numbers
@@ -90,7 +90,7 @@ class AtInstants:
 
 
 def prepared(scene: Scene, method: Method, setting: Setting) -> Task:
-    """A scene ready to be solved by a method, to a setting's tolerance if it has one.
+    """A scene ready to be solved by a method, to a setting's tolerance or as finely as rounding allows.
 
     Raises:
         LeftOut: the method does not solve such a suspension.
@@ -100,8 +100,8 @@ def prepared(scene: Scene, method: Method, setting: Setting) -> Task:
     if part.type not in method.suspensions or part.closure not in method.suspensions[part.type].closures:
         raise LeftOut(method.only or f"{method} does not solve a {part.type} with closure {part.closure!r}")
     # A changed copy is checked again, as `simulate` checks its scene.
-    changes = {} if setting.value is None else {"tolerance": setting.value}
-    return prepare_task(scene.model_copy(update=changes), method)
+    tolerance = finest_tolerance(scene) if setting.value is None else setting.value
+    return prepare_task(scene.model_copy(update={"tolerance": tolerance}), method)
 
 
 @dataclass(frozen=True)
