@@ -67,8 +67,8 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     """
     require_scene(scene)
     # Its dictionaries can be written after it was read.
-    task = _prepared(Scene.checked(scene, scene.title or "scene"), method_of(method))
-    solved = _by_series(task) if task.method.by_series else _at_instants(task)
+    task = prepare_task(Scene.checked(scene, scene.title or "scene"), method_of(method))
+    solved = solve_by_series(task) if task.method.by_series else _at_instants(task)
     motion = _motion(task, solved)
     error = solved.states.status.error(motion)
     if error is not None:
@@ -107,7 +107,7 @@ def effort(scene: Scene) -> Effort:
         PointcoordError: what `simulate` raises before a motion begins.
     """
     require_scene(scene)
-    task = _prepared(Scene.checked(scene, scene.title or "scene"), SERIES)
+    task = prepare_task(Scene.checked(scene, scene.title or "scene"), SERIES)
     mechanism = task.readout.mechanism
     chain = _chain(task)
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
@@ -140,8 +140,12 @@ class Task:
     closing: Closing
 
 
-def _prepared(scene: Scene, method: Method) -> Task:
-    """Check everything that can be checked before the motion, and assemble its start."""
+def prepare_task(scene: Scene, method: Method) -> Task:
+    """Check everything that can be checked before the motion, and assemble its start.
+
+    Raises:
+        SceneError, InputOutOfRange, AssemblyError: as `simulate`.
+    """
     mechanism = scene_mechanism(scene, method)
     readout = Readout(
         mechanism=mechanism,
@@ -161,7 +165,7 @@ def _prepared(scene: Scene, method: Method) -> Task:
     return Task(scene, method, readout, functions, start, moved)
 
 
-def _by_series(task: Task) -> SolvedScene:
+def solve_by_series(task: Task) -> SolvedScene:
     """Solve a motion as a chain of power series."""
     notes = _tolerance_notes(task.scene, task.readout.mechanism)
     states = StatesOfChain(task.readout, task.functions, _chain(task), task.scene.time.start, notes)

@@ -14,7 +14,11 @@ from error_recipes import RECIPES
 
 PACKAGES = ("pointcoord", "absolute", "validate")
 # Families, which are caught and never raised themselves.
-BASES = {"pointcoord.errors.PointcoordError", "absolute.errors.AbsoluteError", "absolute.errors.PoseError"}
+BASES = {
+    "pointcoord.errors.PointcoordError",
+    "absolute.errors.AbsoluteError",
+    "absolute.errors.PoseError",
+} | {"validate.relative.errors.RelativeError"}
 
 
 def every_error_class() -> dict[str, type[BaseException]]:

@@ -132,7 +132,7 @@ def _sum_on(
     count = result.shape[1] if members is None else len(members)
     for low in range(0, count, BLOCK):
         here = slice(low, low + BLOCK) if members is None else members[low : low + BLOCK]
-        local = [np.ascontiguousarray(state[here].T) for state in states]
+        local = [np.array(state[here].T, order="C") for state in states]
         local[0] -= centre[:, None]
         for state in local:
             state *= scale[:, None]

@@ -42,6 +42,7 @@ from pointcoord.mapping.flood import flood
 from pointcoord.mapping.jet import Jet
 from pointcoord.mapping.reported_points import moving_points
 from pointcoord.mapping.stored import Stored, read, write
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.results.closing import ALLOWED, closing
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
@@ -68,7 +69,8 @@ class Bound:
     velocity[i] |x_i''| and acceleration[i, j] |x_i'| |x_j'|, x the inputs, over all i and j in both orders.
 
     Attributes:
-        position: of every coordinate of a point, mm.
+        position: of every coordinate of a point, mm; what adding the user's origin rounds is in it, and what
+            adding a chassis' motion rounds, once u of the sum, is not.
         velocity: by input, mm per its unit (rad or mm).
         acceleration: by two inputs, mm per the product of their units.
     """
@@ -78,12 +80,16 @@ class Bound:
     acceleration: Mapping[tuple[str, str], float]
 
     @classmethod
-    def of(cls, off: Jet, half: Array, names: Sequence[str]) -> Bound:
-        """The largest of some patches, from derivatives by parts of their half widths (P, p)."""
+    def of(cls, off: Jet, half: Array, names: Sequence[str], shifted: float) -> Bound:
+        """The largest of some patches, from derivatives by parts of their half widths (P, p).
+
+        Args:
+            shifted: what adding the user's origin rounds, mm.
+        """
         first = (off.first.max(axis=-1) / half).max(axis=0)
         second = (off.second.max(axis=-1) / (half[:, :, None] * half[:, None])).max(axis=0)
         return cls(
-            float(off.value.max()),
+            float(off.value.max()) + shifted,
             {name: float(first[i]) for i, name in enumerate(names)},
             {(a, b): float(second[i, j]) for i, a in enumerate(names) for j, b in enumerate(names)},
         )
@@ -142,7 +148,7 @@ class KinematicMap:
 
     Attributes:
         scene: whose suspension it is, and which effects it gives.
-        tolerance: largest bound of a position on any patch, mm.
+        tolerance: largest bound of a position on any patch, before the user's origin is added, mm.
         stored: its patches.
     """
 
@@ -183,7 +189,14 @@ class KinematicMap:
     @cached_property
     def bound(self) -> Bound:
         """What is proven of all that it covers."""
-        return Bound.of(self.stored.off, self._boxes[1], self.inputs)
+        return Bound.of(self.stored.off, self._boxes[1], self.inputs, self._shifted)
+
+    @cached_property
+    def _shifted(self) -> float:
+        """Rounding of a sum with the mechanism's origin, mm; none where that is zero."""
+        origin = float(np.abs(self.mechanism.origin).max())
+        reach = float(np.abs(self.stored.coefficients).sum(axis=1).max())
+        return 1.01 * UNIT_ROUNDOFF * (origin + reach) if origin > 0.0 else 0.0
 
     @property
     def patches(self) -> tuple[Patch, ...]:
@@ -192,7 +205,7 @@ class KinematicMap:
         found = []
         for place in range(len(half)):
             here = slice(place, place + 1)
-            bound = Bound.of(Jet(*(part[here] for part in off.parts)), half[here], self.inputs)
+            bound = Bound.of(Jet(*(part[here] for part in off.parts)), half[here], self.inputs, self._shifted)
             ranges = self._ranges_of(self.stored.low[place], self.stored.high[place])
             condition, rest = self.stored.condition[place], self.stored.contraction[place]
             found.append(Patch(ranges, bound, float(condition), float(rest)))
@@ -475,7 +488,7 @@ class KinematicMap:
         for name, arrays in found.items():
             left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
             numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
-        return MappedPoses(MappingProxyType(numbers))
+        return MappedPoses(numbers)
 
 
 STATES = ("values", "rates", "accelerations")
@@ -500,7 +513,8 @@ def kinematic_map(
         scene: whose suspension; the laws of its inputs and its instants are not looked at.
         ranges: the lower and the upper end of each input that drives it, rad or mm; one whose ends are the
             same is held there. What moves the chassis has none: it is added, whatever it is.
-        tolerance: largest proven bound of a position, mm, on every patch.
+        tolerance: largest proven bound of a position, mm, on every patch, in the chassis' frame and near the
+            mechanism: what a far origin rounds comes to it.
         halvings: how often the range of an input is halved at most, towards places where assemblies end.
     Returns:
         A map of all that could be reached and proven; the rest is in its `uncovered`.

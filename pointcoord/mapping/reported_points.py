@@ -38,8 +38,8 @@ def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int)
         series: of all coordinates, shape (P, powers, size).
         error: of the unknown coordinates and of their derivatives, (P, unknowns), in the mechanism's units.
     Returns:
-        Coefficients, shape (P, powers, 3 points), mm from the mechanism's origin, and how far a sum of them,
-        with that origin added, is off at most anywhere on its patch, (P, 3 points), mm.
+        Coefficients, shape (P, powers, 3 points), mm from the mechanism's origin, and how far a sum of them
+        is off at most anywhere on its patch, (P, 3 points), mm.
     """
     topology, layout, inputs = mechanism.topology, mechanism.layout, error.first.shape[1]
     every = powers(inputs, order)
@@ -54,14 +54,13 @@ def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int)
     off = parts[0][1]
     for _, jet in parts[1:]:
         off = off.joined(jet)
-    unit, origin = float(mechanism.unit), np.tile(np.abs(mechanism.origin), len(parts))
+    unit = float(mechanism.unit)
     coefficients = coefficients * unit
     later = Jet.of(coefficients[:, 1:], every.exponents[1:])
     count = every.count + 8 * order + 2 * inputs + 8
     summed = later.scaled(count * UNIT_ROUNDOFF)
-    # Two more sums: with the first term, and with the origin unless that is zero.
-    local = np.abs(coefficients[:, 0]) + later.value
-    last = Jet.constant(UNIT_ROUNDOFF * (local + np.where(origin > 0.0, origin + local, 0.0)), inputs)
+    # One more sum, with the first term.
+    last = Jet.constant(UNIT_ROUNDOFF * (np.abs(coefficients[:, 0]) + later.value), inputs)
     return coefficients, (off.scaled(unit) + summed + last).scaled(INFLATION)
 
 

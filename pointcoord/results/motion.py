@@ -91,7 +91,7 @@ class Motion(Samples):
 
         >>> from pointcoord import Scene, simulate
         >>> motion = simulate(Scene.load("steer"))
-        >>> motion.at([0.5, 1.0]).position["wheel_centre"].shape
+        >>> motion.at([0.1, 0.2]).position["wheel_centre"].shape
         (2, 3)
         """
         self._require_dense()

@@ -32,6 +32,7 @@ class Table:
         places: by quantity and name the rows of every number, in the order of results.
         computed: the effects that compute their numbers from states.
         height: how many rows there are.
+        reported: the derivatives of all points that are reported.
     """
 
     moving: tuple[State, ...]
@@ -40,6 +41,7 @@ class Table:
     places: Mapping[str, Mapping[str, slice]]
     computed: tuple[Effect, ...]
     height: int
+    reported: tuple[int, ...]
 
     @classmethod
     def of(cls, plan: Plan, topology: Topology, highest: Mapping[str, int]) -> Table:
@@ -71,7 +73,7 @@ class Table:
                 for name in every if effect.names is None else effect.names:
                     places[quantity.name][name] = slice(height, height + rows)
                     height += rows
-        return cls(moving, still, spare, places, computed, height)
+        return cls(moving, still, spare, places, computed, height, tuple(sorted(reported)))
 
     def states_of(self, derivative: int) -> tuple[slice, slice]:
         """The rows of a reported derivative of all points: of those that are solved for, of the chassis."""
@@ -81,11 +83,6 @@ class Table:
             found.append(slice(before + 3 * own[0], before + 3 * own[-1] + 3) if own else slice(0, 0))
             before += 3 * len(states)
         return found[0], found[1]
-
-    @property
-    def reported(self) -> tuple[int, ...]:
-        """The derivatives of all points that are reported."""
-        return tuple(dict.fromkeys(d for d, _ in self.moving))
 
     def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:
         """A table's numbers by quantity and name, of points and bodies (..., N, 3), of the car (..., N).

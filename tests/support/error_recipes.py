@@ -40,6 +40,8 @@ from validate.reference.candidates import choices_of_table
 from validate.reference.certificate import certify, refine
 from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
+from validate.relative.follow import follow as follow_tree
+from validate.relative.model import build
 from validate.studies.chunk_store import Store
 
 BOUNCE = pointcoord.Scene.load("bounce")
@@ -84,6 +86,18 @@ def cancelling(power_of_two: int) -> pointcoord.Scene:
 
 def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
     return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+
+
+def followed(angle: float) -> object:
+    """The paper's car in relative coordinates, its arm at an angle."""
+    model = build("macpherson", TABLE, closure="collinear")
+    return model.poses({"arm_angle": [angle], "rack": [0.0]}, [0.0])
+
+
+def followed_in_the_tree() -> object:
+    """The same car's tree, led from its drawing to beyond a dead point."""
+    model = build("macpherson", TABLE, closure="collinear")
+    return follow_tree(model.tree, model.home, np.array([[1.6, 0.0], [3.0, 0.0]]), np.arange(2.0), 1e-14)
 
 
 def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
@@ -219,6 +233,37 @@ RECIPES: dict[str, Recipe] = {
             "corrections": bool,
         },
     ),
+    "validate.relative.errors.HardpointsError": Recipe(
+        lambda *_: build("macpherson", {**TABLE, "lower_arm_rear": TABLE["lower_arm_front"]}),
+        ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
+        {"name": "lower_arm_front", "allowed": bool},
+    ),
+    "validate.relative.errors.InputError": Recipe(
+        lambda *_: followed(3.5),
+        ("input 'arm_angle' is 3.5 at instant number 0", "allowed: an angle from 0 to pi"),
+        {"name": "arm_angle", "value": 3.5, "instant": 0},
+    ),
+    "validate.relative.errors.PoseError": Recipe(
+        lambda *_: followed(3.0),
+        (
+            "instant number 0 cannot be reached",
+            "wanted arm_angle = 3",
+            "reached arm_angle = 2.6",
+            "try inputs",
+        ),
+        {
+            "instant": 0,
+            "wanted": lambda inputs: inputs["arm_angle"] == 3.0,
+            "reached": lambda inputs: 2.6 < inputs["arm_angle"] < 2.7,
+            "condition": lambda condition: condition > 1e3,
+            "partial": None,
+        },
+    ),
+    "validate.relative.follow.Blocked": Recipe(
+        lambda *_: followed_in_the_tree(),
+        ("cannot be reached", "the lower arm is at a dead point"),
+        {"instant": 1, "here": lambda here: 2.6 < here[0] < 2.7, "solved": lambda poses: len(poses.q) == 1},
+    ),
     "absolute.errors.DescriptionError": Recipe(
         lambda *_: solved({"strut_top": (1.0, float("nan"), 2.0)}),
         ("point 'strut_top'", "nan", "three finite numbers"),
@@ -328,7 +373,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
-        ("motion.xlsx", "no known ending", "allowed: .csv, .npz"),
+        ("motion.xlsx", "no known ending", "allowed: .csv, .npz, .parquet"),
         {"target": "motion.xlsx"},
     ),
     "validate.hard.catalogue.UnknownCase": Recipe(

@@ -37,11 +37,15 @@ class Planted:
     each: float = 1e-3
     exponent: float = 1.0
     fixed: float = 0.0
+    given: float = 0.0
     runs: list[int] = field(default_factory=list)
 
     @property
     def smallest(self) -> Planted:
         return replace(self, size=1)
+
+    def give(self) -> None:
+        self.clock.work(self.given)
 
     def prepare(self) -> Planted:
         self.runs.append(self.size)
@@ -86,6 +90,9 @@ class Ends:
     @property
     def smallest(self) -> Ends:
         return replace(self, smallest_one=True)
+
+    def give(self) -> None:
+        pass
 
     def prepare(self) -> Ends:
         return self

@@ -49,7 +49,7 @@ class Toy:
 
     name: str
     clock: FakeClock = field(default_factory=FakeClock)
-    costs: Mapping[str, int] = field(default_factory=dict)
+    costs: Mapping[str, int] = field(default_factory=lambda: {"set-up": 20_000_000})
     settings: tuple[Setting, ...] = (Setting(),)
     spoil: Callable[[dict[str, dict[str, Array]]], object] = nothing
     before: Callable[[str], object] = nothing

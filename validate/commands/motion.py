@@ -8,11 +8,20 @@ from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, S
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import add_quiet, add_scene, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import (
+    UsageError,
+    add_quiet,
+    add_scene,
+    load_scene,
+    name_of,
+    place_of_result,
+    told_as,
+)
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.motion_tables import ENDINGS, write_csv, write_motion
+from validate.output.motion_tables import ENDINGS, require_writer, write_csv, write_motion
 from validate.paper.printed import PRINTED
+from validate.plain_text import shown
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 
@@ -37,6 +46,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
     )
     parser.add_argument(
+        "--instants",
+        metavar="N",
+        type=_how_many,
+        help="as many rows as this, evenly over the scene's time, instead of the scene's own samples; any "
+        "number of them takes no more memory",
+    )
+    parser.add_argument(
         "--method",
         choices=tuple(BY_NAME),
         default="series",
@@ -47,26 +63,39 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.set_defaults(run=run)
 
 
+def _how_many(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"{shown(text)} is no number of instants; allowed: 1 or more")
+    return int(text)
+
+
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the scene and write its motion, or the part of it that could be solved.
 
     Raises:
         UsageError, UnknownEnding: the file has no name, or none that says how to write it.
+        MissingPackage: Parquet needs pyarrow.
         SceneError: the scene is wrong.
         OutputError: the motion cannot be written.
     """
     console.quiet = options.quiet
     target = place_of_result(options, ENDINGS, console)
+    if target is not None:
+        require_writer(target)
+    if options.instants is not None and not BY_NAME[options.method].by_series:
+        raise UsageError(
+            f"--instants needs the method series; {options.method} solves at the scene's own samples only"
+        )
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:
         with told_as(name):
             motion = simulate(scene, BY_NAME[options.method])
         _comment(scene, name, motion, console)
-        _write(target, motion, console)
+        _write(target, motion, options.instants, console)
     except SceneError:
         raise
     except PointcoordError as error:
-        console.complain(f"{name}: {error}{_advice(error)}{_kept(target, error, console)}")
+        console.complain(f"{name}: {error}{_advice(error)}{_kept(target, error, options.instants, console)}")
         return ExitStatus.NO_VERDICT
     return ExitStatus.AGREE
 
@@ -89,24 +118,25 @@ def _advice(error: PointcoordError) -> str:
     return " (--method newton)" if isinstance(error, MotionTooLong | MotionTooRough) else ""
 
 
-def _kept(target: str | None, error: PointcoordError, console: Console) -> str:
+def _kept(target: str | None, error: PointcoordError, instants: int | None, console: Console) -> str:
     """Write what was solved before the motion stopped, and say where it is and how far it goes."""
     partial: Motion | None = error.partial
     if partial is None:
         return "; nothing is written"
-    _write(target, partial, console)
-    instants = f"{len(partial.times)} instants" if len(partial.times) > 1 else "one instant"
+    _write(target, partial, instants, console)
+    count = instants or len(partial.times)
+    rows = f"{count} instants" if count > 1 else "one instant"
     moved = f"; {partial.closing.words}" if partial.closing.noticeable else ""
     return (
-        f"{moved}; what was solved, {instants} up to t = {partial.times[-1]:.10g} s, is "
+        f"{moved}; what was solved, {rows} up to t = {partial.times[-1]:.10g} s, is "
         f"{f'on {STANDARD_OUTPUT}' if target is None else f'in {target}'}"
     )
 
 
-def _write(target: str | None, motion: Motion, console: Console) -> None:
+def _write(target: str | None, motion: Motion, instants: int | None, console: Console) -> None:
     if target is None:
-        write_csv(console, motion)
+        write_csv(console, motion, instants)
         console.flush()
     else:
-        write_motion(target, motion)
+        write_motion(target, motion, instants)
         console.written = [f"{target} holds the motion"]

@@ -21,16 +21,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import DIGITS, inputs_at, reference_instant
 from validate.cost.row import QuantityError
+from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Numbers, shape_of
 from validate.reference import Instant
+
+try:
+    from mpmath import mp, mpf
+except ModuleNotFoundError as error:
+    raise MissingPackage("validate.cost.errors", error) from None
 
 Array = NDArray[np.float64]
 

@@ -80,7 +80,7 @@ class Reach:
 
     Attributes:
         accuracy: that was asked for, in the quantity's unit.
-        setting: the cheapest that is accurate enough; None where none is.
+        setting: the cheapest that is accurate enough, value: the number that it dials; None where none is.
         time: of that setting, for one configuration, s.
         floor: the smallest of the largest errors of all settings, None if no setting gave the quantity.
         reason: why there is no floor.
@@ -94,6 +94,7 @@ class Reach:
     time: Time | None
     floor: float | None
     reason: str = ""
+    value: float | None = None
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,7 @@ def words_of(quantity: str) -> str:
 
 def reach(rows: Sequence[Row], quantity: str, accuracy: float) -> Reach:
     """How one way comes to an accuracy of one scene, by its rows."""
-    best: tuple[Time, str] | None = None
+    best: tuple[Time, Row] | None = None
     floor: float | None = None
     for row in rows:
         error = row.errors.get(quantity) if row.status == "measured" else None
@@ -172,16 +173,17 @@ def reach(rows: Sequence[Row], quantity: str, accuracy: float) -> Reach:
         floor = error.largest if floor is None else min(floor, error.largest)
         time = a_configuration(row, phases(quantity))
         if time is not None and proven(error) <= accuracy and (best is None or time.median < best[0].median):
-            best = (time, row.setting)
+            best = (time, row)
     return Reach(
         rows[0].scene,
         quantity,
         accuracy,
         rows[0].way,
-        None if best is None else best[1],
+        None if best is None else best[1].setting,
         None if best is None else best[0],
         floor,
         "" if floor is not None else _reason(rows, quantity),
+        None if best is None else best[1].value,
     )
 
 

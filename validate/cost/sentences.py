@@ -276,9 +276,9 @@ def _count(instants: float) -> str:
 
 
 def dial_sentences(dials: Iterable[Dial]) -> list[str]:
-    """What a tenth of the tolerance costs, for each scene and way."""
+    """What a tenth of the tolerance costs, for each scene and way of ours."""
     lines = []
-    for dial in dials:
+    for dial in (dial for dial in dials if dial.way in OURS):
         coarse, fine = dial.settings
         ratio = dial.fine.median / dial.coarse.median
         start = f"{dial.scene}: {dial.way} at {fine} takes {digits(ratio)} times as long as at {coarse}"

@@ -99,9 +99,10 @@ def full_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
     return [*tables, *growth_tables(found), *loading_tables(rows)]
 
 
-def name_of(row: Row) -> str:
-    """A way with its setting; `*` says that one solve serves any instant."""
-    return f"{row.way}{'*' if row.dense else ''} {row.setting}".strip()
+def name_of(row: Row, short: bool = False) -> str:
+    """A way with its setting, or with the number that is dialled; `*`: one solve serves any instant."""
+    setting = power(row.value) if short and row.value else row.setting
+    return f"{row.way}{'*' if row.dense else ''} {setting}".strip()
 
 
 def reach_table(here: Sequence[Row], quantity: str) -> Table:
@@ -133,7 +134,8 @@ def reach_table(here: Sequence[Row], quantity: str) -> Table:
 def _reach_cell(one: Reach) -> str:
     if one.time is None:
         return "not reached"
-    return f"{duration(one.time.median)}" + (f" ({one.setting})" if one.setting else "")
+    setting = power(one.value) if one.value else one.setting
+    return f"{duration(one.time.median)}" + (f" ({setting})" if setting else "")
 
 
 def _absence(rows: Sequence[Row], quantity: str) -> str:
@@ -152,7 +154,7 @@ def scene_table(here: Sequence[Row]) -> Table:
     quantities = [q for q in quantities_of(here) if q in SHORT]
     lines = [
         (
-            name_of(row),
+            name_of(row, short=True),
             *(_error_words(row.errors[q].largest) if q in row.errors else "-" for q in quantities),
             *(_cells(row, phase)[0] for phase in PHASES),
             _spread(row),
@@ -168,7 +170,8 @@ def scene_table(here: Sequence[Row]) -> Table:
         head,
         tuple(lines),
         (
-            "*: one solve serves any instant; first: all four phases of the first run; "
+            "beside a way: the number that is dialled; *: one solve serves any instant; "
+            "first: all four phases of the first run; "
             "+-%: half the quartile range of solve",
             *((f"{further} further settings: --csv, --json or --report",) if further else ()),
             *radius_notes(here),
@@ -258,47 +261,44 @@ def radius_notes(here: Sequence[Row]) -> list[str]:
 
 def absences(here: Sequence[Row]) -> list[str]:
     """Failures, omissions, what was measured otherwise, and what is not given: each reason with its ways."""
-    reasons: dict[str, list[str]] = {}
+    reasons: dict[str, dict[str, list[Row]]] = {}
     for row in here:
+        told = [f"{words_of(quantity)} not given: {reason}" for quantity, reason in row.not_given.items()]
         if row.status != "measured":
-            reasons.setdefault(f"{row.status}: {row.reason or 'without a reason'}", []).append(name_of(row))
+            told.append(f"{row.status}: {row.reason or 'without a reason'}")
         elif row.reason:
-            reasons.setdefault(row.reason, []).append(name_of(row))
-        for quantity, reason in row.not_given.items():
-            told = f"{words_of(quantity)} not given: {reason}"
-            if row.way not in reasons.setdefault(told, []):
-                reasons[told].append(row.way)
-    return [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
+            told.append(row.reason)
+        for reason in told:
+            reasons.setdefault(reason, {}).setdefault(row.way, []).append(row)
+    lines = []
+    for reason, ways in reasons.items():
+        names = []
+        for way, rows in ways.items():
+            every = len(rows) == sum(row.way == way for row in here)
+            names += [way] if every else [name_of(row) for row in rows]
+        lines.append(f"{', '.join(names)}: {reason}")
+    return lines
 
 
 def growth_tables(found: Findings) -> list[Table]:
-    """Fitted exponents of time and memory, a table for each that is varied."""
+    """Fitted exponents of time and memory, a table for each thing that is varied and each scene."""
     tables = []
-    for against in dict.fromkeys(growth.against for growth in found.growths):
+    for against, scene in dict.fromkeys((growth.against, growth.scene) for growth in found.growths):
         lines, notes = [], []
-        for one in (g for g in found.growths if g.against == against):
+        for one in (g for g in found.growths if (g.against, g.scene) == (against, scene)):
             measure = duration if one.of == "time" else bytes_words
-            name = f"{one.scene}: {one.way} {one.setting}".strip()
+            name = f"{one.way} {one.setting}".strip()
             if one.points:
                 size, value = one.points[-1]
-                range_words = f"{one.fit.smallest:g} to {one.fit.largest:g}" if one.fit else "-"
-                lines.append(
-                    (
-                        name,
-                        one.of,
-                        growth_words(one),
-                        range_words,
-                        f"{size:g}",
-                        measure(value),
-                        measure(value / size),
-                    )
-                )
+                sizes = f"{one.fit.smallest:g} to {one.fit.largest:g}" if one.fit else "-"
+                each = measure(value / size)
+                lines.append((name, one.of, growth_words(one), sizes, f"{size:g}", measure(value), each))
             if one.of == "time":
                 notes += [f"{name}, {size:g} {against}: {reason}" for size, reason in one.stopped]
         tables.append(
             Table(
-                f"Growth in {against}: value = factor x size^exponent, fitted to the largest sizes",
-                ("scene and way", "of", "exponent", "fitted from", "largest", "takes", "each"),
+                f"Growth in {against} of {scene}: value = factor x size^exponent, of the largest sizes",
+                ("way and setting", "of", "exponent", "fitted from", "largest", "takes", "each"),
                 tuple(lines),
                 tuple(notes),
             )

@@ -1,21 +1,36 @@
-"""A motion as a table of named columns: CSV and NPZ."""
+"""A motion as a table of named columns: CSV, NPZ and Parquet, written block by block.
+
+However many instants there are, no more memory is taken than for a block of them.
+"""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
+from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import BinaryIO, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
-from pointcoord import Motion
+from pointcoord import Motion, Samples
 from pointcoord.effects.registry import QUANTITIES
+from validate.extras import MissingPackage
 from validate.output.files import require_known_ending, write_whole
 
 Array = NDArray[np.float64]
+
+# Instants of a block, which are computed together: every kind of file has the same bits. As text, its numbers
+# as objects of Python take some 10 MB.
+ROWS = 2048
+# Blocks of a group of rows of Parquet, which is compressed by itself: more make smaller files.
+GROUP = 16
+# Numbers of a column that are copied at a time.
+PIECE = 2**19
 
 
 class Writable(Protocol):
@@ -26,10 +41,10 @@ class Writable(Protocol):
         ...
 
 
-def columns(motion: Motion) -> Iterator[tuple[str, Array]]:
-    """Every computed number of a motion as a named column with its unit."""
-    yield "time [s]", motion.times
-    for quantity, channel in motion.numbers.items():
+def columns(samples: Samples) -> Iterator[tuple[str, Array]]:
+    """Every computed number of samples as a named column with its unit."""
+    yield "time [s]", samples.times
+    for quantity, channel in samples.numbers.items():
         unit = QUANTITIES[quantity].unit
         for name, array in channel.items():
             if unit == "rad":
@@ -42,35 +57,135 @@ def columns(motion: Motion) -> Iterator[tuple[str, Array]]:
                     yield f"{quantity}.{name}.{axis} [{unit}]", array[:, i]
 
 
-def write_csv(stream: Writable, motion: Motion) -> None:
-    """Write a motion as CSV; reading a number gives the same bits."""
-    named = dict(columns(motion))
-    writer = csv.writer(stream)
-    writer.writerow(named)
-    writer.writerows(zip(*(map(repr, column.tolist()) for column in named.values()), strict=True))
+def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> None:
+    """Write a motion as CSV; reading a number gives the same bits.
+
+    Args:
+        instants: how many, evenly over the motion; its own if not given.
+    """
+    named = False
+    for block in motion.blocks(instants, ROWS):
+        each = dict(columns(block))
+        if not named:
+            stream.write(f"{','.join(each)}\r\n")
+            named = True
+        stream.write(_text(np.stack(list(each.values()), axis=-1)))
 
 
-def _csv_file(stream: BinaryIO, motion: Motion) -> None:
-    text = io.TextIOWrapper(stream, encoding="ascii", newline="")
-    write_csv(text, motion)
-    # The stream stays open for the one who opened it.
-    text.detach()
+def _text(rows: Array) -> str:
+    """Lines of numbers, each in as few digits as give its bits back."""
+    # Python's own texts of numbers take four times as long.
+    text = to_json(rows.tolist(), inf_nan_mode="constants")
+    text = text.removeprefix(b"[[").removesuffix(b"]]").replace(b"],[", b"\r\n")
+    if not np.isfinite(rows).all():
+        text = text.replace(b"NaN", b"nan").replace(b"Infinity", b"inf")
+    return f"{text.decode('ascii')}\r\n"
 
 
-def _npz_file(stream: BinaryIO, motion: Motion) -> None:
-    arrays: dict[str, Any] = dict(columns(motion))
-    np.savez(stream, **arrays)
+class _AsText:
+    """A binary stream that takes text of ASCII."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str, /) -> None:
+        self._stream.write(text.encode("ascii"))
 
 
-ENDINGS: dict[str, Callable[[BinaryIO, Motion], None]] = {".csv": _csv_file, ".npz": _npz_file}
+def _csv_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
+    write_csv(_AsText(stream), motion, instants)
 
 
-def write_motion(target: str, motion: Motion) -> None:
-    """Write a motion by the ending of the target.
+def _npz_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
+    """One member for each column; columns of a motion that is not there as a whole are on disk first."""
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
+        if instants is None:
+            for name, column in columns(motion):
+                pieces = (column[low : low + PIECE] for low in range(0, len(column), PIECE))
+                _npz_member(archive, name, len(column), pieces)
+            return
+        with tempfile.TemporaryFile() as gathered:
+            names: tuple[str, ...] = ()
+            first = 0
+            for block in motion.blocks(instants, ROWS):
+                each = dict(columns(block))
+                names = tuple(each)
+                for i, column in enumerate(each.values()):
+                    gathered.seek(8 * (i * instants + first))
+                    gathered.write(column.tobytes())
+                first += len(block.times)
+            gathered.seek(0)
+            for name in names:
+                _npz_member(archive, name, instants, _pieces(gathered, instants))
+
+
+def _npz_member(archive: zipfile.ZipFile, name: str, count: int, pieces: Iterator[Array]) -> None:
+    # As `numpy.savez` writes it, which would want all columns at once.
+    with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
+        header = {"descr": "<f8", "fortran_order": False, "shape": (count,)}
+        np.lib.format.write_array_header_1_0(member, header)
+        for piece in pieces:
+            member.write(piece.astype("<f8", copy=False).tobytes())
+
+
+def _pieces(gathered: BinaryIO, count: int) -> Iterator[Array]:
+    left = count
+    while left:
+        taken = min(left, PIECE)
+        yield np.frombuffer(gathered.read(8 * taken))
+        left -= taken
+
+
+def _parquet_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
+    """Columns of doubles with the names of the CSV."""
+    import pyarrow
+    import pyarrow.parquet
+
+    writer = None
+    blocks = (dict(columns(block)) for block in motion.blocks(instants, ROWS))
+    try:
+        while group := tuple(islice(blocks, GROUP)):
+            table = pyarrow.table({n: np.concatenate([block[n] for block in group]) for n in group[0]})
+            if writer is None:
+                writer = pyarrow.parquet.ParquetWriter(stream, table.schema, use_dictionary=False)
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
+
+
+ENDINGS: Mapping[str, Callable[[BinaryIO, Motion, int | None], None]] = {
+    ".csv": _csv_file,
+    ".npz": _npz_file,
+    ".parquet": _parquet_file,
+}
+
+
+def require_writer(target: str) -> None:
+    """Refuse a file that needs a package which is not there, before anything is solved.
 
     Raises:
-        UnknownEnding: the ending is another one than .csv or .npz.
+        MissingPackage: Parquet needs pyarrow.
+    """
+    if Path(target).suffix == ".parquet":
+        try:
+            import_module("pyarrow.parquet")
+        except ImportError as error:
+            raise MissingPackage(".parquet", error, "parquet") from None
+
+
+def write_motion(target: str, motion: Motion, instants: int | None = None) -> None:
+    """Write a motion by the ending of the target.
+
+    Args:
+        instants: how many, evenly over the motion; its own if not given.
+    Raises:
+        UnknownEnding: the ending is none of `ENDINGS`.
+        MissingPackage: Parquet needs pyarrow.
         OutputError: the file cannot be written; what was there is whole.
+        NotComputed: instants are given, and the method knows the motion at its own only.
     """
     require_known_ending(target, ENDINGS)
-    write_whole(target, lambda stream: ENDINGS[Path(target).suffix.lower()](stream, motion))
+    require_writer(target)
+    write = ENDINGS[Path(target).suffix]
+    write_whole(target, lambda stream: write(stream, motion, instants))

@@ -16,11 +16,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
+from validate.extras import MissingPackage
 from validate.relative.linkage import CHASSIS, Coincide, Joint, Linkage, Place
+
+try:
+    import pinocchio
+except ModuleNotFoundError as error:
+    raise MissingPackage("relative", error) from None
 
 Array = NDArray[np.float64]
 

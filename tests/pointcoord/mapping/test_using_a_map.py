@@ -114,6 +114,16 @@ def test_one_pose_and_many_are_summed_alike(steered: KinematicMap) -> None:
         assert np.abs(steered.evaluate(values[i])[0] - many[0, i]).max() <= 100 * 2.0**-52 * 1e3
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_what_is_given_stays_as_it_is(steered: KinematicMap, count: int) -> None:
+    values, speeds = np.full((2, count, 2), 1.0)
+    steered.evaluate(values, speeds)
+    assert (values == 1.0).all()
+    assert (speeds == 1.0).all()
+    held = np.broadcast_to(1.0, (count, 2))
+    assert (steered.evaluate(held, held) == steered.evaluate(values, speeds)).all()
+
+
 def test_each_patch_is_within_the_tolerance_and_they_cover_the_range(steered: KinematicMap) -> None:
     assert len(steered.patches) > 1
     assert all(patch.bound.position <= steered.tolerance == 1e-9 for patch in steered.patches)
@@ -134,6 +144,22 @@ def test_a_finer_tolerance_is_kept_too(car: SampleCar, make_scene: MakeScene) ->
     values = np.random.default_rng(2).uniform(low, high, (200, 2))
     apart = np.abs(coarse.evaluate(values) - fine.evaluate(values)).max()
     assert 1e-11 < apart <= coarse.bound.position + fine.bound.position
+
+
+def test_a_car_that_is_drawn_far_away_is_mapped_as_well_near_itself(steered: KinematicMap) -> None:
+    content = steered.scene.model_dump(exclude_none=True)
+    far = (2.0**30, -(2.0**29), 2.0**31)
+    points = content["mechanism"]["points"]
+    content["mechanism"]["points"] = {
+        name: tuple(c + shift for c, shift in zip(place, far, strict=True)) for name, place in points.items()
+    }
+    map = kinematic_map(Scene.from_mapping(content), RANGES)
+    # Whole numbers of mm below 2^53 are moved without rounding, so what is solved is the same.
+    assert (map.evaluate([1.01, 2.0]) == steered.evaluate([1.01, 2.0]))[0].all()
+    near, moved = (one({"arm_angle": 1.01, "rack": 2.0}).position["wheel_centre"] for one in (steered, map))
+    assert (np.abs(moved - far - near) <= map.bound.position + steered.bound.position).all()
+    # A number near 2^31 is rounded by up to 2^-22, and the bound says so.
+    assert 2.0**-23 <= map.bound.position <= 2.0**-21
 
 
 def test_an_input_can_be_held(steered: KinematicMap) -> None:
@@ -257,6 +283,15 @@ def test_a_map_gives_every_effect_that_its_scene_asks_for(steered: KinematicMap)
         for quantity, names in EFFECTS[name].gives_numbers.items():
             assert set(names or ()) <= set(found.numbers[quantity])
             assert found.numbers[quantity].computed
+
+
+def test_what_a_map_gave_travels_to_another_process(steered: KinematicMap) -> None:
+    found = steered({"arm_angle": 1.0, "rack": [0.0, 1.0]})
+    again = pickle.loads(pickle.dumps(found))
+    assert (again.position["wheel_centre"] == found.position["wheel_centre"]).all()
+    assert not again.position["wheel_centre"].flags.writeable
+    with pytest.raises(AttributeError, match="its quantities: position, velocity"):
+        _ = again.roll
 
 
 def _changed(path: Path, name: str, change: Callable[[Any], Any]) -> None:

@@ -23,6 +23,7 @@ from pointcoord.numerics.newton import newton_refine, what_is_left
 from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve import taylor
 from pointcoord.solve.assembly import Pose, assemble
+from validate.cars.random_scenes import random_scene
 from validate.cars.strategies import scenes
 
 Array = NDArray[np.float64]
@@ -31,6 +32,7 @@ FINEST = 1e-13
 few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 8))
 # From 1e-2 mm to 1e-12 mm.
 tolerances = st.integers(2, 12).map(lambda digits: 10.0**-digits)
+Make = Callable[..., Scene]
 by_method = pytest.mark.parametrize("method", METHODS)
 by_scene = pytest.mark.parametrize("scene", [Scene.load(n) for n in built_in_scenes()], ids=built_in_scenes())
 
@@ -297,7 +299,20 @@ def test_a_segment_that_is_cut_too_late_is_caught_by_newton_and_halved(
     assert off(simulate(scene), exact, "position") <= 1e-6
 
 
-Make = Callable[..., Scene]
+@pytest.mark.parametrize("number", [389, 509, 886])
+def test_terms_of_many_orders_stay_numbers_before_a_lock(number: int) -> None:
+    # The first unit of time is the whole duration, 1e7 times as long as a segment just before the lock: to
+    # the power of an order of 40 that is more than a double holds, which warned of an overflow.
+    with pytest.raises(AssemblyError, match="cannot pass a singular pose"):
+        simulate(asking(random_scene(number).scene, FINEST))
+
+
+@pytest.mark.parametrize("duration", [1e-12, 1e12])
+def test_rates_that_are_no_numbers_at_high_orders_limit_the_order(make_scene: Make, duration: float) -> None:
+    law = (1.5, 0.3 / duration, 0.3 / duration**2)
+    motion = simulate(make_scene(law, (0.0, 20.0 / duration), stop=duration, tolerance=FINEST))
+    same = simulate(make_scene((1.5, 0.3, 0.3), (0.0, 20.0), stop=1.0, tolerance=FINEST))
+    assert off(motion, same, "position") <= FINEST + rounding(same)
 
 
 @by_method

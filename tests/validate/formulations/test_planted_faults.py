@@ -352,14 +352,14 @@ def _scaled(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _off_in_pointcoord(quantity: str) -> Plant:
     """What pointcoord reports, before it proves its own bounds of it."""
-    samples = pointcoord.results.readout.Readout.samples
+    named = pointcoord.results.readout.Readout.named
 
     def wrong(*args: object) -> Samples:
-        right = samples(*args)
+        right = named(*args)
         channel = right.numbers[quantity]
         return replace(right, numbers={**right.numbers, quantity: channel.with_arrays(_scaled(channel))})
 
-    return lambda patch: patch.setattr(pointcoord.results.readout.Readout, "samples", wrong)
+    return lambda patch: patch.setattr(pointcoord.results.readout.Readout, "named", wrong)
 
 
 def _off_in_absolute(quantity: str) -> Plant:

@@ -49,7 +49,7 @@ def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest
     (case,) = data["cases"]
     assert case["name"] == "at-rest"
     assert len(case["trials"]) == len(case["values"]) == 13
-    assert all(len(trial["answers"]) == 3 for trial in case["trials"])
+    assert all(len(trial["answers"]) == 4 for trial in case["trials"])
     assert data["counts"]["absolute"] == {"right": 13}
 
 

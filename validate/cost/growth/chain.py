@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from mpmath import mp, mpf
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.constraint import Constraint
@@ -30,6 +29,12 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.time_functions import Sine
+from validate.extras import MissingPackage
+
+try:
+    from mpmath import mp, mpf
+except ModuleNotFoundError as error:
+    raise MissingPackage("validate.cost.growth.chain", error) from None
 
 Array = NDArray[np.float64]
 

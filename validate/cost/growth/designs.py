@@ -88,6 +88,10 @@ class DesignsInALoop:
         """One design."""
         return replace(self, size=1)
 
+    def give(self) -> None:
+        """Make the designs."""
+        _kept_designs(self.scene, self.size)
+
     def prepare(self) -> LoopRun:
         """Each design's set-up."""
         designs = _kept_designs(self.scene, self.size)
@@ -147,6 +151,10 @@ class DesignsTogether:
     def smallest(self) -> DesignsTogether:
         """One design."""
         return replace(self, size=1)
+
+    def give(self) -> None:
+        """Make the designs."""
+        _kept_designs(self.scene, self.size)
 
     def prepare(self) -> BatchRun:
         """Mechanisms put together and their drawings closed."""
@@ -241,7 +249,7 @@ def _of_text(text: str, count: int) -> dict[str, Array]:
 
 
 def _kept_designs(scene: Scene, count: int) -> dict[str, Array]:
-    """Designs that are made once: making them is no part of solving them."""
+    """The same, made once: making them is no part of solving them."""
     return _of_text(scene.model_dump_json(), count)
 
 

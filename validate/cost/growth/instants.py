@@ -36,6 +36,9 @@ class ManyInstants:
         """Two instants."""
         return replace(self, size=2)
 
+    def give(self) -> None:
+        """Nothing: a grid of instants costs less than anything that is done with it."""
+
     def prepare(self) -> ReadyRun:
         """The way's set-up."""
         return ReadyRun(self.way.prepare(self.scene, self.setting), study_instants(self.scene, self.size))

@@ -68,8 +68,8 @@ FULL = Plan(
     limits=Limits(seconds=20.0),
 )
 QUICK = Plan(
-    instants=(100, 1_000),
-    designs=(1, 100),
+    instants=(100, 500),
+    designs=(1, 10),
     unknowns=(15, 150),
     alone=False,
     ways=("series", "newton"),

@@ -46,6 +46,10 @@ class Task(Protocol):
         """The same work of the least size, which loads all that it needs."""
         ...
 
+    def give(self) -> None:
+        """Make what the work is given, which is no part of it, and keep it at hand."""
+        ...
+
     def prepare(self) -> Run:
         """The set-up."""
         ...
@@ -86,6 +90,7 @@ def measure(task: Task, seconds: float, clock: Clock = time.perf_counter_ns) -> 
         WrongNumber: a number is not what it must be.
     """
     sample(_Job(task.smallest), clock=clock)
+    task.give()
     held = restart_peak()
     job = _Job(task)
     first = sample(job, clock=clock)

@@ -54,6 +54,9 @@ class LongChain:
         """What is solved."""
         return FourBarChain.with_unknowns(self.size)
 
+    def give(self) -> None:
+        """Nothing: putting the chain together is a part of the work."""
+
     def prepare(self) -> ChainRun:
         """The mechanism put together, and what the method does before it knows the inputs.
 

@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter
 from matplotlib.transforms import blended_transform_factory
 
 from validate.cost.findings import Fit, Growth
@@ -79,6 +79,7 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
             axes.plot(reach, law, "--", color=look.colour, linewidth=1.2, zorder=2)
         name = _name(growth, growths, dense) + (_exponent(growth.fit) if exponents else "")
         ends.append((sizes[-1], values[-1], look, name))
+    axes.xaxis.set_major_locator(FixedLocator(sorted({size for g in growths for size, _ in g.points})))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: short(size)))
     axes.minorticks_off()
     _label(axes, ends)

@@ -9,8 +9,8 @@ than h the parabola through the nearest three such places is taken, whose bend i
 square. How a body turns is told from its points' rates as the library tells it. The setting is h in parts of
 the time of the scene.
 
-Positions come from a chain of series as fine as it gets, summed at two more places for each instant, or from
-Newton's method, which solves two more poses for each instant.
+Positions are as fine as the method gives them: from a chain of series, summed at two more places for each
+instant, or from Newton's method, which solves two more poses for each instant.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from validate.formulations.protocol import Numbers
 Array = NDArray[np.float64]
 
 SHARES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-TOLERANCE = 1e-12  # mm: finer only rounds
+TOLERANCE = 1e-13  # mm: finer only rounds
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class ByDifferences:
             raise LeftOut("the scene is one instant, which has no others beside it")
         still = tuple(name for name in plan.effects if EFFECTS[name].derivative == 0)
         positions = scene.model_copy(update={"effects": still})
-        task = prepared(positions, self.method, Setting("", TOLERANCE if self.dense else None))
+        task = prepared(positions, self.method, Setting("", TOLERANCE))
         solver = ReadyChain(task) if self.dense else ReadyInstants(task)
         rates = Parts.of(replace(task.readout, plan=plan)).rates
         return _Ready(solver, rates, step)

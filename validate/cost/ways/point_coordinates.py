@@ -24,7 +24,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout, States
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates, StatesAtInstants, StatesOfChain
-from pointcoord.simulation import Task, _by_series, _prepared, pose_tolerance
+from pointcoord.simulation import Task, pose_tolerance, prepare_task, solve_by_series
 from pointcoord.solve.pointwise import Solved, with_rates
 from validate.cost.way import LeftOut, Ready, Setting
 from validate.formulations.protocol import Numbers
@@ -101,7 +101,7 @@ def prepared(scene: Scene, method: Method, setting: Setting) -> Task:
         raise LeftOut(method.only or f"{method} does not solve a {part.type} with closure {part.closure!r}")
     # A changed copy is checked again, as `simulate` checks its scene.
     changes = {} if setting.value is None else {"tolerance": setting.value}
-    return _prepared(scene.model_copy(update=changes), method)
+    return prepare_task(scene.model_copy(update=changes), method)
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class ReadyChain:
     def solve(self, instants: Array) -> Progress:
         """Build the chain over the whole time, as fine as the rates need it, and sum positions."""
         parts = Parts.of(self.task.readout)
-        states = _by_series(self.task).states
+        states = solve_by_series(self.task).states
         assert isinstance(states, StatesOfChain)
         require_complete(states)
         places = replace(states, readout=parts.positions).states(instants)

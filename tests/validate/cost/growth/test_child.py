@@ -80,7 +80,7 @@ def test_what_loading_took_and_gave_back_does_not_hide_what_a_point_takes() -> N
 
 def test_one_thread_is_used_and_the_environment_stays() -> None:
     before = dict(os.environ)
-    found = measure_apart(LongChain("newton", 15), LIMITS)
+    found = measure_apart(LongChain("newton", 15), Limits(seconds=100.0))
     assert found.status == "measured", found.reason
     assert found.errors["position"].largest < 1e-10
     assert found.times["solve"].repeats == LEAST_REPEATS
@@ -95,7 +95,7 @@ def test_repeats_are_as_many_as_the_time_allows(
     takes: float, seconds: float, repeats: int, runs: int
 ) -> None:
     clock = FakeClock()
-    task = Planted(clock, 1, each=takes)
+    task = Planted(clock, 1, each=takes, given=100.0)
     found = measure(task, seconds, clock)
     assert found.times["solve"].repeats == repeats
     # One for loading, before the others.

@@ -90,6 +90,18 @@ def test_designs_of_one_batch_may_be_measured_in_different_units(method: str) ->
     assert task.check(run.output(run.solve())) == {}
 
 
+def test_making_the_designs_is_no_part_of_solving_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_named("steer", 1e-9)
+    (way,) = ways_named(["series"])
+    for task in (DesignsTogether(scene, "series", 5), DesignsInALoop(scene, way, Setting(), 5)):
+        designs._of_text.cache_clear()
+        task.give()
+        with monkeypatch.context() as patch:
+            patch.setattr(designs, "designs_of", lambda *_: pytest.fail("made again"))
+            run = task.prepare()
+            task.check(run.output(run.solve()))
+
+
 def test_designs_in_a_loop_are_checked_like_designs_together() -> None:
     scene = scene_named("double-wishbone", 1e-9)
     (way,) = ways_named(["series"])

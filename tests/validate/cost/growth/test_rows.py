@@ -75,7 +75,7 @@ def test_a_row_says_what_was_varied_and_how_many_poses_it_is_of() -> None:
     by = {(row.against, row.scene, row.way, row.setting, row.size): row for row in found}
     assert len(by) == len(found) == 3 * (2 * 3 + 5 + 2)
     assert by["instants", "steer", "series", "1e-9 mm", 1000].configurations == 1000
-    alone = by["designs", "steer, positions alone", "newton", "one by one", 10]
+    alone = by["designs", "steer, positions alone", "newton", "1e-9 mm, one by one", 10]
     assert alone.configurations == 10 * INSTANTS
     assert alone.peak_bytes == 10_000
     assert alone.times["solve"].median == pytest.approx(0.6 * 1e-3)

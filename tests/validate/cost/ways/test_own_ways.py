@@ -12,7 +12,8 @@ from validate.cost.way import LeftOut, Setting, Way
 from validate.cost.ways.registry import ways_named
 from validate.formulations.protocol import Numbers
 
-NEWTON_LIKE = ("newton", "absolute", "relative")
+NEWTON_LIKE = ("newton", "newton-cold", "chord", "absolute", "relative")
+FINEST = 1e-13  # mm
 TRUTHS: dict[str, Truth] = {}
 
 
@@ -41,10 +42,11 @@ def errors(name: str, scene: Scene, value: float | None = None, count: int = 9) 
 
 @pytest.mark.parametrize("name", STUDY_SCENES)
 @pytest.mark.parametrize("setting", way("series").settings[::4], ids=lambda setting: setting.words)
-def test_a_chain_is_no_farther_off_than_it_was_asked_to_be(name: str, setting: Setting) -> None:
+@pytest.mark.parametrize("who", ["series", "newton", "newton-cold", "chord"])
+def test_no_position_is_farther_off_than_it_was_asked_to_be(name: str, setting: Setting, who: str) -> None:
     # Beside it there is rounding: 1e-16 of 1000 mm, times a condition number of 1e4 near the toggle.
     assert setting.value is not None
-    assert errors("series", own_scene(name), setting.value)["position"].largest < setting.value + 1e-11
+    assert errors(who, own_scene(name), setting.value)["position"].largest < setting.value + 1e-11
 
 
 @pytest.mark.parametrize("name", STUDY_SCENES)
@@ -55,7 +57,7 @@ def test_what_solves_each_instant_is_off_by_rounding_in_every_quantity(name: str
     near = name == "near-toggle"
     limits = {"position": 1e-10, "velocity": 1e-9, "acceleration": 1e-6}
     turns = {"angular_velocity": 1e-11, "angular_acceleration": 1e-8, "wheel": 1e-12}
-    for quantity, error in errors(who, scene).items():
+    for quantity, error in errors(who, scene, FINEST).items():
         assert error.largest < ({**limits, **turns}[quantity] if near else 1e-11), quantity
 
 
@@ -91,7 +93,7 @@ def test_a_chassis_that_moves_and_an_origin_far_away_are_in_the_numbers(who: str
     points = content["mechanism"]["points"]
     content["mechanism"]["points"] = {name: [x + 1e5, y, z] for name, (x, y, z) in points.items()}
     scene = Scene.from_mapping(content)
-    found = errors(who, scene)
+    found = errors(who, scene, FINEST)
     # A place 1e5 mm away is rounded by 1e-11 mm.
     assert found["position"].largest < 2e-11
     assert found["velocity"].largest < 1e-9
@@ -126,7 +128,7 @@ def test_near_an_end_of_the_time_differences_are_of_a_parabola_inside() -> None:
 
 
 def test_the_printed_formulas_are_right_in_position_and_wrong_in_acceleration() -> None:
-    found = errors("printed", own_scene("bounce"))
+    found = errors("printed", own_scene("bounce"), FINEST)
     assert found["position"].largest < 1e-11
     assert found["acceleration"].largest > 1.0
 
@@ -161,7 +163,9 @@ def test_what_a_scene_does_not_ask_for_is_not_computed(who: str, effects: tuple[
     assert all(error.largest < 1e-7 for error in found.values())
 
 
-@pytest.mark.parametrize("who", ["series", "newton", "printed", "absolute", "relative", "series-differences"])
+@pytest.mark.parametrize(
+    "who", ["series", "newton", "newton-cold", "printed", "absolute", "relative", "series-differences"]
+)
 def test_what_was_done_is_counted(who: str) -> None:
     scene = own_scene("steer")
     chosen = way(who).settings[-1]

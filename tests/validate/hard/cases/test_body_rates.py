@@ -31,7 +31,7 @@ def test_the_printed_omega_loses_its_digits_and_ours_keeps_them(name: str) -> No
     near, nearer = result.trials
     assert omega_error(nearer, "printed") > 1e4 * omega_error(near, "printed")
     assert omega_error(nearer, "printed") > 1e-8
-    for ours in ("pointcoord", "pointcoord-newton", "absolute"):
+    for ours in ("pointcoord", "pointcoord-newton", "absolute", "relative"):
         assert omega_error(nearer, ours) < 1e-12
 
 
@@ -39,7 +39,7 @@ def test_the_printed_omega_loses_its_digits_and_ours_keeps_them(name: str) -> No
 def test_the_printed_omega_is_far_off_or_no_number_at_the_singular_rates(name: str) -> None:
     (trial,) = examine(at(name, 0.0)).trials
     assert not omega_error(trial, "printed") < 1e-3
-    for ours in ("pointcoord", "pointcoord-newton", "absolute"):
+    for ours in ("pointcoord", "pointcoord-newton", "absolute", "relative"):
         assert omega_error(trial, ours) < 1e-12
 
 
@@ -56,7 +56,7 @@ def test_omega_of_the_turning_arm_passes_the_knuckle_plane_where_it_was_worked_o
 def test_a_car_at_rest_has_rates_of_exactly_zero(name: str) -> None:
     (trial,) = examine(at(name, 0.0)).trials
     rates = {key: rate for key, rate in trial.facts.items() if key.startswith("largest rate")}
-    assert len(rates) == 3
+    assert len(rates) == 4
     assert set(rates.values()) == {0.0}
 
 

@@ -99,6 +99,7 @@ def test_the_printed_rows_cannot_follow_a_strut_through_the_horizontal() -> None
         "pointcoord": "right",
         "pointcoord-newton": "right",
         "absolute": "right",
+        "relative": "right",
         "printed": "refused",
     }
 
