@@ -28,7 +28,7 @@ LONGEST_STEP = 0.25
 HALVINGS = 12
 # Where that did lead to another assembly, or nowhere, it is tried with steps that are so much shorter.
 SHORTER = 0.125
-SHORTEST_STEP = 1e-6
+SHORTEST_STEP = 1e-3
 # Poses whose sides are checked at once.
 TOGETHER = 32
 # Below the root of the rounding unit a step that does not halve is rounding.
