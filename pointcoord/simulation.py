@@ -37,8 +37,7 @@ from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
-# Share of a scene's tolerance that one segment may use: carried points lie up to a few lengths of
-# their carriers away and multiply the carriers' truncation.
+# Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
 
 
@@ -112,8 +111,8 @@ def effort(scene: Scene) -> Effort:
     chain = _chain(task)
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
-        tolerance=kept * float(mechanism.unit) / TRUNCATION_SHARE,
-        part=kept / TRUNCATION_SHARE,
+        tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
+        part=kept / truncation_share(mechanism),
         orders=tuple(segment.order for segment in chain.segments),
         start=task.start.work,
         work=task.start.work + chain.work,
@@ -276,13 +275,18 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
+def truncation_share(mechanism: Mechanism) -> float:
+    """Share of a scene's tolerance that solved points may use: carried ones multiply what these are off."""
+    return min(TRUNCATION_SHARE, 1.0 / mechanism.carried_gain)
+
+
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
     """How a scene's chain of series is cut.
 
     Args:
         derivative: highest time derivative that will be evaluated.
     """
-    return Settings(TRUNCATION_SHARE * scene.tolerance / float(mechanism.unit), derivative)
+    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit), derivative)
 
 
 def finest_tolerance(scene: Scene) -> float:
@@ -291,8 +295,9 @@ def finest_tolerance(scene: Scene) -> float:
     Raises:
         SceneError: the hardpoints do not make a mechanism.
     """
+    mechanism = scene_mechanism(scene)
     # Inflated by what taking a share of it may round.
-    return FINEST * (1.0 + 4.0 * EPS) * float(scene_mechanism(scene).unit) / TRUNCATION_SHARE
+    return FINEST * (1.0 + 4.0 * EPS) * float(mechanism.unit) / truncation_share(mechanism)
 
 
 def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
@@ -313,7 +318,7 @@ def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     reason = (
         "finer than the rounding of a sum of series" if used == FINEST else "too coarse to keep to one branch"
     )
-    held = used * float(mechanism.unit) / TRUNCATION_SHARE
+    held = used * float(mechanism.unit) / truncation_share(mechanism)
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 

@@ -52,8 +52,10 @@ def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[A
     compliance, condition = _inverse_inertia(r)
     refinements = MOST_REFINEMENTS if (8 * EPS * condition > ROUGH).any() else 1
     omega = _turning(compliance, r, v, refinements)
-    # omega x (omega x r) = omega (omega . r) - r |omega|^2, and r x r = 0.
+    # omega x (omega x r) = omega (omega . r) - r |omega|^2. The last term turns nothing, r x r = 0; but left
+    # in, it is what the moments are rounded from, and refining would not help.
     a -= omega[:, None] * (r * omega[:, None]).sum(axis=0)
+    a += r * (omega * omega).sum(axis=0)
     alpha = _turning(compliance, r, a, refinements)
     return np.moveaxis(omega, 0, -1), np.moveaxis(alpha, 0, -1)
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, UnknownName
-from pointcoord.linkage.carried_points import carried_series
+from pointcoord.linkage.carried_points import carried_gain, carried_series
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
@@ -55,6 +55,12 @@ class Mechanism:
     def map(self) -> QuadraticMap:
         """The constraints."""
         return self.topology.map
+
+    @property
+    def carried_gain(self) -> float:
+        """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
+        carried = self.topology.carried.items()
+        return max((carried_gain(self.carrier_weights[n], self.drawing, c) for n, c in carried), default=1.0)
 
     def places(self, y: Array) -> dict[str, Array]:
         """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""

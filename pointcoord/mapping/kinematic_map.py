@@ -492,7 +492,7 @@ class KinematicMap:
 
 
 STATES = ("values", "rates", "accelerations")
-POINT_STATES = ("velocity", "acceleration")
+POINT_STATES = tuple(n for n, e in EFFECTS.items() if all(q.of == "point" for q in e.quantities))
 """Effects that a map gives wherever it is told the rates."""
 
 

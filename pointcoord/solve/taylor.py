@@ -304,8 +304,9 @@ class _Course:
                 break
             goal = goal or aim
             order = needed
-            # In a unit of about its own length, or the terms of many orders grow too large.
-            shorter = replace(joint, scale=min(joint.scale, _power_of_two(length)))
+            # In a unit of about the radius of convergence: in a longer one the terms of many orders grow too
+            # large, in a shorter one those of slow inputs are lost, and what is lost seems to have converged.
+            shorter = replace(joint, scale=min(joint.scale, _power_of_two(max(length, decay.radius))))
             segment = self.series_about(shorter, order, segment)
         if order > SAFE and not (np.abs(segment.coefficients) < LARGEST).all():
             return self.series_about(joint, SAFE)
