@@ -158,7 +158,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
     closed = close_drawing(mechanism, first, tolerance)
     moved = closing(mechanism, closed.y)
-    _require_the_drawn_car(scene, moved)
+    require_the_drawn_car(scene, moved)
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
     start = assemble(mechanism, inputs, first, closed, tolerance)
     return Task(scene, method, readout, functions, start, moved)
@@ -218,8 +218,12 @@ def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]
     )
 
 
-def _require_the_drawn_car(scene: Scene, moved: Closing) -> None:
-    """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name."""
+def require_the_drawn_car(scene: Scene, moved: Closing) -> None:
+    """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name.
+
+    Raises:
+        SceneError: it does.
+    """
     if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
         raise SceneError(
             scene.title or "scene",

@@ -31,7 +31,6 @@ from pointcoord.errors import (
     MapError,
     NotComputed,
     NotCovered,
-    SceneError,
     UnknownName,
 )
 from pointcoord.linkage.car_axes import CarAxes
@@ -43,10 +42,10 @@ from pointcoord.mapping.jet import Jet
 from pointcoord.mapping.reported_points import moving_points
 from pointcoord.mapping.stored import Stored, read, write
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.results.closing import ALLOWED, closing
+from pointcoord.results.closing import closing
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
-from pointcoord.simulation import require_scene, scene_mechanism
+from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assemble, close_drawing
 
 Array = NDArray[np.float64]
@@ -543,10 +542,7 @@ def kinematic_map(
     domain.known_at(np.stack(domain.ends))
     closed = close_drawing(mechanism)
     moved = closing(mechanism, closed.y)
-    if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
-        share = f"at most {ALLOWED:.0%} of the car's size, {ALLOWED * moved.size:.3g} mm"
-        source = scene.title or "scene"
-        raise SceneError(source, "mechanism.points", f"{moved.words}: that is another car", share)
+    require_the_drawn_car(scene, moved)
     twice = _nearest(domain, mechanism.input_values(closed.y[mechanism.map.unknowns :]))
     values = domain.inputs_at(twice)
     held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}

@@ -391,8 +391,9 @@ def test_named_scenes_are_measured_in_the_parts_that_are_about_a_scene(
     rows = ["--rows", str(tmp_path / "rows.jsonl"), "--quiet"]
     assert main(["cost", "steer", "near-toggle", "steer", *rows]) == 0
     assert asked == [("steer", "near-toggle")]
+    nothing: Any = None
     with pytest.raises(AssertionError, match="not asked for"):
-        cost._of_part("loading", cost.Study((), (), (), False), None, None)  # type: ignore[arg-type]
+        cost._of_part("loading", cost.Study((), (), (), False), nothing, nothing)
 
 
 def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
