@@ -53,8 +53,11 @@ def figure(growths: Sequence[Growth], dense: frozenset[str]) -> Figure:
     return page
 
 
-def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponents: bool = True) -> None:
-    """One of time and memory: points, fitted lines, and a label at the end of each."""
+def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], small: bool = False) -> None:
+    """One of time and memory: points, fitted lines, and a label at the end of each.
+
+    A small one has neither exponents nor marks of what was not measured, which its picture does not explain.
+    """
     of, against = growths[0].of, growths[0].against
     words, unit = UNITS[of]
     plain(axes)
@@ -77,13 +80,14 @@ def panel(axes: Axes, growths: Sequence[Growth], dense: frozenset[str], exponent
             reach = np.array([growth.fit.smallest, growth.fit.largest])
             law = [growth.fit.at(size) * unit for size in reach]
             axes.plot(reach, law, "--", color=look.colour, linewidth=1.2, zorder=2)
-        name = _name(growth, growths, dense) + (_exponent(growth.fit) if exponents else "")
+        name = _name(growth, growths, dense) + ("" if small else _exponent(growth.fit))
         ends.append((sizes[-1], values[-1], look, name))
     axes.xaxis.set_major_locator(FixedLocator(sorted({size for g in growths for size, _ in g.points})))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: short(size)))
     axes.minorticks_off()
     _label(axes, ends)
-    _mark_stops(axes, growths)
+    if not small:
+        _mark_stops(axes, growths)
 
 
 def _name(growth: Growth, growths: Sequence[Growth], dense: frozenset[str]) -> str:

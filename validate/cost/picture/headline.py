@@ -53,7 +53,7 @@ def figure(rows: Sequence[Row], found: Findings) -> Figure | None:
             axes.set_title(f"{scene}: {words_of(quantity)}", loc="left")
         if grown:
             axes = page.add_axes(places[-1])
-            growing.panel(axes, grown, frozenset(row.way for row in rows if row.dense), exponents=False)
+            growing.panel(axes, grown, frozenset(row.way for row in rows if row.dense), small=True)
             axes.set_title(f"{grown[0].scene}: growth in instants", loc="left")
         page.legend(
             handles=ways,
