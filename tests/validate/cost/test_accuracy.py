@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 from toy_ways import FakeClock, Toy, reference_numbers
 
 from pointcoord import Scene
@@ -45,6 +46,17 @@ def test_each_phase_has_the_time_that_it_takes() -> None:
     assert row.seconds("solve", "rates") == pytest.approx((12 * 3e-5 + 4e-4) / 12, rel=1e-12)
     assert row.counts == {"newton_steps": 36}
     assert QUICK.repeats >= LEAST_REPEATS
+
+
+def test_whatever_it_was_started_with_a_way_runs_by_one_thread() -> None:
+    with threadpool_limits(limits=2):
+        before = {pool["num_threads"] for pool in threadpool_info()}
+        seen: list[int] = []
+        toy = Toy("toy", costs=COSTS)
+        toy.before = lambda phase: seen.extend(pool["num_threads"] for pool in threadpool_info())
+        rows_of(toy)
+        assert {pool["num_threads"] for pool in threadpool_info()} == before
+    assert set(seen) == {1}
 
 
 def test_the_first_run_is_told_apart_from_the_others() -> None:

@@ -142,7 +142,7 @@ def test_this_process_says_where_it_is() -> None:
     assert here.differences(Header.here("another command")) == []
     assert here.program.startswith("pointcoord 0.")
     assert {"numpy", "pin", "mujoco", "exudyn"} <= set(here.packages)
-    assert "OPENBLAS_NUM_THREADS" in here.threads
+    assert here.threads == {"every part": "1"}
 
 
 def test_the_digest_of_a_scene_is_of_all_that_it_says_but_not_of_its_title() -> None:
