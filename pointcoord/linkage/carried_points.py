@@ -41,14 +41,15 @@ def carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str])
 def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str]) -> float:
     """How many times as far as the coordinates of its carriers those of a carried point may be off, at most.
 
-    |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|, and an edge is off by twice as
-    much as its ends, a component of a cross product by twice the product of components; of a batch the
+    |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|. An edge is off by twice as much
+    as its ends, and a component of the cross product by that times the edges' other components; of a batch the
     largest.
     """
     base, first, second = (drawing.vectors[point] for point in carriers)
-    edges = np.abs(first - base).max(axis=-1) + np.abs(second - base).max(axis=-1)
+    sides = np.abs(first - base) + np.abs(second - base)
+    others = (sides.sum(axis=-1, keepdims=True) - sides).max(axis=-1)
     a, b, c = (weights[..., i] for i in range(3))
-    return float(np.max(np.abs(1.0 - a - b) + np.abs(a) + np.abs(b) + 4.0 * np.abs(c) * edges))
+    return float(np.max(np.abs(1.0 - a - b) + np.abs(a) + np.abs(b) + 2.0 * np.abs(c) * others))
 
 
 def carried_series(weights: Array, base: Array, first: Array, second: Array) -> Array:
