@@ -42,8 +42,8 @@ def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str
     """How many times as far as the coordinates of its carriers those of a carried point may be off, at most.
 
     |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|. An edge is off by twice as much
-    as its ends, and a component of the cross product by that times the edges' other components; of a batch the
-    largest.
+    as its ends, and a component of the cross product by that times the edges' other components. Of a batch it
+    is the largest.
     """
     base, first, second = (drawing.vectors[point] for point in carriers)
     sides = np.abs(first - base) + np.abs(second - base)
