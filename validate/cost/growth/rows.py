@@ -65,7 +65,7 @@ FULL = Plan(
     ways=GROWING,
     design_ways=GROWING,
     chain_methods=tuple(METHODS),
-    limits=Limits(seconds=20.0),
+    limits=Limits(seconds=60.0),
 )
 QUICK = Plan(
     instants=(100, 500),
