@@ -129,9 +129,9 @@ def test_a_law_is_not_named_where_nothing_hangs_on_its_doubt(make_scene: Make) -
 def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(make_scene: Make) -> None:
     with pytest.raises(AssemblyError) as caught:
         simulate(make_scene([1.6], [0.0, 200.0]))
-    # Up to the fold, where two assemblies meet, the last digits of the rack leave some pose unproven; which one
-    # hangs on rounding. The law is known to 1e-29 mm there, which is more than such a tolerance allows, and is not
-    # what leaves the pose unproven: none is refused for it.
+    # Up to the fold, where two assemblies meet, the last digits of the rack leave some pose unproven; which
+    # one hangs on rounding. The law is known to 1e-29 mm there, which is more than such a tolerance allows,
+    # and is not what leaves the pose unproven: none is refused for it.
     end, unproven = caught.value.reached["rack"], 0
     for digits in range(0, 120, 3):
         law = [end + digits * np.spacing(end), 1e-300]
