@@ -180,7 +180,7 @@ def _proven_ahead(
     with np.errstate(all="ignore"):
         guess = _guessed(system, inverse, start, targets)
     # A guess that is not finite ends what is tried.
-    finite: NDArray[np.bool_] = np.isfinite(guess).all(axis=-1)
+    finite = np.asarray(np.isfinite(guess).all(axis=-1))
     reached = newton_refine(system, guess[: _first_false(finite)], tolerance=tolerance)
     poses = np.concatenate([start[None], reached.y])
     here, following = poses[:-1], poses[1:]
