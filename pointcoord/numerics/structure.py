@@ -1,11 +1,11 @@
 """Which rows of a square system determine which unknowns, block after block.
 
-A row reads some coordinates. A perfect matching gives each unknown a row of its own (Duff's MC21: depth-first
-with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). With an arrow from each row to the rows of the unknowns
-that it reads, rows in a circle belong together: the strong components (Tarjan, SIAM J. Comput. 1 (1972) 146) are
-the blocks, and they come out in an order in which they can be solved. In this order the Jacobian is block
-triangular, so it has full rank where each block has. Whichever perfect matching is found, the blocks are the
-same (Dulmage and Mendelsohn).
+A row reads some coordinates. A perfect matching gives each unknown a row of its own (Duff's MC21: depth
+first with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). With an arrow from each row to the rows of
+the unknowns that it reads, rows in a circle belong together: the strong components (Tarjan, SIAM J. Comput.
+1 (1972) 146) are the blocks, and they come out in an order in which they can be solved. In this order the
+Jacobian is block triangular, so it has full rank where each block has. Whichever perfect matching is found,
+the blocks are the same (Dulmage and Mendelsohn).
 
 Both searches keep their own stacks, so that a chain of any length is no recursion. The components take one
 pass over the entries; so does the matching of a linkage, where few rows have to give way to another.
