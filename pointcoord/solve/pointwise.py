@@ -41,6 +41,7 @@ from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked, close_drawing, follow
+from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -121,35 +122,40 @@ def solve_instants(
         derivative: highest time derivative to solve for, 0 to 2.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
     Returns:
-        The states, up to the first instant that cannot be reached.
+        The states, up to the first instant that cannot be reached. What stands still is solved once.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
     y[:1], left[:1] = pose.y, pose.left
-    factors, work, done, ahead = pose.factors, Work(), 1, FIRST_AHEAD
+    part = mechanism.moving_part(functions)
+    begun = starting_place(part, pose)
+    here, factors, work, done, ahead = begun.y, begun.factors, begun.work, 1, FIRST_AHEAD
+    goals = part.known(here, known[:, :1])[:, 0]
     status: Status = COMPLETE
     while done < len(times):
-        targets = known[done : done + ahead, 0]
-        found = _proven_ahead(system, y[done - 1], factors, targets, tolerance)
+        targets = goals[done : done + ahead]
+        found = _proven_ahead(part.system, here, factors, targets, tolerance)
         work += found.work
         count = len(found.left)
-        y[done : done + count], left[done : done + count] = found.y, found.left
+        y[done : done + count], left[done : done + count] = part.back(found.y), found.left
         done += count
         ahead = min(2 * ahead, BLOCK) if count == len(targets) else max(count, FIRST_AHEAD)
         if count:
-            factors = factorise(system.jacobian(y[done - 1]))
+            here = found.y[-1]
+            factors = factorise(part.system.jacobian(here))
             work += Work(factorisations=1)
             continue
-        goal = known[done, 0]
-        path = follow(system, y[done - 1], goal, factors, tolerance)
+        path = follow(part.system, here, goals[done], factors, tolerance)
         work += path.work
         if path.done < 1.0:
             problem = "the mechanism cannot be assembled"
-            status = blocked(mechanism, problem, path, goal, path.done < 1.0, float(times[done]))
+            place = whole_place(part, path.y, path.factors)
+            status = blocked(mechanism, problem, place, known[done, 0], path.done < 1.0, float(times[done]))
             y, left, known, times = y[:done], left[:done], known[:done], times[:done]
             break
-        y[done], left[done], factors = path.y, path.left, path.factors
+        here, factors = path.y, path.factors
+        y[done], left[done] = part.back(here), path.left
         done += 1
     y[:, n:] = known[:, 0]
     solved = with_rates(system, y, known, times, derivative, square_term, work, left)
@@ -282,7 +288,9 @@ def with_rates(
     if derivative >= 2:
         states.append(_rate(system, factors, y, 2.0 * known[:, 2], square_term(system, states[1])))
     rest = np.zeros(len(times)) if left is None else left
-    return Solved(times, tuple(states), rest, work + Work(rate_solves=derivative * len(times)))
+    solves = derivative * len(times)
+    work = work + Work(rate_solves=solves, unknowns_solved=solves * system.unknowns)
+    return Solved(times, tuple(states), rest, work)
 
 
 def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:
