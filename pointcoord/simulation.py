@@ -285,12 +285,12 @@ def truncation_share(mechanism: Mechanism) -> float:
 
 
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
-    """How a scene's chain of series is cut.
+    """How a scene's chain of series is cut; that of many designs as finely as the largest of them needs.
 
     Args:
         derivative: highest time derivative that will be evaluated.
     """
-    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit), derivative)
+    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit.max()), derivative)
 
 
 def finest_tolerance(scene: Scene) -> float:
