@@ -418,8 +418,7 @@ class _Course:
         """
         system = self.part.system
         matrix = system.jacobian(reached.y)
-        weights = np.ones((*reached.y.shape[:-1], system.unknowns))
-        z = system.lipschitz(reached.factors.preconditioner, weights) * reached.last_step
+        z = system.lipschitz(reached.factors.preconditioner) * reached.last_step
         if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
             return reached.factors.moved(matrix), Work()
         members = int(np.prod(reached.y.shape[:-1]))
