@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
 from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, simulate, standing
-from pointcoord.mapping import flood as flooding
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.flood import FOLD, SEAM, UNREACHED, flood
+from pointcoord.patches import flood as flooding
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, flood
 from pointcoord.solve.assembly import assemble, close_drawing, follow
 
 Array = NDArray[np.float64]

@@ -20,7 +20,7 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.multi_index import powers
+from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -20,13 +20,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.evaluation import monomials
-from pointcoord.mapping.expansion import expand_in_inputs
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers
-from pointcoord.mapping.patch_proof import PatchProof, prove_patches
-from pointcoord.mapping.reported_points import reported_points
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.evaluation import monomials
+from pointcoord.patches.expansion import expand_in_inputs
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers
+from pointcoord.patches.patch_proof import PatchProof, prove_patches
+from pointcoord.patches.reported_points import reported_points
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve.assembly import follow
 
