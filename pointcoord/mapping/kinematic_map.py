@@ -35,13 +35,13 @@ from pointcoord.errors import (
 )
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.stored import Stored, read, write
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_series, sum_series_once
 from pointcoord.patches.flood import flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.reported_points import moving_points
-from pointcoord.mapping.stored import Stored, read, write
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.results.closing import closing
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene

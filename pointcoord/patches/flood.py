@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import monomials
 from pointcoord.patches.expansion import expand_in_inputs
@@ -27,7 +28,6 @@ from pointcoord.patches.jet import Jet
 from pointcoord.patches.multi_index import powers
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.patches.reported_points import reported_points
-from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.solve.assembly import follow
 
 Array = NDArray[np.float64]
