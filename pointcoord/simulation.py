@@ -179,10 +179,15 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     return Task(scene, method, readout, functions, start, moved)
 
 
-def solve_by_series(task: Task) -> SolvedScene:
-    """Solve a motion as a chain of power series."""
+def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
+    """Solve a motion as a chain of power series.
+
+    Args:
+        hopeful: whether to go on to the most segments where the first ones tell that these will not do.
+    """
     notes = _tolerance_notes(task.scene, task.readout.mechanism)
-    states = StatesOfChain(task.readout, task.functions, _chain(task), task.scene.time.start, notes)
+    chain = _chain(task, hopeful)
+    states = StatesOfChain(task.readout, task.functions, chain, task.scene.time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
 
 
@@ -214,25 +219,26 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
         The task with the method that was used, and the motion; that of the series if neither is whole.
     """
     status = foreseen(task)
-    solved: SolvedScene | None = None
     if status is None:
-        solved = solve_by_series(task)
+        solved = solve_by_series(task, hopeful=False)
         status = solved.states.status
     if isinstance(status, TooLong | TooRough):
         mapped = solve_by_map(task, why_map(status))
         if mapped.states.status.complete:
             return replace(task, method=MAP), mapped
-    return replace(task, method=SERIES), solved or solve_by_series(task)
+        # As far as they come, then.
+        solved = solve_by_series(task)
+    return replace(task, method=SERIES), solved
 
 
 def foreseen(task: Task) -> Status | None:
     """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
     time = task.scene.time
-    breaks = {b for law in task.functions.values() for b in law.breaks if time.start < b < time.stop}
-    if len(breaks) < MOST_SEGMENTS:
+    breaks = np.concatenate([np.array(law.breaks) for law in task.functions.values()])
+    inner = np.unique(breaks[(breaks > time.start) & (breaks < time.stop)])
+    if len(inner) < MOST_SEGMENTS:
         return None
-    reached = sorted(breaks)[MOST_SEGMENTS - 1]
-    return TooLong(MOST_SEGMENTS, reached, time.start, time.stop)
+    return TooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
 
 
 def why_map(status: TooLong | TooRough) -> str:
@@ -268,9 +274,10 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
     return NotMapped(until, inputs, way.reason)
 
 
-def _chain(task: Task) -> Chain:
+def _chain(task: Task, hopeful: bool = True) -> Chain:
     mechanism, time = task.readout.mechanism, task.scene.time
     settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
+    settings = replace(settings, hopeful=hopeful)
     return build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
 
 

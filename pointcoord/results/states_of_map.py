@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
-from pointcoord.patches.evaluation import sum_series
+from pointcoord.patches.evaluation import sum_rows, sum_series
 from pointcoord.patches.flood import Patches
 from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.multi_index import powers
@@ -62,21 +62,23 @@ class StatesOfMap:
         if outside.any():
             raise OutsideMotion(float(instants[outside][0]), self.start, self.way.until)
         readout, table = self.readout, self.readout.table
-        topology, vectors_drawn = readout.mechanism.topology, readout.mechanism.drawing.vectors
+        topology, drawn = readout.mechanism.topology, readout.mechanism.drawing.vectors
         if rows is None:
             rows = np.empty((3 * (len(table.moving) + len(table.still)), len(instants)))
-        sums = self._sums(self._patches.coefficients, self._inputs(instants))
+        middle, half = self._boxes
+        inputs, patch = self._inputs(instants)
+        sums = np.empty((len(inputs), self._patches.coefficients.shape[-1], len(instants)))
+        sum_rows(self._patches.coefficients, middle, half, self.way.order, patch, inputs, sums)
         place = {name: 3 * i for i, name in enumerate(moving_points(topology))}
-        states: list[dict[str, Array]] = [{} for _ in sums]
+        states: list[dict[str, Array]] = [{} for _ in inputs]
         for i, (order, name) in enumerate((*table.moving, *table.still)):
-            state = vectors(rows, 3 * i)
             if name in place:
-                state[...] = sums[order][:, place[name] : place[name] + 3]
+                rows[3 * i : 3 * i + 3] = sums[order, place[name] : place[name] + 3]
             else:
-                state[...] = vectors_drawn[name] * float(readout.mechanism.unit) if order == 0 else 0.0
-            states[order][name] = state
+                vectors(rows, 3 * i)[...] = drawn[name] * float(readout.mechanism.unit) if order == 0 else 0.0
+            states[order][name] = vectors(rows, 3 * i)
         for order, name in table.spare:
-            states[order][name] = sums[order][:, place[name] : place[name] + 3]
+            states[order][name] = vectors(sums[order], place[name])
         return states
 
     def coordinates(self, instants: Array) -> list[Array]:
