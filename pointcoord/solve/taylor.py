@@ -58,6 +58,8 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-5
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
+# Segments after which it is told how many there will be.
+TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
 # Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
@@ -129,10 +131,12 @@ class Settings:
         tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
             the same fraction of that derivative's size.
         derivative: highest time derivative that will be evaluated.
+        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
     """
 
     tolerance: float
     derivative: int
+    hopeful: bool = True
 
     @property
     def kept(self) -> Settings:
@@ -172,6 +176,11 @@ def build_chain(
     while joint.instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+        if len(segments) == TELLING and not settings.hopeful:
+            # Later ones would have to be four times as long on average to be enough.
+            likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
+            if stop - start > 4.0 * (likely - start):
+                return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
         segment = course.segment_from(joint)
         orders = segment.order
         solves = orders * members
