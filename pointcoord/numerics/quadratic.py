@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -99,6 +100,24 @@ class QuadraticMap:
             table[index, column] += value
         ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
         return table, ends[:, 0], ends[:, 1]
+
+    @cached_property
+    def reads(self) -> tuple[frozenset[int], ...]:
+        """The coordinates that each row reads; a product with no difference in it reads none."""
+        return tuple(
+            frozenset(
+                i
+                for p in row
+                if p.coefficient and p.left[0] != p.left[1] and p.right[0] != p.right[1]
+                for i in (*p.left, *p.right)
+            )
+            for row in self.rows
+        )
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Which rows determine which unknowns, block after block."""
+        return structure_of(self)
 
     @property
     def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
