@@ -176,12 +176,6 @@ class ColumnMap:
         return np.asarray(self._jacobian[1] @ e)
 
     @cached_property
-    def curvature(self) -> Array:
-        """Of each row sum_jk |2 B_rjk| over the unknowns j and k: how far C_u's row turns in the maximum norm."""
-        table, _, _ = self.system._curvature
-        return np.asarray(np.abs(table).sum(axis=-1))
-
-    @cached_property
     def convolution(self) -> Convolution:
         """The bilinear terms, for sums over the orders of a series."""
         left, right = self._factors

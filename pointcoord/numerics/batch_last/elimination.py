@@ -21,6 +21,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.structure import Block
+
 Array = NDArray[np.float64]
 Entry = tuple[int, int]
 
@@ -44,11 +46,13 @@ class Elimination:
 
     Attributes:
         size: of the matrices. entries: where they may be other than zero. pivots: in order.
+        blocks: unknowns of each diagonal block.
     """
 
     size: int
     entries: tuple[Entry, ...]
     pivots: tuple[Pivot, ...]
+    blocks: tuple[tuple[int, ...], ...]
 
     @cached_property
     def places(self) -> dict[Entry, int]:
@@ -95,14 +99,11 @@ class Elimination:
             sign *= -1.0 if length and length % 2 == 0 else 1.0
         return sign
 
-    def work(self, members: int) -> Array:
-        """An empty work array; its first rows take the entries."""
-        return np.zeros((len(self.places), members))
-
-    def factorise(self, work: Array) -> Eliminated:
-        """Eliminate matrices whose entries lie in the first rows of a work array, which is then taken."""
-        members = work.shape[-1]
-        work[len(self.entries) :] = 0.0
+    def factorise(self, entries: Array) -> Eliminated:
+        """Eliminate matrices of these entries, shape (entries, members)."""
+        members = entries.shape[-1]
+        work = np.zeros((len(self.places), members))
+        work[: len(entries)] = entries
         rows, inverse, spare = list(work), np.empty((self.size, members)), np.empty(members)
         with np.errstate(all="ignore"):
             for reciprocal, (pivot, multipliers, updates) in zip(inverse, self._steps, strict=True):
@@ -114,7 +115,7 @@ class Elimination:
                     np.subtract(rows[changed], spare, out=rows[changed])
             largest = np.abs(work.take(self._multipliers, axis=0)).max(axis=0, initial=0.0)
             sound = (largest <= LARGEST_MULTIPLIER) & np.isfinite(inverse).all(axis=0)
-        return Eliminated(self, work, inverse, sound)
+        return Eliminated(self, entries, work, inverse, sound)
 
     @cached_property
     def _solving(self) -> tuple[tuple[tuple[int, int, int], ...], tuple[tuple[int, int, int], ...]]:
@@ -131,7 +132,7 @@ class Elimination:
 
     @cached_property
     def inverse_program(self) -> InverseProgram:
-        """How the inverse is made."""
+        """How the inverses of the diagonal blocks are made."""
         return InverseProgram.of(self)
 
 
@@ -140,12 +141,14 @@ class Eliminated:
     """Factors of many matrices.
 
     Attributes:
+        entries: of the matrices, shape (entries, members).
         rows: of the entries, multipliers below the pivots, shape (places, members).
         reciprocals: of the pivots, in their order, shape (size, members).
         sound: members for which the pivots were good, shape (members,).
     """
 
     plan: Elimination
+    entries: Array
     rows: Array
     reciprocals: Array
     sound: NDArray[np.bool_]
@@ -181,12 +184,19 @@ class Eliminated:
         return x
 
     def inverse(self) -> Array:
-        """The entries of the inverse that may be other than zero, as the plan's program has them."""
+        """The entries of the inverses of the diagonal blocks, as the plan's program has them."""
         return self.plan.inverse_program.run(self)
 
 
-def eliminate_like(matrix: Array, entries: Sequence[Entry]) -> Elimination | None:
-    """Choose pivots for matrices of a pattern by one of them, shape (size, size); None if it is singular."""
+def eliminate_like(
+    matrix: Array, entries: Sequence[Entry], blocks: Sequence[Block]
+) -> Elimination | None:
+    """Choose pivots for matrices of a pattern by one of them, shape (size, size); None if it is singular.
+
+    Args:
+        blocks: of the pattern; every pivot lies in one.
+    """
+    inside = {(row, column) for block in blocks for row in block.rows for column in block.unknowns}
     size = len(matrix)
     a = matrix / np.abs(matrix).max(axis=1, keepdims=True)
     filled, rows, columns = set(entries), set(range(size)), set(range(size))
@@ -194,12 +204,14 @@ def eliminate_like(matrix: Array, entries: Sequence[Entry]) -> Elimination | Non
     for _ in range(size):
         in_row = {i: [j for j in columns if (i, j) in filled] for i in rows}
         in_column = {j: [i for i in rows if (i, j) in filled] for j in columns}
-        largest = {j: max((abs(a[i, j]) for i in in_column[j]), default=0.0) for j in columns}
+        largest = {
+            j: max((abs(a[i, j]) for i in in_column[j] if (i, j) in inside), default=0.0) for j in columns
+        }
         options = [
             ((len(in_row[i]) - 1) * (len(in_column[j]) - 1), -abs(a[i, j]) / largest[j], i, j)
             for i in sorted(rows)
             for j in in_row[i]
-            if abs(a[i, j]) >= THRESHOLD * largest[j] > 0.0
+            if (i, j) in inside and abs(a[i, j]) >= THRESHOLD * largest[j] > 0.0
         ]
         if not options:
             return None
@@ -212,7 +224,7 @@ def eliminate_like(matrix: Array, entries: Sequence[Entry]) -> Elimination | Non
             a[i, list(across)] -= a[i, column] / a[row, column] * a[row, list(across)]
             filled.update((i, j) for j in across)
         pivots.append(Pivot(row, column, below, across))
-    return Elimination(size, tuple(entries), tuple(pivots))
+    return Elimination(size, tuple(entries), tuple(pivots), tuple(block.unknowns for block in blocks))
 
 
 # What an operation of an inverse's program does with its result, a factor f and an earlier result x.
@@ -222,10 +234,10 @@ _ONE = -1
 
 @dataclass(frozen=True)
 class InverseProgram:
-    """Operations that make an inverse column by column, without those on zeros.
+    """Operations that make the inverses of the diagonal blocks column by column, without those on zeros.
 
     Attributes:
-        entries: row and column of each entry of the inverse that may be other than zero.
+        entries: row and column of each entry of the inverses that may be other than zero, block by block.
         operations: kind, result, factor (or pivot), other result.
         registers: how many results there are; the entries of the inverse are the first.
     """
@@ -243,13 +255,16 @@ class InverseProgram:
         count = 0
         # Registers are numbered as they come; entries get theirs at the end.
         final: dict[int, int] = {}
-        for unit in range(plan.size):
+        units = [(pivot.row, block) for block in plan.blocks for pivot in plan.pivots if pivot.column in block]
+        for unit, block in units:
             y: dict[int, int] = {unit: _ONE}
-            for pivot in plan.pivots:
+            pivots = [(number, pivot) for number, pivot in enumerate(plan.pivots) if pivot.column in block]
+            inside = {pivot.row for _, pivot in pivots}
+            for _, pivot in pivots:
                 own = y.get(pivot.row)
                 if own is None:
                     continue
-                for row in pivot.below:
+                for row in (row for row in pivot.below if row in inside):
                     factor, old = place[row, pivot.column], y.get(row)
                     if old is None:
                         y[row] = count
@@ -258,8 +273,7 @@ class InverseProgram:
                     else:
                         operations.append((_LESS if own == _ONE else _LESS_PRODUCT, old, factor, own))
             x: dict[int, int] = {}
-            for number in range(plan.size - 1, -1, -1):
-                pivot = plan.pivots[number]
+            for number, pivot in reversed(pivots):
                 total = y.get(pivot.row)
                 for column in pivot.across:
                     if column not in x:
