@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
 # Members at a time: what lies between the operations stays in a cache, and a call costs little beside its numbers.
-CHUNK = 512
+CHUNK = 1024
 # Fraction of the step that each block alone would allow, and what is left of it where the blocks together do not.
 SAFETY, SHORTER, TRIALS = 0.9, 0.75, 6
 GUESSES = tuple(0.75**k for k in range(16))
