@@ -153,7 +153,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    _check_range(mechanism, functions, scene.instants)
+    check_range(mechanism, functions, scene.instants)
     readout.chassis.states(scene.instants, readout.derivative_of_every_point)
     first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
     closed = close_drawing(mechanism, first, tolerance)
@@ -166,7 +166,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
 
 def solve_by_series(task: Task) -> SolvedScene:
     """Solve a motion as a chain of power series."""
-    notes = _tolerance_notes(task.scene, task.readout.mechanism)
+    notes = tolerance_notes(task.scene, task.readout.mechanism)
     states = StatesOfChain(task.readout, task.functions, _chain(task), task.scene.time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
 
@@ -193,7 +193,7 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     if not len(times):
         return None
     samples = solved.samples(times)
-    _require_known(solved, samples, task.scene.tolerance)
+    require_known(solved, samples, task.scene.tolerance)
     return Motion(
         times=samples.times,
         numbers=samples.numbers,
@@ -269,7 +269,7 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
         raise SceneError(source, "mechanism.points", error.problem) from error
 
 
-def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
+def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
     """Find an input out of range at the scene's instants before anything is solved."""
     try:
         mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
@@ -285,12 +285,12 @@ def truncation_share(mechanism: Mechanism) -> float:
 
 
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
-    """How a scene's chain of series is cut.
+    """How a scene's chain of series is cut; that of many designs as finely as the largest of them needs.
 
     Args:
         derivative: highest time derivative that will be evaluated.
     """
-    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit), derivative)
+    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit.max()), derivative)
 
 
 def finest_tolerance(scene: Scene) -> float:
@@ -313,7 +313,7 @@ def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
     return min(settings.tolerance, COARSEST)
 
 
-def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
+def tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
     settings = chain_settings(scene, mechanism, 0)
     used = settings.kept.tolerance
@@ -326,7 +326,7 @@ def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 
-def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
+def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
     """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
 
     Raises:

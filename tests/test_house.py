@@ -28,6 +28,7 @@ ROOMS = {
         "scene",
         "simulation",
         "drawing_stands",
+        "sweeping",
         "mapping",
         "__main__",
     ),

@@ -8,7 +8,7 @@ power of two changes no bit of a result.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +61,22 @@ class Mechanism:
         """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
         carried = self.topology.carried.items()
         return max((carried_gain(self.carrier_weights[n], self.drawing, c) for n, c in carried), default=1.0)
+
+    def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
+        """Some members of a batch of one dimension, by number, or one car of it."""
+        vectors = {
+            name: place[members] if place.ndim > 1 else place for name, place in self.drawing.vectors.items()
+        }
+        return replace(
+            self,
+            origin=self.origin[members],
+            unit=self.unit[members],
+            drawing=Drawing(vectors, self.unit[members]),
+            drawn=self.drawn[members],
+            drawn_lacks=self.drawn_lacks[members],
+            drawn_doubt=self.drawn_doubt[members],
+            carrier_weights={name: weights[members] for name, weights in self.carrier_weights.items()},
+        )
 
     def places(self, y: Array) -> dict[str, Array]:
         """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
