@@ -224,7 +224,7 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     mechanism = readout.mechanism
     limits = map_limits(task.scene, mechanism, readout.plan.derivative)
     way = map_way(mechanism, task.functions, task.start, time.start, time.stop, limits)
-    notes = (*((why,) if why else ()), *_tolerance_notes(task.scene, mechanism), *way.notes)
+    notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
     states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
     if way.reason:
         states = replace(states, status=_stop_of_map(task, states))

@@ -87,7 +87,7 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
-    def _curvature(self) -> tuple[Array, Indices, Indices]:
+    def curvature(self) -> tuple[Array, Indices, Indices]:
         """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
         pairs: dict[tuple[int, int], int] = {}
         entries: list[tuple[int, int, float]] = []
@@ -223,7 +223,7 @@ class QuadraticMap:
         preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns). C_u is
         linear in y, so this one number holds everywhere.
         """
-        table, first, second = self._curvature
+        table, first, second = self.curvature
         if weights is None:
             return np.asarray(np.add.reduce(np.abs(preconditioner @ table), axis=-1).max(axis=-1))
         products = weights.take(first, axis=-1) * weights.take(second, axis=-1)
