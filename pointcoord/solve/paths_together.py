@@ -175,8 +175,14 @@ def follow_together(columns: Columns, y: Array, target: Array, tolerance: float,
         offset = columns.map.residual(columns.map.differences(here)) if closing else None
         travelling.append(
             _Travelling(
-                here, there - here[n:], there, offset, np.ones(count), here[:n].copy(),
-                np.full((blocks, count), np.inf), np.arange(low, part.stop),
+                here,
+                there - here[n:],
+                there,
+                offset,
+                np.ones(count),
+                here[:n].copy(),
+                np.full((blocks, count), np.inf),
+                np.arange(low, part.stop),
             )
         )
     for count in range(STEPS):
@@ -253,7 +259,7 @@ def _advance(columns: Columns, group: _Travelling, first: bool) -> NDArray[np.bo
         np.abs(inverse, out=inverse)
         omega = proof.lipschitz(inverse)
         sound = factors.sound.copy()
-        off = _Off(columns, proof.turning_of_all(inverse), np.zeros(members))
+        off = Off(columns, proof.turning_of_all(inverse), np.zeros(members))
         if not first:
             correction = columns.step(factors, d, 0.0 if wanted is None else wanted)
             here[:n] += correction
@@ -301,7 +307,7 @@ def _first_guess(turns: Array, missed: Array, omega: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class _Off:
+class Off:
     """What a correction e adds to the constants of a step: little, so it is bounded by magnitudes alone.
 
     Attributes:
@@ -340,7 +346,7 @@ def _finish(
                 continue
             inverse = factors.inverse()
             np.abs(inverse, out=inverse)
-            off = _Off(columns, proof.turning_of_all(inverse), np.abs(step).max(axis=0))
+            off = Off(columns, proof.turning_of_all(inverse), np.abs(step).max(axis=0))
             jacobian = np.abs(factors.entries)
             omega = proof.lipschitz(inverse)
             radius = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)

@@ -154,9 +154,7 @@ def kantorovich_radius(eta: Array, z: Array, omega: Array) -> Array:
     return np.where((room > 0.0) & (constant < 1.0), radius, np.inf)
 
 
-def block_proof(
-    columns: ColumnMap, plan: Elimination, structure: Structure, g: Array
-) -> BlockProof:
+def block_proof(columns: ColumnMap, plan: Elimination, structure: Structure, g: Array) -> BlockProof:
     """How the constants are summed for matrices of a pattern and their blocks, with weights g."""
     table, first, second = columns.system.curvature
     magnitude = np.abs(table) * (g[first] * g[second])

@@ -188,9 +188,7 @@ class Eliminated:
         return self.plan.inverse_program.run(self)
 
 
-def eliminate_like(
-    matrix: Array, entries: Sequence[Entry], blocks: Sequence[Block]
-) -> Elimination | None:
+def eliminate_like(matrix: Array, entries: Sequence[Entry], blocks: Sequence[Block]) -> Elimination | None:
     """Choose pivots for matrices of a pattern by one of them, shape (size, size); None if it is singular.
 
     Args:
@@ -255,7 +253,9 @@ class InverseProgram:
         count = 0
         # Registers are numbered as they come; entries get theirs at the end.
         final: dict[int, int] = {}
-        units = [(pivot.row, block) for block in plan.blocks for pivot in plan.pivots if pivot.column in block]
+        units = [
+            (pivot.row, block) for block in plan.blocks for pivot in plan.pivots if pivot.column in block
+        ]
         for unit, block in units:
             y: dict[int, int] = {unit: _ONE}
             pivots = [(number, pivot) for number, pivot in enumerate(plan.pivots) if pivot.column in block]

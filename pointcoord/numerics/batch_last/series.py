@@ -122,4 +122,4 @@ class ColumnSeries:
         for k in range(self.count - 2, -1, -1):
             total *= s
             total += self.y[k]
-        return total
+        return np.asarray(total)
