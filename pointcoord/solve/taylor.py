@@ -22,7 +22,7 @@ of their order, its segments cut as above, takes 2 to 9 times as long, and one o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import perm
 
@@ -253,13 +253,18 @@ class _Step:
 
 @dataclass(frozen=True)
 class _Course:
-    """What a chain follows, a mechanism and its inputs over a time, and how finely."""
+    """What a chain follows, a mechanism and its inputs over a time, and how finely.
+
+    Attributes:
+        measured: the segment that was last measured, and its length.
+    """
 
     mechanism: Mechanism
     functions: Mapping[str, TimeFunction]
     start: float
     stop: float
     settings: Settings
+    measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
 
     @property
     def shortest(self) -> float:
@@ -346,11 +351,18 @@ class _Course:
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        terms = segment.coefficients[..., : self.mechanism.map.unknowns]
-        length = _length(terms, self.settings)
+        # Asked for twice of most segments: when it is made and when it is cut.
+        if self.measured and self.measured[0][0] is segment:
+            return self.measured[0][1]
+        self.measured[:] = [(segment, self._length_of(segment))]
+        return self.measured[0][1]
+
+    def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
+        logs = _log_sizes(segment.coefficients[..., : self.mechanism.map.unknowns])
+        length = _length(logs, self.settings)
         if not np.isfinite(length):
             return length, None
-        decay = _decay(terms, length)
+        decay = _decay(logs, length)
         return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
 
     def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
@@ -385,7 +397,7 @@ class _Course:
     def solved_end(self, segment: Segment, end: float) -> Converged:
         """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
         s, series = (end - segment.start) / segment.scale, segment.coefficients
-        guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+        guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
         return newton_refine(self.mechanism.map, guess, tolerance=SOLVED * self.settings.tolerance)
 
@@ -431,14 +443,17 @@ class _Course:
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 
 
-def _length(series: Array, settings: Settings) -> float:
+def _length(logs: Array, settings: Settings) -> float:
     r"""Length of a segment in its own time unit; the shortest that a member of the batch needs.
 
     With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
     max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
+
+    Args:
+        logs: of the largest coefficients (see `_log_sizes`).
     """
-    logs = _log_sizes(series)
+    logs = logs.copy()
     logs[:, 0] = 0.0
     if not np.isfinite(logs[:, -2:]).any():
         return np.inf
@@ -486,13 +501,15 @@ def _log_sizes(series: Array) -> Array:
         return np.asarray(np.log(size))
 
 
-def _decay(series: Array, length: float) -> Decay:
+def _decay(logs: Array, length: float) -> Decay:
     """How terms fall, and what that makes of the length that was found; in the series' unit of time.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
+
+    Args:
+        logs: of the largest coefficients (see `_log_sizes`).
     """
-    logs = _log_sizes(series)
     orders = logs.shape[-1] - 1
     pairs = np.maximum(logs[:, 1:], logs[:, :-1])
     middle = orders // 2
