@@ -9,6 +9,8 @@ k = 1 is the paper's velocity equation (19), k = 2 half its acceleration equatio
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -98,7 +100,18 @@ def _expand_one(
 def cross_series(a: Array, b: Array) -> Array:
     """Series of a x b from the series of two vectors, shapes (..., order + 1, 3)."""
     orders = a.shape[-2]
-    pairs = [(i, k - i) for k in range(orders) for i in range(k + 1)]
-    first, second = np.array(pairs).T
-    starts = np.cumsum([0, *range(1, orders)])
-    return np.add.reduceat(np.cross(a[..., first, :], b[..., second, :]), starts, axis=-2)
+    # Row k of a table holds b_k, b_(k-1), ..., b_0 and zeros: its product with a sums a_i b_(k-i).
+    padded = np.zeros((*b.shape[:-2], 3, orders + 1))
+    padded[..., 1:] = b.swapaxes(-1, -2)
+    products = padded[..., _backwards(orders)] @ a[..., None, :, :]
+    cross = np.empty((*products.shape[:-3], orders, 3))
+    for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.subtract(products[..., k, :, j], products[..., j, :, k], out=cross[..., i])
+    return cross
+
+
+@cache
+def _backwards(orders: int) -> NDArray[np.intp]:
+    """Places 1 + k - i, and 0 where i > k, (orders, orders)."""
+    number = np.arange(orders)
+    return np.asarray(np.maximum(1 + number[:, None] - number, 0), dtype=np.intp)

@@ -25,7 +25,7 @@ every series (see `partial_map`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import perm
 
@@ -279,6 +279,7 @@ class _Course:
 
     Attributes:
         part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
+        measured: the segment that was last measured, and its length.
     """
 
     mechanism: Mechanism
@@ -287,6 +288,7 @@ class _Course:
     stop: float
     settings: Settings
     part: PartialMap
+    measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
 
     def whole(self, segment: Segment) -> Segment:
         """A segment with its coordinates in the mechanism's order."""
@@ -377,11 +379,18 @@ class _Course:
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        terms = segment.coefficients[..., : self.part.system.unknowns]
-        length = _length(terms, self.settings)
+        # Asked for twice of most segments: when it is made and when it is cut.
+        if self.measured and self.measured[0][0] is segment:
+            return self.measured[0][1]
+        self.measured[:] = [(segment, self._length_of(segment))]
+        return self.measured[0][1]
+
+    def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
+        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        length = length_by_sizes(logs, self.settings)
         if not np.isfinite(length):
             return length, None
-        decay = _decay(terms, length)
+        decay = decay_by_sizes(logs, length)
         return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
 
     def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
@@ -416,7 +425,7 @@ class _Course:
     def solved_end(self, segment: Segment, end: float) -> Converged:
         """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
         s, series = (end - segment.start) / segment.scale, segment.coefficients
-        guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+        guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
         return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
@@ -461,11 +470,6 @@ class _Course:
         status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
-
-
-def _length(series: Array, settings: Settings) -> float:
-    """Length of a segment in its own time unit; the shortest that a member of the batch needs."""
-    return length_by_sizes(_log_sizes(series), settings)
 
 
 def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
@@ -529,16 +533,14 @@ def _log_sizes(series: Array) -> Array:
         return np.asarray(np.log(size))
 
 
-def _decay(series: Array, length: float) -> Decay:
-    """How terms fall, and what that makes of the length that was found; in the series' unit of time."""
-    return decay_by_sizes(_log_sizes(series), length)
-
-
 def decay_by_sizes(logs: Array, length: float) -> Decay:
     """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
+
+    Args:
+        logs: of the largest coefficients (see `_log_sizes`).
     """
     orders = logs.shape[-1] - 1
     pairs = np.maximum(logs[:, 1:], logs[:, :-1])
