@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +39,8 @@ Array = NDArray[np.float64]
 
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
+# Instants that are checked at a time: what is made on the way takes some 5 MB.
+BLOCK = 2**14
 
 
 def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
@@ -153,8 +155,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    _check_range(mechanism, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.derivative_of_every_point)
+    _check_range(readout, functions, scene.instants)
     first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
     closed = close_drawing(mechanism, first, tolerance)
     moved = closing(mechanism, closed.y)
@@ -269,14 +270,33 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
         raise SceneError(source, "mechanism.points", error.problem) from error
 
 
-def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved."""
+def _check_range(readout: Readout, functions: Mapping[str, TimeFunction], instants: Array) -> None:
+    """Find an input out of range at the scene's instants before anything is solved.
+
+    A block at a time; only of a scene that is refused are all looked at, for the value that tells most.
+    """
     try:
-        mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
+        for block in _blocks(instants):
+            _check_range_at(readout, functions, block)
+        return
+    except InputOutOfRange as error:
+        found = error
+    _check_range_at(readout, functions, instants)
+    raise found
+
+
+def _check_range_at(readout: Readout, functions: Mapping[str, TimeFunction], instants: Array) -> None:
+    try:
+        readout.mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
     except InputOutOfRange as error:
         values = functions[error.name].series(instants, 0)[:, 0]
         when = float(instants[np.argmax(values == error.value)])
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
+    readout.chassis.states(instants, readout.derivative_of_every_point)
+
+
+def _blocks(rows: Array) -> Iterator[Array]:
+    return (rows[low : low + BLOCK] for low in range(0, len(rows), BLOCK))
 
 
 def truncation_share(mechanism: Mechanism) -> float:
@@ -332,9 +352,10 @@ def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> N
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = solved.doubts(samples.times)
-    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+    each = (doubt for block in _blocks(samples.times) for doubt in solved.doubts(block).values())
+    if all((doubt <= tolerance).all() for doubt in each):
         return
+    doubts = solved.doubts(samples.times)
     certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
     unproven = ~np.isfinite(solved.proof(samples).bound)
     unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
@@ -353,8 +374,10 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
         why = f": {effect.no_number}" if effect.no_number else ""
         for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
             for name in effect.names or channel:
-                is_number = np.isfinite(channel[name]).reshape(len(samples.times), -1).all(axis=-1)
-                if bad := int(np.count_nonzero(~is_number)):
+                numbers = channel[name].reshape(len(samples.times), -1)
+                known = (np.isfinite(block).all(axis=-1) for block in _blocks(numbers))
+                bad = sum(int(np.count_nonzero(~each)) for each in known)
+                if bad:
                     notes.append(
                         f"{channel.quantity.words} of {name} is not a number at {bad} of "
                         f"{len(samples.times)} instants{why}"

@@ -10,9 +10,9 @@ a product whose result is written where it belongs. What is made of states, an a
 what a coordinate costs. Whether a cell is short enough is not guessed:
 
 - of a state, by its series. About the middle c of a cell of half the length h, sum_j c_j s^j has terms of
-  order m of at most sum_j binomial(j, m) |c_j| c^(j - m) h^m, and the part of those that is beyond the degree
-  bounds the difference (see `chebyshev`): below an eighth of a rounding of the terms' magnitudes, by which the
-  sum of the series is rounded itself, whatever the terms are.
+  order m of at most sum_j binomial(j, m) |c_j| c^(j - m) h^m, and what of those is beyond the degree bounds
+  the difference (see `chebyshev`): below an eighth of a rounding of the terms' magnitudes, by which the sum
+  of the series is rounded itself, whatever the terms are.
 - of a number that is computed of states, analytic as these are: where the second half of its coefficients is
   below `HALFWAY`, what lies beyond them is below the square of that and more.
 - a law of the chassis is taken at the instants themselves, unless the same holds of it, no break lies in the
