@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -47,6 +47,8 @@ Array = NDArray[np.float64]
 TRIED = 32
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
+# Instants that are checked at a time: what is made on the way takes some 5 MB.
+BLOCK = 2**14
 
 
 def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
@@ -185,7 +187,8 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     )
     functions = {name: scene.functions[name] for name in whole.topology.required_inputs}
     check_range(whole, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.reported_derivative)
+    for block in _blocks(scene.instants):
+        readout.chassis.states(block, readout.reported_derivative)
     # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
     first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
     closed = close_drawing(whole, first, tolerance)
@@ -410,13 +413,31 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
 
 
 def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved."""
+    """Find an input out of range at the scene's instants before anything is solved.
+
+    A block at a time; only of a scene that is refused are all looked at, for the value that tells most.
+    """
+    try:
+        for block in _blocks(instants):
+            _check_range_at(mechanism, functions, block)
+        return
+    except InputOutOfRange as error:
+        found = error
+    _check_range_at(mechanism, functions, instants)
+    raise found
+
+
+def _check_range_at(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
     try:
         mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
     except InputOutOfRange as error:
         values = functions[error.name].series(instants, 0)[:, 0]
         when = float(instants[np.argmax(values == error.value)])
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
+
+
+def _blocks(rows: Array) -> Iterator[Array]:
+    return (rows[low : low + BLOCK] for low in range(0, len(rows), BLOCK))
 
 
 def truncation_share(mechanism: Mechanism) -> float:
@@ -481,9 +502,10 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = solved.doubts(samples.times)
-    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+    each = (doubt for block in _blocks(samples.times) for doubt in solved.doubts(block).values())
+    if all((doubt <= tolerance).all() for doubt in each):
         return
+    doubts = solved.doubts(samples.times)
     certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
     unproven = ~np.isfinite(solved.proof(samples).bound)
     unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
@@ -502,8 +524,10 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
         why = f": {effect.no_number}" if effect.no_number else ""
         for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
             for name in effect.names or channel:
-                is_number = np.isfinite(channel[name]).reshape(len(samples.times), -1).all(axis=-1)
-                if bad := int(np.count_nonzero(~is_number)):
+                numbers = channel[name].reshape(len(samples.times), -1)
+                known = (np.isfinite(block).all(axis=-1) for block in _blocks(numbers))
+                bad = sum(int(np.count_nonzero(~each)) for each in known)
+                if bad:
                     notes.append(
                         f"{channel.quantity.words} of {name} is not a number at {bad} of "
                         f"{len(samples.times)} instants{why}"

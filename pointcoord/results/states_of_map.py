@@ -64,21 +64,25 @@ class StatesOfMap:
         readout, table = self.readout, self.readout.table
         topology, drawn = readout.mechanism.topology, readout.mechanism.drawing.vectors
         if rows is None:
-            rows = np.empty((3 * (len(table.moving) + len(table.still)), len(instants)))
+            rows = np.empty((table.height, len(instants)))
         middle, half = self._boxes
         inputs, patch = self._inputs(instants)
         sums = np.empty((len(inputs), self._patches.coefficients.shape[-1], len(instants)))
         sum_rows(self._patches.coefficients, middle, half, self.way.order, patch, inputs, sums)
         place = {name: 3 * i for i, name in enumerate(moving_points(topology))}
         states: list[dict[str, Array]] = [{} for _ in inputs]
-        for i, (order, name) in enumerate((*table.moving, *table.still)):
+        unit = float(readout.mechanism.unit)
+        for first, (order, name) in table.states:
             if name in place:
-                rows[3 * i : 3 * i + 3] = sums[order, place[name] : place[name] + 3]
+                rows[first : first + 3] = sums[order, place[name] : place[name] + 3]
             else:
-                vectors(rows, 3 * i)[...] = drawn[name] * float(readout.mechanism.unit) if order == 0 else 0.0
-            states[order][name] = vectors(rows, 3 * i)
+                vectors(rows, first)[...] = drawn[name] * unit if order == 0 else 0.0
+            states[order][name] = vectors(rows, first)
         for order, name in table.spare:
             states[order][name] = vectors(sums[order], place[name])
+        for order, name in table.spare_still:
+            standing = drawn[name] * (unit if order == 0 else 0.0)
+            states[order][name] = np.broadcast_to(standing, (len(instants), 3))
         return states
 
     def coordinates(self, instants: Array) -> list[Array]:
