@@ -335,9 +335,8 @@ def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> N
     doubts = solved.doubts(samples.times)
     if all((doubt <= tolerance).all() for doubt in doubts.values()):
         return
-    certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
     unproven = ~np.isfinite(solved.proof(samples).bound)
-    unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
+    unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))
