@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.body_fixed import apart, carried_errors
-from pointcoord.bounds.certified_poses import Certifier
+from pointcoord.bounds.certified_poses import CertifiedPoses, Certifier
 from pointcoord.bounds.reported_bounds import POSITION, Numbers, Proven, Reported, reported_bounds
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
@@ -90,18 +90,26 @@ def prove(
     for low in range(0, len(times), BLOCK):
         here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
         part = reported.part(here)
-        columns[:, here] = _positions(certifier, times[here], part, certain)
         if rates:
-            bounds.put(here, *_numbers(mechanism, times[here], part, certain))
+            pose, certified = _alone(mechanism, times[here], part, certain)
+            bounds.put(here, *reported_bounds(mechanism, pose, part))
+            y = np.ascontiguousarray(pose.states[0].T)
+        else:
+            y = np.ascontiguousarray(part.solved.coordinates(times[here], 0)[0].T)
+            certified = certifier.certify(times[here], y, part.doubts(times[here], certain))
+        columns[:, here] = _positions(mechanism, times[here], part, y, certified)
     own, bound, carried, gain, condition, residual = columns
     return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
 
 
-def _positions(certifier: Certifier, times: Array, reported: Reported, certain: bool) -> tuple[Array, ...]:
-    """What is proven of the positions at instants that do not decrease: the arrays of a `Proof`."""
-    mechanism = certifier.mechanism
-    y = np.ascontiguousarray(reported.solved.coordinates(times, 0)[0].T)
-    certified = certifier.certify(times, y, reported.doubts(times, certain))
+def _positions(
+    mechanism: Mechanism, times: Array, reported: Reported, y: Array, certified: CertifiedPoses
+) -> tuple[Array, ...]:
+    """What is proven of the positions at some instants: the arrays of a `Proof`.
+
+    Args:
+        y: coordinates, (size, N).
+    """
     unit, added = mechanism.unit, reported.added(times, mechanism.origin)
     doubt = reported.chassis.rounding(times, mechanism.origin).T / unit
     local = {name: _local(place.T, added, unit) for name, place in reported.numbers[POSITION].items()}
@@ -113,10 +121,10 @@ def _positions(certifier: Certifier, times: Array, reported: Reported, certain: 
     return unit * own, unit * bound, unit * carried, gain, certified.condition, certified.residual
 
 
-def _numbers(
+def _alone(
     mechanism: Mechanism, times: Array, reported: Reported, certain: bool
-) -> tuple[Numbers, Numbers]:
-    """Proven and expected error of every number at some instants."""
+) -> tuple[Proven, CertifiedPoses]:
+    """Poses that are proven each by its own inverse, with all that their rates depend on."""
     y, *rates = (np.ascontiguousarray(state) for state in reported.solved.coordinates(times, 2))
     factors = factorise(mechanism.map.jacobian(y))
     lacking, uncertainty = mechanism.known_data(y, reported.doubts(times, certain))
@@ -126,8 +134,10 @@ def _numbers(
     for place, (value, _, _) in driven.items():
         expected[:, place] = value.radius[1]
     certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
-    pose = Proven(factors, certificate, times, (y, *rates), (lacking, uncertainty, expected), driven)
-    return reported_bounds(mechanism, pose, reported)
+    certified = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
+    certified.put_alone(np.arange(len(times)), certificate, factors)
+    data = (lacking, uncertainty, expected)
+    return Proven(factors, certificate, times, (y, *rates), data, driven), certified
 
 
 def _sharpened(
