@@ -506,9 +506,8 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     if all((doubt <= tolerance).all() for doubt in each):
         return
     doubts = solved.doubts(samples.times)
-    certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
     unproven = ~np.isfinite(solved.proof(samples).bound)
-    unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
+    unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))

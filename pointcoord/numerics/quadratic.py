@@ -191,15 +191,19 @@ class QuadraticMap:
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
-        factors, coefficients, first, flat = self._jacobian_pattern
         _, a, b, c, d, _ = self._terms
-        both = np.concatenate(
-            [data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)], -1
+        return self.jacobian_change(
+            data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)
         )
+
+    def jacobian_change(self, left: Array, right: Array) -> Array:
+        """The same when the two differences of each term move by `left` and `right`, (..., terms)."""
+        factors, coefficients, first, flat = self._jacobian_pattern
+        both = np.concatenate([left, right], axis=-1)
         entries = np.add.reduceat(both.take(factors, axis=-1) * np.abs(coefficients), first, axis=-1)
-        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix = np.zeros((*left.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., flat] = entries
-        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
+        return matrix.reshape(*left.shape[:-1], len(self.rows), self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).

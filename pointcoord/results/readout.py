@@ -127,10 +127,6 @@ class Readout:
             other.name: other.gives_numbers[quantity] for other in others if quantity in other.gives_numbers
         }
 
-    def offset(self, times: Array) -> Array | None:
-        """What is added to every position, the origin and the chassis' displacement; None if it is zero."""
-        return self._offset(self.chassis.states(times, 0))
-
     def _offset(self, shifts: Sequence[Array]) -> Array | None:
         origin = self.mechanism.origin[..., None, :]
         if not shifts:

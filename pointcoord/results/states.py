@@ -91,7 +91,7 @@ class StatesAtInstants:
         """States at some of the instants."""
         mechanism, derivatives = self.readout.mechanism, self.readout.derivatives
         layout, topology = mechanism.layout, mechanism.topology
-        coordinates = self.coordinates(instants)
+        coordinates = self.coordinates(instants, self.readout.plan.derivative)
         taylor = np.stack([state / max(order, 1) for order, state in enumerate(coordinates)], axis=-2)
         places = {name: list(layout.vector(name)) for name in (*topology.chassis, *topology.moving)}
         series = {name: taylor[..., place] for name, place in places.items()}
@@ -110,9 +110,9 @@ class StatesAtInstants:
                 vectors(rows, first)[...] = states[order][name]
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that were solved for, at some of the instants, each (N, size)."""
-        return self.solved.coordinates(instants)
+        return self.solved.coordinates(instants)[: derivatives + 1]
 
     def summed(self, instants: Array) -> tuple[Summed, ...]:
         """Nothing: they were solved for."""
@@ -185,16 +185,36 @@ class StatesOfChain:
             states[order][name] = np.broadcast_to(self._spare_still[..., i, None, :], (*batch, count, 3))
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
-        """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
-        mechanism, derivative = self.readout.mechanism, self.readout.plan.derivative
-        pieces = [segment.coefficients for segment in self.chain.segments]
-        y, *rates = (
-            np.ascontiguousarray(state) for state in evaluate(self.chain, pieces, instants, derivative)
-        )
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and the derivatives that the plan solves for, at instants that do not decrease, each (N, size).
+
+        The instants lie side by side in memory.
+        """
+        mechanism = self.readout.mechanism
+        count, unknowns = len(instants), mechanism.map.unknowns
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
-        y[..., mechanism.map.unknowns :] = known[..., 0, :]
-        return [y, *rates]
+        if derivatives == 0:
+            y = np.empty((mechanism.map.size, count))
+            self._unknowns.sum(instants, y[:unknowns])
+            states = y[None]
+        else:
+            states = np.empty((self.readout.plan.derivative + 1, mechanism.map.size, count))
+            self._coordinates.sum(instants, states.reshape(-1, count))
+        states[0, unknowns:] = known[..., 0, :].T
+        return list(states[: derivatives + 1].swapaxes(-1, -2))
+
+    @cached_property
+    def _unknowns(self) -> SeriesRows:
+        """The series of the unknown coordinates."""
+        pieces = [segment.coefficients for segment in self.chain.segments]
+        return SeriesRows.of(self.chain, pieces, [range(self.readout.mechanism.map.unknowns)])
+
+    @cached_property
+    def _coordinates(self) -> SeriesRows:
+        """The series of all coordinates and of the derivatives that the plan solves for."""
+        pieces = [segment.coefficients for segment in self.chain.segments]
+        size = range(self.readout.mechanism.map.size)
+        return SeriesRows.of(self.chain, pieces, [size] * (self.readout.plan.derivative + 1))
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""

@@ -85,10 +85,11 @@ class StatesOfMap:
             states[order][name] = np.broadcast_to(standing, (len(instants), 3))
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
         mechanism = self.readout.mechanism
-        unknown = self._sums(self._patches.series, self._inputs(instants))
+        states, patch = self._inputs(instants)
+        unknown = self._sums(self._patches.series, (states[: derivatives + 1], patch))
         laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
         known = mechanism.known_series(laws)
         return [
