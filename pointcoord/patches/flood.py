@@ -48,7 +48,7 @@ FOLD = "no patch can be proven here down to the smallest: a fold, where assembli
 ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
 UNREACHED = "not reached from the drawing without crossing what is not covered"
 SEAM = "two ways from the drawing around a place that is not covered lead to different assemblies here"
-TOO_MANY = "the most patches that are allowed were used before this place was reached"
+TOO_MANY = "the most patches that are allowed, or tries at them, were used before this place was reached"
 
 
 @dataclass(frozen=True)
@@ -178,6 +178,7 @@ class _Flood:
         waiting: boxes that nothing has entered yet. entered: those that are to be tried.
         given_up: with reasons. kept: batches of proven patches, in the order in which they were reached.
         wanted: which of the smallest boxes are wanted; all if not given.
+        tried: how many boxes were tried.
     """
 
     domain: Domain
@@ -186,6 +187,7 @@ class _Flood:
     most: int
     wanted: Marked | None = None
     work: Work = field(default_factory=Work)
+    tried: int = 0
     waiting: dict[Key, None] = field(default_factory=dict)
     entered: dict[Key, Entry] = field(default_factory=dict)
     given_up: dict[Key, str] = field(default_factory=dict)
@@ -200,6 +202,7 @@ class _Flood:
         """Prove boxes, keep those that can be, and halve the others."""
         domain, mechanism = self.domain, self.domain.mechanism
         system = mechanism.map
+        self.tried += len(boxes)
         low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
         middle, half = domain.middle_and_half(low, high)
         known, lacking, data = domain.known_over(middle, half, self.order)
@@ -343,6 +346,7 @@ def flood(
     start: tuple[Whole, Array],
     most: int,
     wanted: Marked | None = None,
+    tries: int | None = None,
 ) -> Cover:
     """Cover a domain from a pose on.
 
@@ -350,11 +354,12 @@ def flood(
         start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
         most: patches.
         wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
+        tries: boxes; as many as it takes if not given.
     """
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
     state = _Flood(domain, order, limits, most, wanted)
     state.entered[whole] = Entry(*start)
-    while state.entered and state.count < most:
+    while state.entered and state.count < most and (tries is None or state.tried < tries):
         batch = list(state.entered.items())[:BATCH]
         for key, _ in batch:
             del state.entered[key]
