@@ -39,6 +39,8 @@ Key = tuple[Corner, Corner]
 
 # Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
 BATCH = 32
+# Steps of a path to the middle of a box; one that takes more leads through what no patch will cover at once.
+STEPS = 100
 # A part that uses no less than this share of what the whole did is as exact as rounding lets it be.
 NO_BETTER = 0.9
 # Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
@@ -178,7 +180,6 @@ class _Flood:
         waiting: boxes that nothing has entered yet. entered: those that are to be tried.
         given_up: with reasons. kept: batches of proven patches, in the order in which they were reached.
         wanted: which of the smallest boxes are wanted; all if not given.
-        tried: how many boxes were tried.
     """
 
     domain: Domain
@@ -187,7 +188,6 @@ class _Flood:
     most: int
     wanted: Marked | None = None
     work: Work = field(default_factory=Work)
-    tried: int = 0
     waiting: dict[Key, None] = field(default_factory=dict)
     entered: dict[Key, Entry] = field(default_factory=dict)
     given_up: dict[Key, str] = field(default_factory=dict)
@@ -202,11 +202,10 @@ class _Flood:
         """Prove boxes, keep those that can be, and halve the others."""
         domain, mechanism = self.domain, self.domain.mechanism
         system = mechanism.map
-        self.tried += len(boxes)
         low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
         middle, half = domain.middle_and_half(low, high)
         known, lacking, data = domain.known_over(middle, half, self.order)
-        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0])
+        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0], steps=STEPS)
         self.work += path.work
         arrived = np.flatnonzero(path.done >= 1.0)
         for place in np.flatnonzero(path.done < 1.0).tolist():
@@ -346,7 +345,7 @@ def flood(
     start: tuple[Whole, Array],
     most: int,
     wanted: Marked | None = None,
-    tries: int | None = None,
+    factorisations: int | None = None,
 ) -> Cover:
     """Cover a domain from a pose on.
 
@@ -354,12 +353,13 @@ def flood(
         start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
         most: patches.
         wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
-        tries: boxes; as many as it takes if not given.
+        factorisations: after which nothing more is tried; as many as it takes if not given.
     """
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
     state = _Flood(domain, order, limits, most, wanted)
     state.entered[whole] = Entry(*start)
-    while state.entered and state.count < most and (tries is None or state.tried < tries):
+    enough = np.inf if factorisations is None else factorisations
+    while state.entered and state.count < most and state.work.factorisations < enough:
         batch = list(state.entered.items())[:BATCH]
         for key, _ in batch:
             del state.entered[key]
