@@ -39,6 +39,8 @@ Key = tuple[Corner, Corner]
 
 # Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
 BATCH = 32
+# Steps of a path to the middle of a box; one that takes more leads through what no patch will cover at once.
+STEPS = 100
 # A part that uses no less than this share of what the whole did is as exact as rounding lets it be.
 NO_BETTER = 0.9
 # Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
@@ -48,7 +50,7 @@ FOLD = "no patch can be proven here down to the smallest: a fold, where assembli
 ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
 UNREACHED = "not reached from the drawing without crossing what is not covered"
 SEAM = "two ways from the drawing around a place that is not covered lead to different assemblies here"
-TOO_MANY = "the most patches that are allowed were used before this place was reached"
+TOO_MANY = "the most patches that are allowed, or tries at them, were used before this place was reached"
 
 
 @dataclass(frozen=True)
@@ -203,7 +205,7 @@ class _Flood:
         low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
         middle, half = domain.middle_and_half(low, high)
         known, lacking, data = domain.known_over(middle, half, self.order)
-        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0])
+        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0], steps=STEPS)
         self.work += path.work
         arrived = np.flatnonzero(path.done >= 1.0)
         for place in np.flatnonzero(path.done < 1.0).tolist():
@@ -343,6 +345,7 @@ def flood(
     start: tuple[Whole, Array],
     most: int,
     wanted: Marked | None = None,
+    factorisations: int | None = None,
 ) -> Cover:
     """Cover a domain from a pose on.
 
@@ -350,11 +353,13 @@ def flood(
         start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
         most: patches.
         wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
+        factorisations: after which nothing more is tried; as many as it takes if not given.
     """
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
     state = _Flood(domain, order, limits, most, wanted)
     state.entered[whole] = Entry(*start)
-    while state.entered and state.count < most:
+    enough = np.inf if factorisations is None else factorisations
+    while state.entered and state.count < most and state.work.factorisations < enough:
         batch = list(state.entered.items())[:BATCH]
         for key, _ in batch:
             del state.entered[key]

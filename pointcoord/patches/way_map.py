@@ -34,8 +34,8 @@ Whole = NDArray[np.int64]
 
 # How often a range is halved at most, by how many inputs move: 65,536 to 262,144 of the smallest boxes.
 HALVINGS = {1: 16, 2: 9, 3: 6}
-# Patches of one motion: some seconds.
-MOST = 2048
+# Patches of one motion, and factorisations that are spent on them: some seconds.
+MOST, ENOUGH = 1024, 40000
 # Orders: fewer show nothing, more gain little; of three inputs 12 are 455 powers.
 LEAST_ORDER, MOST_DIGITS, MOST_ORDER = 6, 16, {1: 20, 2: 20, 3: 12}
 # Least width of a range, in parts of its size or of 1, of an input that hardly moves.
@@ -105,9 +105,11 @@ def map_way(
     """
     spans = way_of(functions, start, stop)
     ranges: dict[str, tuple[float, float]] = {}
-    for i, name in enumerate(functions):
+    for i, (name, law) in enumerate(functions.items()):
         low, high = float(spans.low[:, i].min()), float(spans.high[:, i].max())
-        ranges[name] = (low, high) if low == high else _widened(low, high)
+        # At a single instant an input has one value, and may have rates.
+        still = low == high and not law.series(spans.first, 2)[..., 1:].any()
+        ranges[name] = (low, high) if still else _widened(low, high)
     if all(low == high for low, high in ranges.values()):
         # A map has an input.
         name = next(iter(ranges))
@@ -124,7 +126,7 @@ def map_way(
     first = np.array([float(functions[name].series(start, 0)[..., 0]) for name in domain.free])
     least, most = domain.ends
     twice = np.clip(np.round((first - least) / (most - least) * 2 * domain.parts), 0, 2 * domain.parts)
-    cover = flood(domain, order, limits, (twice.astype(np.int64), pose.y), MOST, wanted)
+    cover = flood(domain, order, limits, (twice.astype(np.int64), pose.y), MOST, wanted, ENOUGH)
     reasons = tuple(dict.fromkeys(reason for _, reason in cover.given_up))
     patches = cover.patches
     if patches is None:

@@ -159,6 +159,7 @@ def follow(
     target: Array,
     factors: Factors | None = None,
     tolerance: float = 0.0,
+    steps: int = STEPS,
 ) -> Path:
     """Carry poses along straight paths to other known coordinates.
 
@@ -167,6 +168,7 @@ def follow(
         target: known coordinates at the end, shape (..., size - unknowns).
         factors: factorisation of C_u at y, if it is at hand.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
+        steps: at most so many.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
@@ -185,7 +187,7 @@ def follow(
     factors = factors.reshaped((len(y),))
     side = orientation(factors)
     active = np.flatnonzero(~factors.singular)
-    for _ in range(STEPS):
+    for _ in range(steps):
         if not active.size:
             break
         left, local = remaining[active], factors.taken(active)
