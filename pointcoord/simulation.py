@@ -283,7 +283,7 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
     until = max(way.until, time.start)
     known = mechanism.known_series({name: f.series(until, 0) for name, f in functions.items()})
     inputs = {name: float(value) for name, value in mechanism.input_values(known[..., 0, :]).items()}
-    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]))[0][0]
+    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]), 0)[0][0]
     later = task.scene.instants[task.scene.instants > until]
     goal = float(later[0]) if len(later) else time.stop
     for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
