@@ -108,7 +108,7 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
         few, many = min(found.orders), max(found.orders)
         order = f"order {few}" if few == many else f"orders {few} to {many}"
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
-        lines += _unknowns(found)
+        lines[:0] = _unknowns(found)
         lines.append(
             f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
             f"factorisations, {found.start.factorisations} of them to assemble the start"
