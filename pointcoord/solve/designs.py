@@ -22,7 +22,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Path, Pose, assemble, close_drawing
 from pointcoord.solve.chains_together import Course, NotTogether
 from pointcoord.solve.paths_together import Columns, columns_of, follow_together
-from pointcoord.solve.status import COMPLETE, Blocked, Status
+from pointcoord.solve.status import COMPLETE, Status, blocked_by
 from pointcoord.solve.taylor import Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
@@ -147,7 +147,7 @@ class Follow:
             inputs = {name: law.series(start, 0)[..., 0] for name, law in self.functions.items()}
             return drawing, assemble(mechanism, inputs, start, drawing, self.tolerance)
         except AssemblyError as error:
-            return drawing, _status(error)
+            return drawing, blocked_by(error)
 
 
 @dataclass(frozen=True)
@@ -221,15 +221,3 @@ class _Together:
             else:
                 failures[number] = end
         return closed, pose, left
-
-
-def _status(error: AssemblyError) -> Blocked:
-    return Blocked(
-        error.problem,
-        reached=error.reached,
-        wanted=error.wanted,
-        condition=error.condition,
-        reduce=error.reduce,
-        limits=error.limits,
-        instant=error.instant,
-    )

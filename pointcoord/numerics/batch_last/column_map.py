@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.quadratic import Product, QuadraticMap
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -174,6 +175,24 @@ class ColumnMap:
     def jacobian_along(self, e: Array) -> Array:
         """The entries of C_u(h) of what holds no constant, from its differences."""
         return np.asarray(self._jacobian[1] @ e)
+
+    def uncertainty(self, d: Array, data: Array) -> Array:
+        """How far the computed C(y) may be from the exact one, shape (rows, members); see `quadratic`.
+
+        Args:
+            d: differences. data: uncertainty of every coordinate, shape (size,).
+        """
+        first, second = self.ends
+        left, right = self._factors
+        q, linear = self._sums
+        gamma = (max(len(row) for row in self.system.rows) + 3) * UNIT_ROUNDOFF
+        size = np.abs(d)
+        own = (data[first] + data[second])[:, None]
+        doubt = UNIT_ROUNDOFF * size + own
+        one, other = size.take(left, axis=0), size.take(right, axis=0)
+        spread = one * (gamma * other + doubt.take(right, axis=0))
+        spread += doubt.take(left, axis=0) * (other + doubt.take(right, axis=0))
+        return np.asarray(np.abs(q) @ spread + np.abs(linear) @ (gamma * size + doubt))
 
     @cached_property
     def convolution(self) -> Convolution:
