@@ -27,6 +27,7 @@ ROOMS = {
         "results",
         "scene",
         "simulation",
+        "poses",
         "drawing_stands",
         "sweeping",
         "mapping",

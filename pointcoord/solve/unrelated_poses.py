@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -345,7 +346,7 @@ class _Solver:
         off = float(mechanism.unit) * each.max(axis=0) + EPS * float(np.abs(mechanism.origin).max())
         return np.where(np.isfinite(off), (1.0 + 1e-6) * off, np.inf)
 
-    @property
+    @cached_property
     def _data(self) -> Array:
         """Uncertainty of every coordinate for all that is asked, shape (size,)."""
         mechanism, columns = self.mechanism, self.columns
