@@ -59,7 +59,8 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     Args:
         inputs: values of every input, rad or mm, of any shapes that broadcast; what moves the chassis is zero
             unless given.
-        tolerance: bound that positions should keep, mm; the scene's own unless given. Rounding may leave more.
+        tolerance: bound that positions should keep, mm; the scene's own unless given. Rounding may leave
+            more.
     Raises:
         SceneError: the hardpoints do not make a mechanism, or closing the drawing makes another car of it.
         UnknownName: an input that the suspension does not have, or one that is missing.

@@ -5,6 +5,7 @@ import pytest
 
 from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, simulate, solve_poses
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve import unrelated_poses
 from pointcoord.solve.assembly import assemble
 
 CARS = {"bounce": 1.6, "off-axis-strut": 1.6, "double-wishbone": 1.55}
@@ -25,6 +26,37 @@ def test_a_pose_is_the_assembled_one_within_both_bounds(name: str) -> None:
         own = mechanism.origin + mechanism.unit * pose.y[:, list(mechanism.layout.vector(point))]
         off = np.abs(found.position[point][some] - own).max(axis=-1)
         assert (off <= found.bound[some] + pose.bound).all()
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_poses_from_boxes_are_those_from_paths_of_their_own(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene, rng = Scene.load(name), np.random.default_rng(12)
+    inputs = {"arm_angle": CARS[name] + rng.uniform(-0.05, 0.05, 3000), "rack": rng.uniform(-5.0, 5.0, 3000)}
+    from_boxes = solve_poses(scene, inputs, tolerance=1e-9)
+    left: list[int] = []
+
+    def no_boxes(_: object, rest: np.ndarray) -> np.ndarray:
+        return rest
+
+    by_paths = unrelated_poses._Solver.by_paths
+
+    def counted(solver: unrelated_poses._Solver, rest: np.ndarray) -> np.ndarray:
+        left.append(len(rest))
+        return by_paths(solver, rest)
+
+    monkeypatch.setattr(unrelated_poses._Solver, "by_paths", counted)
+    solve_poses(scene, inputs, tolerance=1e-9)
+    assert left[0] < 300
+    monkeypatch.setattr(unrelated_poses._Solver, "by_boxes", no_boxes)
+    from_paths = solve_poses(scene, inputs, tolerance=1e-9)
+    assert left[1] == 3000
+    allowed = from_boxes.bound + from_paths.bound
+    for point in scene_mechanism(scene).topology.moving:
+        off = np.abs(from_boxes.position[point] - from_paths.position[point]).max(axis=-1)
+        assert (off <= allowed).all()
+    assert (from_boxes.bound <= 1e-9).all()
 
 
 @pytest.mark.parametrize("name", CARS)

@@ -44,7 +44,7 @@ INSTANTS = 101
 MOVED = 2.0  # mm, at most, along each axis: what a designer tries, and no drawing turns into another one
 SEED = 2026
 BLOCK = 512  # designs
-"""So many that an operation on all of them costs little beside its numbers, and their matrices fit in a cache."""
+"""So many that an operation on all costs little beside its numbers, and their matrices fit in a cache."""
 
 
 @lru_cache(maxsize=2)
