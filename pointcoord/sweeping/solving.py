@@ -62,7 +62,7 @@ Points = Mapping[str, Array]
 TOGETHER = 256
 # Bytes that solving takes on the way: of a design for its matrices, series and their products, and of a
 # number of the results at an instant for what the effects are made of.
-OF_A_DESIGN, OF_A_NUMBER = 300_000, 16
+OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
 # Two orders of summing the same three products differ by less than this part of the largest.
 SLACK = 1e-12
 
