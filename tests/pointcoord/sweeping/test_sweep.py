@@ -32,8 +32,11 @@ from pointcoord.sweeping import solving
 WISHBONE = Scene.load("double-wishbone")
 STRUT = Scene.load("off-axis-strut")
 PAPER = Scene.load("steer")
-# Offsets of lower_ball_joint.z, mm, of which the last three cannot be steered and bounced as the scene does.
-HEIGHTS = (-20.0, 0.0, 7.5, 20.0, 150.0, 140.0, 145.0)
+# Offsets of lower_ball_joint.z, mm: with the last two the car cannot be where the scene begins.
+HEIGHTS = (-20.0, 0.0, 7.5, 150.0, 160.0)
+SOUND = 3
+# With this one it stops 0.15 s into the motion.
+STOPS = 125.0
 
 
 def few_instants(scene: Scene, samples: int = 7) -> Scene:
@@ -111,11 +114,11 @@ def test_a_design_of_a_sweep_is_the_design_alone(scene: Scene, varied: str) -> N
 
 
 def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other() -> None:
-    together = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS})
-    assert set(together.failures) == {4, 5, 6}
-    assert together.solved.tolist() == [True] * 4 + [False] * 3
-    sound = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS[:4]})
-    for number in range(4):
+    together = sweep(WISHBONE, offsets={"lower_ball_joint.z": (*HEIGHTS, STOPS)})
+    assert set(together.failures) == {3, 4, 5}
+    assert together.solved.tolist() == [True] * SOUND + [False] * 3
+    sound = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS[:SOUND]})
+    for number in range(SOUND):
         assert_same_as_alone(together.of(number), together.scene(number))
         assert_same_as_alone(sound.of(number), together.scene(number))
     for number, failure in together.failures.items():
@@ -140,12 +143,12 @@ def test_the_numbers_of_a_failed_design_are_none_and_of_no_other() -> None:
 
 
 @given(order=st.permutations(range(len(HEIGHTS))))
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 def test_the_order_of_designs_does_not_matter(order: list[int]) -> None:
     found = sweep(WISHBONE, offsets={"lower_ball_joint.z": np.array(HEIGHTS)[order]})
     for place, number in enumerate(order):
-        assert (place in found.failures) == (number >= 4)
-        if number < 4:
+        assert (place in found.failures) == (number >= SOUND)
+        if number < SOUND:
             assert_same_as_alone(found.of(place), found.scene(place))
 
 
@@ -219,12 +222,12 @@ def test_a_grid_has_every_combination_once() -> None:
 
 
 def test_blocks_are_the_sweep_in_parts() -> None:
-    heights = np.linspace(-10.0, 10.0, 12)
+    heights = np.linspace(-10.0, 10.0, 6)
     whole = sweep(WISHBONE, offsets={"lower_ball_joint.z": heights})
     memory = 1.5 * solving.OF_A_DESIGN
     blocks = list(sweep_blocks(WISHBONE, offsets={"lower_ball_joint.z": heights}, memory=memory))
     assert len(blocks) > 1
-    assert [number for block in blocks for number in block.numbers_of_designs] == list(range(12))
+    assert [number for block in blocks for number in block.numbers_of_designs] == list(range(6))
     for block in blocks:
         for number in block.numbers_of_designs.tolist():
             assert_same_as_alone(block.of(number), whole.scene(number))
