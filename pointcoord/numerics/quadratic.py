@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -82,7 +83,7 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
-    def _curvature(self) -> tuple[Array, Indices, Indices]:
+    def curvature(self) -> tuple[Array, Indices, Indices]:
         """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
         pairs: dict[tuple[int, int], int] = {}
         entries: list[tuple[int, int, float]] = []
@@ -99,6 +100,24 @@ class QuadraticMap:
             table[index, column] += value
         ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
         return table, ends[:, 0], ends[:, 1]
+
+    @cached_property
+    def reads(self) -> tuple[frozenset[int], ...]:
+        """The coordinates that each row reads; a product with no difference in it reads none."""
+        return tuple(
+            frozenset(
+                i
+                for p in row
+                if p.coefficient and p.left[0] != p.left[1] and p.right[0] != p.right[1]
+                for i in (*p.left, *p.right)
+            )
+            for row in self.rows
+        )
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Which rows determine which unknowns, block after block."""
+        return structure_of(self)
 
     @property
     def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
@@ -170,7 +189,7 @@ class QuadraticMap:
         preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns). C_u is
         linear in y, so this one number holds everywhere.
         """
-        table, first, second = self._curvature
+        table, first, second = self.curvature
         products = weights.take(first, axis=-1) * weights.take(second, axis=-1)
         sums = np.abs(preconditioner @ table) @ products[..., None]
         return np.asarray((sums[..., 0] / weights).max(axis=-1))

@@ -69,6 +69,19 @@ class Blocked(Status):
         )
 
 
+def blocked_by(error: AssemblyError) -> Blocked:
+    """The status of a path that ended with an error."""
+    return Blocked(
+        error.problem,
+        reached=error.reached,
+        wanted=error.wanted,
+        condition=error.condition,
+        reduce=error.reduce,
+        limits=error.limits,
+        instant=error.instant,
+    )
+
+
 @dataclass(frozen=True)
 class TooLong(Status):
     """The motion takes more segments than the limit; see `MotionTooLong` for the attributes."""

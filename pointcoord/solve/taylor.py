@@ -154,7 +154,7 @@ def build_chain(
     """
     settings = settings.kept
     course = _Course(mechanism, functions, start, stop, settings)
-    joint = _Joint(start, pose.y, pose.factors, pose.left, _power_of_two(stop - start))
+    joint = _Joint(start, pose.y, pose.factors, pose.left, power_of_two(stop - start))
     side, members = orientation(joint.factors), joint.members
     work = Work()
     segments: list[Segment] = []
@@ -306,7 +306,7 @@ class _Course:
             order = needed
             # In a unit of about the radius of convergence: in a longer one the terms of many orders grow too
             # large, in a shorter one those of slow inputs are lost, and what is lost seems to have converged.
-            shorter = replace(joint, scale=min(joint.scale, _power_of_two(max(length, decay.radius))))
+            shorter = replace(joint, scale=min(joint.scale, power_of_two(max(length, decay.radius))))
             segment = self.series_about(shorter, order, segment)
         if order > SAFE and not (np.abs(segment.coefficients) < LARGEST).all():
             return self.series_about(joint, SAFE)
@@ -333,7 +333,7 @@ class _Course:
         if size.any():
             with np.errstate(over="ignore"):
                 fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-            scale = min(scale, _power_of_two(min(fastest, scale)))
+            scale = min(scale, power_of_two(min(fastest, scale)))
         first = None
         if begun is not None:
             count = begun.coefficients.shape[-2]
@@ -377,7 +377,7 @@ class _Course:
                 s = (end - segment.start) / segment.scale
                 good = on_branch(system, side, segment.coefficients, s, reached, ahead)
             if good.all():
-                scale = _power_of_two(length if np.isfinite(length) else end - joint.instant)
+                scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
             length = 0.5 * (end - joint.instant)
         return _Step(None, good, work)
@@ -433,13 +433,22 @@ class _Course:
 
 
 def _length(series: Array, settings: Settings) -> float:
-    r"""Length of a segment in its own time unit; the shortest that a member of the batch needs.
+    """Length of a segment in its own time unit; the shortest that a member of the batch needs."""
+    return length_by_sizes(_log_sizes(series), settings)
+
+
+def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
+    r"""Length of a segment in its own time unit, from the logarithms of its coefficients, (members, orders).
 
     With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
     max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
+
+    Args:
+        smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
+            member's derivative is taken for larger than it is. The same unless given.
     """
-    logs = _log_sizes(series)
+    logs = logs.copy()
     logs[:, 0] = 0.0
     if not np.isfinite(logs[:, -2:]).any():
         return np.inf
@@ -451,11 +460,13 @@ def _length(series: Array, settings: Settings) -> float:
     start = float(np.min(equal.max(axis=-1)))
     falling = _falling(len(orders), settings.derivative)
     terms = logs[:, None, None, :] + falling[:, None, :]  # members, derivatives, trials, orders
+    whole_terms = terms if smallest is None else smallest[:, None, None, :] + falling[:, None, :]
 
     def fits(trials: Array) -> Array:
         # In logarithms no power is too large or too small for the arithmetic, and a missing term stays one.
-        grown = terms + trials[:, None] * orders
-        whole = grown.max(axis=-1)
+        powers = trials[:, None] * orders
+        grown = terms + powers
+        whole = (grown if smallest is None else whole_terms + powers).max(axis=-1)
         whole[:, 0] = 0.0
         last = np.logaddexp(grown[..., -2], grown[..., -1])
         return np.asarray((last <= np.log(settings.tolerance) + whole).all(axis=(0, 1)))
@@ -488,12 +499,16 @@ def _log_sizes(series: Array) -> Array:
 
 
 def _decay(series: Array, length: float) -> Decay:
-    """How terms fall, and what that makes of the length that was found; in the series' unit of time.
+    """How terms fall, and what that makes of the length that was found; in the series' unit of time."""
+    return decay_by_sizes(_log_sizes(series), length)
+
+
+def decay_by_sizes(logs: Array, length: float) -> Decay:
+    """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
     """
-    logs = _log_sizes(series)
     orders = logs.shape[-1] - 1
     pairs = np.maximum(logs[:, 1:], logs[:, :-1])
     middle = orders // 2
@@ -506,6 +521,6 @@ def _decay(series: Array, length: float) -> Decay:
     return Decay(length * float(np.exp(spread / orders)), float(spread))
 
 
-def _power_of_two(length: float) -> float:
+def power_of_two(length: float) -> float:
     """The power of two at or above a length, so that scaling by it rounds nothing; 1 for zero."""
     return float(np.ldexp(1.0, np.frexp(length)[1])) if length > 0.0 else 1.0
