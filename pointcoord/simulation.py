@@ -19,6 +19,7 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.needed_part import needed_mechanism
 from pointcoord.method import SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
@@ -30,7 +31,7 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
-from pointcoord.solve.assembly import Pose, assemble, close_drawing
+from pointcoord.solve.assembly import Pose, assemble, close_drawing, path_of_part
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
@@ -84,6 +85,10 @@ class Effort:
         tolerance: of positions, mm: the scene's, or the nearest that a series holds.
         part: the same as a part of the car's size, which rates are held to.
         orders: of each series.
+        moving, still: how many unknown coordinates the series have, and how many are solved once because
+            they stand still.
+        not_needed: how many are not solved for, because nothing that is reported hangs on them.
+        points_not_needed: the points that are not solved for.
         start: what assembling the start takes.
         work: what all of it takes, but for the sums at the instants.
         stop: how far the series reach, s.
@@ -93,6 +98,10 @@ class Effort:
     tolerance: float
     part: float
     orders: tuple[int, ...]
+    moving: int
+    still: int
+    not_needed: int
+    points_not_needed: tuple[str, ...]
     start: Work
     work: Work
     stop: float
@@ -108,12 +117,17 @@ def effort(scene: Scene) -> Effort:
     require_scene(scene)
     task = prepare_task(Scene.checked(scene, scene.title or "scene"), SERIES)
     mechanism = task.readout.mechanism
-    chain = _chain(task)
+    chain, part = _chain(task), mechanism.moving_part(task.functions)
+    whole = scene.mechanism.topology
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
         orders=tuple(segment.order for segment in chain.segments),
+        moving=part.system.unknowns,
+        still=mechanism.map.unknowns - part.system.unknowns,
+        not_needed=whole.layout.unknowns - mechanism.map.unknowns,
+        points_not_needed=_unsolved(task),
         start=task.start.work,
         work=task.start.work + chain.work,
         stop=chain.stop if chain.segments else scene.time.start,
@@ -145,22 +159,27 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
     """
-    mechanism = scene_mechanism(scene, method)
+    whole = scene_mechanism(scene, method)
+    plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
+    mechanism = needed_mechanism(whole, plan.derivatives(whole.topology))
     readout = Readout(
         mechanism=mechanism,
-        plan=plan_effects(scene.effects, method.effects),
+        plan=plan,
         chassis=ChassisMotion.of(mechanism, scene.functions),
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
-    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    check_range(mechanism, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.derivative_of_every_point)
-    first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
-    closed = close_drawing(mechanism, first, tolerance)
-    moved = closing(mechanism, closed.y)
+    functions = {name: scene.functions[name] for name in whole.topology.required_inputs}
+    check_range(whole, functions, scene.instants)
+    readout.chassis.states(scene.instants, readout.reported_derivative)
+    # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
+    first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
+    closed = close_drawing(whole, first, tolerance)
+    moved = closing(whole, closed.y)
     require_the_drawn_car(scene, moved)
+    functions = {name: functions[name] for name in mechanism.topology.required_inputs}
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    start = assemble(mechanism, inputs, first, closed, tolerance)
+    begun = path_of_part(closed, whole, mechanism)
+    start = assemble(mechanism, inputs, first, begun, pose_tolerance(scene, method, mechanism))
     return Task(scene, method, readout, functions, start, moved)
 
 
@@ -212,9 +231,26 @@ def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]
     closed = (task.closing.words,) if task.closing.noticeable else ()
     return (
         *closed,
+        *_unsolved_in_words(task),
         *task.scene.mechanism.doubts,
         *solved.states.notes,
         *_missing_numbers(solved, samples),
+    )
+
+
+def _unsolved(task: Task) -> tuple[str, ...]:
+    """The points that are not solved for."""
+    there = task.readout.mechanism.topology.points
+    return tuple(name for name in task.scene.mechanism.topology.points if name not in there)
+
+
+def _unsolved_in_words(task: Task) -> tuple[str, ...]:
+    """Of what nothing is known, not even whether it can follow the inputs."""
+    left_out = _unsolved(task)
+    if not left_out:
+        return ()
+    return (
+        f"nothing that is reported hangs on {', '.join(left_out)}: not solved for, nor whether it can follow",
     )
 
 

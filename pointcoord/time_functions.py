@@ -58,6 +58,11 @@ class TimeFunction(Protocol):
         """Instants where a derivative jumps, s; a power series must not be used across them."""
         ...
 
+    @property
+    def still(self) -> bool:
+        """Whether it is constant by its form, whatever the instants."""
+        ...
+
 
 @dataclass(frozen=True)
 class Polynomial:
@@ -111,6 +116,11 @@ class Polynomial:
     def breaks(self) -> tuple[float, ...]:
         """None: a polynomial is analytic everywhere."""
         return ()
+
+    @property
+    def still(self) -> bool:
+        """Of degree 0."""
+        return not any(self.coefficients[1:])
 
 
 @dataclass(frozen=True)
@@ -190,6 +200,11 @@ class Sine:
         """None: a sine is analytic everywhere."""
         return ()
 
+    @property
+    def still(self) -> bool:
+        """Without an amplitude, or without a frequency."""
+        return not (self.amplitude and self.angular_frequency)
+
 
 @dataclass(frozen=True)
 class Table:
@@ -239,6 +254,11 @@ class Table:
     def breaks(self) -> tuple[float, ...]:
         """The inner times of the table."""
         return self.times[1:-1]
+
+    @property
+    def still(self) -> bool:
+        """Of one value, which is what the spline then gives everywhere."""
+        return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
 
 
 def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:

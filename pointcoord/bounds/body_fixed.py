@@ -41,12 +41,14 @@ def carried_errors(
     """Bound of the reported carried points, in units, and their gain over their carriers, shape (...,).
 
     Args:
-        local: reported positions without what was added to report them, as high and low, in units, each
-            of shape (..., 3).
+        local: positions of the points that are reported without what was added to report them, as high and
+            low, in units, each of shape (..., 3).
         shifted: rounding of what was added, in units, shape (..., 3).
     """
     bound, gain = np.zeros(y.shape[:-1]), np.ones(y.shape[:-1])
     for name, carriers in mechanism.topology.carried.items():
+        if name not in local:
+            continue
         weights = mechanism.carrier_weights[name]
         places = [list(mechanism.layout.vector(point)) for point in carriers]
         base, first, second = (y[..., place] for place in places)

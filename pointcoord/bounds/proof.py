@@ -81,7 +81,7 @@ def prove(
     Args:
         times: instants, shape (N,), s.
         solved: the coordinates y and as many of their time derivatives as were solved for.
-        reported: position of every point at the times, (N, 3), mm.
+        reported: position of every point that is reported at the times, (N, 3), mm.
         offset: what was added to every point to report it, (N, 3), mm.
         rounding: of the offset itself, at most, (N, 3), mm.
         laws: how far the value of each driving input may be off, (N,), rad or mm.
@@ -145,8 +145,14 @@ def _reported_bound(
     drawn = np.zeros((*y.shape[:-1], layout.size - layout.unknowns))
     own = np.concatenate([certificate.coordinates, drawn], axis=-1)
     places = {name: list(layout.vector(name)) for name in (*topology.moving, *topology.chassis)}
-    each = [own[..., place] + apart(local[name], y[..., place]) + doubt for name, place in places.items()]
-    return np.asarray(INFLATION * np.concatenate(each, axis=-1).max(axis=-1))
+    each = [
+        own[..., place] + apart(local[name], y[..., place]) + doubt
+        for name, place in places.items()
+        if name in local
+    ]
+    # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
+    solved = np.where(np.isfinite(certificate.radius), 0.0, np.inf)
+    return np.asarray(INFLATION * np.concatenate([solved[..., None], *each], axis=-1).max(axis=-1))
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:

@@ -18,7 +18,9 @@ from pointcoord.linkage.carried_points import carried_gain, carried_series
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
@@ -55,6 +57,11 @@ class Mechanism:
     def map(self) -> QuadraticMap:
         """The constraints."""
         return self.topology.map
+
+    def moving_part(self, functions: Mapping[str, TimeFunction]) -> PartialMap:
+        """What of the constraints moves under these laws of the inputs; all of them if nothing would."""
+        driven = (drive for drive in self.topology.drives if not functions[drive.input].still)
+        return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
     @property
     def carried_gain(self) -> float:

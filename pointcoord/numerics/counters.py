@@ -13,6 +13,7 @@ class Work:
         residuals: evaluations of the constraints.
         factorisations: Jacobians built and factorised.
         rate_solves: linear solves for rates (velocity, acceleration and higher orders).
+        unknowns_solved: unknowns of these, summed.
         segments: power series that the motion is made of.
         series_orders: orders of those series, summed.
         derivatives_evaluated: time derivatives evaluated at the instants (0 position, 1 velocity, ...).
@@ -22,6 +23,7 @@ class Work:
     residuals: int = 0
     factorisations: int = 0
     rate_solves: int = 0
+    unknowns_solved: int = 0
     segments: int = 0
     series_orders: int = 0
     derivatives_evaluated: int = 0

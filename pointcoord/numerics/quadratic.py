@@ -39,11 +39,12 @@ class Product:
 Row = tuple[Product, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class QuadraticMap:
     """A system of quadratic rows in `size` coordinates, of which the first `unknowns` are unknown.
 
-    Every array may have leading batch dimensions, and nothing loops over them.
+    Every array may have leading batch dimensions, and nothing loops over them. A map is equal to itself only,
+    so that what is made of it can be remembered by it.
     """
 
     rows: tuple[Row, ...]

@@ -44,13 +44,13 @@ class Readout:
 
     @property
     def derivatives(self) -> dict[str, int]:
-        """Highest time derivative that is evaluated of each point."""
+        """Highest time derivative that is evaluated of each point that is reported or needed."""
         return self.plan.derivatives(self.mechanism.topology)
 
     @property
-    def derivative_of_every_point(self) -> int:
-        """Highest time derivative that is evaluated of every point."""
-        return min(self.derivatives.values())
+    def reported_derivative(self) -> int:
+        """Highest time derivative that is reported of points."""
+        return max(self.table.reported)
 
     @cached_property
     def table(self) -> Table:
@@ -73,7 +73,7 @@ class Readout:
         """The numbers of a whole table, by name."""
         found = self.table.numbers(rows)
         numbers = {
-            name: Channel(quantity, found.get(name, {}), self._left_out(name))
+            name: Channel(quantity, found.get(name, {}), self._left_out(name), self._unreported(name))
             for name, quantity in QUANTITIES.items()
         }
         return Samples(times.copy(), numbers)
@@ -85,7 +85,7 @@ class Readout:
             rows: a table or some columns of one, shape (..., height, N), with the states in their places.
         """
         table = self.table
-        shifts = self.chassis.states(times, self.derivative_of_every_point)
+        shifts = self.chassis.states(times, self.reported_derivative)
         rest = [None] * (len(states) - 1)
         added = (self._offset(shifts), *(shifts[1:] or rest))
         if table.computed:
@@ -100,6 +100,13 @@ class Readout:
                 for part in table.states_of(derivative):
                     places = triples(rows, part)
                     places += more.swapaxes(-1, -2)[..., None, :, :]
+
+    def _unreported(self, quantity: str) -> tuple[str, ...]:
+        """The points whose states of a quantity the scene leaves out."""
+        computed = any(
+            q.name == quantity for e in self.plan.computed if e.reports_states for q in e.quantities
+        )
+        return self.plan.unreported if computed else ()
 
     def _left_out(self, quantity: str) -> dict[str, tuple[str, ...] | None]:
         """The effects that would give more of a quantity, and what each gives of it."""

@@ -5,7 +5,7 @@ Only what the plan of a scene asks for is evaluated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -19,7 +19,7 @@ from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
-from pointcoord.results.table import triples, vectors
+from pointcoord.results.table import State, triples, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.pointwise import Solved
 from pointcoord.solve.status import Status
@@ -101,7 +101,7 @@ class StatesAtInstants:
             {
                 name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
                 for name in topology.points
-                if derivatives[name] >= order
+                if derivatives.get(name, -1) >= order
             }
             for order in range(len(coordinates))
         ]
@@ -183,6 +183,8 @@ class StatesOfChain:
             states[order][name] = vectors(rows, 3 * i)
         for i, (order, name) in enumerate(table.spare):
             states[order][name] = vectors(spare, 3 * i)
+        for i, (order, name) in enumerate(table.spare_still):
+            states[order][name] = np.broadcast_to(self._spare_still[..., i, None, :, 0], (*batch, count, 3))
         return states
 
     def coordinates(self, instants: Array) -> list[Array]:
@@ -251,12 +253,21 @@ class StatesOfChain:
 
     @cached_property
     def _still(self) -> Array:
-        """States of the chassis points in the chassis' frame, where they stand, (..., states, 3, 1), mm."""
+        """States of the chassis points that are reported, (..., states, 3, 1), mm (see `_standing`)."""
+        return self._standing(self.readout.table.still)
+
+    @cached_property
+    def _spare_still(self) -> Array:
+        """Those of the chassis points that are only needed."""
+        return self._standing(self.readout.table.spare_still)
+
+    def _standing(self, states: Sequence[State]) -> Array:
+        """States of points of the chassis in its frame, where they stand, (..., states, 3, 1), mm."""
         mechanism = self.readout.mechanism
         unit = np.asarray(mechanism.unit)[..., None]
         batch = self.chain.segments[0].coefficients.shape[:-2]
-        places = np.zeros((*batch, len(self.readout.table.still), 3, 1))
-        for i, (order, name) in enumerate(self.readout.table.still):
+        places = np.zeros((*batch, len(states), 3, 1))
+        for i, (order, name) in enumerate(states):
             if order == 0:
                 places[..., i, :, 0] = mechanism.drawing.vectors[name] * unit
         return places

@@ -300,6 +300,15 @@ def assemble(
     return Pose(mechanism, path.y, path.factors, path.iterations, path.left, drawing.work + path.work)
 
 
+def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
+    """Poses of a mechanism as poses of a part of it (see `needed_part`)."""
+    if part is whole:
+        return path
+    y = path.y[..., part.layout.places_in(whole.layout)]
+    work = path.work + Work(factorisations=int(np.prod(y.shape[:-1])))
+    return Path(y, factorise(part.map.jacobian(y)), path.iterations, path.left, path.done, work)
+
+
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
     unfinished = path.done < 1.0
     if unfinished.any():

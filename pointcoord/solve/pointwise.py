@@ -20,6 +20,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.assembly import Pose, blocked, close_drawing, follow
+from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -94,24 +95,28 @@ def solve_instants(
         derivative: highest time derivative to solve for, 0 to 2.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
     Returns:
-        The states, up to the first instant that cannot be reached.
+        The states, up to the first instant that cannot be reached. What stands still is solved once.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
-    here, factors, rest, work = pose.y, pose.factors, pose.left, Work()
+    part = mechanism.moving_part(functions)
+    begun = starting_place(part, pose)
+    here, factors, rest, work = begun.y, begun.factors, begun.left, begun.work
+    targets = part.known(here, known[:, :1])[:, 0]
     status: Status = COMPLETE
     for i in range(len(times)):
         if i > 0:
-            path = follow(system, here, known[i, 0], factors, tolerance)
+            path = follow(part.system, here, targets[i], factors, tolerance)
             work += path.work
             if path.done < 1.0:
                 problem = "the mechanism cannot be assembled"
-                status = blocked(mechanism, problem, path, known[i, 0], path.done < 1.0, float(times[i]))
+                place = whole_place(part, path.y, path.factors)
+                status = blocked(mechanism, problem, place, known[i, 0], path.done < 1.0, float(times[i]))
                 y, left, known, times = y[:i], left[:i], known[:i], times[:i]
                 break
             here, factors, rest = path.y, path.factors, path.left
-        y[i], left[i] = here, rest
+        y[i], left[i] = part.back(here), rest
     y[:, n:] = known[:, 0]
     solved = with_rates(system, y, known, times, derivative, square_term, work, left)
     return replace(solved, status=status)
@@ -182,7 +187,9 @@ def with_rates(
     if derivative >= 2:
         states.append(_rate(system, factors, y, 2.0 * known[:, 2], square_term(system, states[1])))
     rest = np.zeros(len(times)) if left is None else left
-    return Solved(times, tuple(states), rest, work + Work(rate_solves=derivative * len(times)))
+    solves = derivative * len(times)
+    work = work + Work(rate_solves=solves, unknowns_solved=solves * system.unknowns)
+    return Solved(times, tuple(states), rest, work)
 
 
 def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:

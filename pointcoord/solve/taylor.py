@@ -17,6 +17,9 @@ the best where the cost of an order grows with it and a segment costs nothing be
 any order costs as much as some 25 orders: measured on two scenes at tolerances from 1e-2 to 1e-12 mm, a chain
 of their order, its segments cut as above, takes 2 to 9 times as long, and one of order 20 for all tolerances
 1.1 to 2 times.
+
+What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
+every series (see `partial_map`).
 """
 
 from __future__ import annotations
@@ -35,9 +38,11 @@ from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, newton_refine
+from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
+from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status, TooLong, TooRough
 from pointcoord.time_functions import TimeFunction
 
@@ -153,10 +158,12 @@ def build_chain(
         no step follows an input though the mechanism could; its status says which.
     """
     settings = settings.kept
-    course = _Course(mechanism, functions, start, stop, settings)
-    joint = _Joint(start, pose.y, pose.factors, pose.left, power_of_two(stop - start))
+    part = mechanism.moving_part(functions)
+    course = _Course(mechanism, functions, start, stop, settings, part)
+    here = starting_place(part, pose)
+    joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
     side, members = orientation(joint.factors), joint.members
-    work = Work()
+    work = here.work
     segments: list[Segment] = []
 
     def chain(status: Status) -> Chain:
@@ -167,18 +174,24 @@ def build_chain(
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
         segment = course.segment_from(joint)
         orders = segment.order
-        work += Work(segments=1, series_orders=orders, rate_solves=orders * members)
+        solves = orders * members
+        work += Work(
+            segments=1,
+            series_orders=orders,
+            rate_solves=solves,
+            unknowns_solved=solves * part.system.unknowns,
+        )
         finite = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
         if not finite.all():
             return chain(course.stops_at(joint, ~finite, coarsest=False))
         if start == stop:
-            segments.append(segment)
+            segments.append(course.whole(segment))
             break
         step = course.step_along(segment, joint, side)
         work += step.work
         if step.end is None:
             return chain(course.stops_at(joint, ~step.good, coarsest=settings.tolerance >= COARSEST))
-        segments.append(replace(segment, stop=step.end.instant))
+        segments.append(course.whole(replace(segment, stop=step.end.instant)))
         joint = step.end
     return chain(COMPLETE)
 
@@ -253,13 +266,22 @@ class _Step:
 
 @dataclass(frozen=True)
 class _Course:
-    """What a chain follows, a mechanism and its inputs over a time, and how finely."""
+    """What a chain follows, a mechanism and its inputs over a time, and how finely.
+
+    Attributes:
+        part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
+    """
 
     mechanism: Mechanism
     functions: Mapping[str, TimeFunction]
     start: float
     stop: float
     settings: Settings
+    part: PartialMap
+
+    def whole(self, segment: Segment) -> Segment:
+        """A segment with its coordinates in the mechanism's order."""
+        return replace(segment, coefficients=self.part.back(segment.coefficients))
 
     @property
     def shortest(self) -> float:
@@ -268,7 +290,7 @@ class _Course:
         return max(SHORTEST * (self.stop - self.start), 4.0 * EPS * largest)
 
     def known(self, instant: float, order: int) -> Array:
-        """Series of the known coordinates about an instant, shape (..., order + 1, known coordinates)."""
+        """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known)."""
         laws = {name: function.series(instant, order) for name, function in self.functions.items()}
         return self.mechanism.known_series(laws)
 
@@ -340,13 +362,13 @@ class _Course:
             first = begun.coefficients * ((scale / begun.scale) ** orders[:count])[:, None]
         # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
         with np.errstate(over="ignore", invalid="ignore"):
-            scaled = known * (scale**orders)[:, None]
-            series = expand(self.mechanism.map, joint.factors, joint.y, scaled, first)
+            scaled = self.part.known(joint.y, known * (scale**orders)[:, None])
+            series = expand(self.part.system, joint.factors, joint.y, scaled, first)
         return Segment(joint.instant, self.stop, scale, series, joint.left)
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        terms = segment.coefficients[..., : self.mechanism.map.unknowns]
+        terms = segment.coefficients[..., : self.part.system.unknowns]
         length = _length(terms, self.settings)
         if not np.isfinite(length):
             return length, None
@@ -359,7 +381,7 @@ class _Course:
         Args:
             side: orientation of the branch, which the end must have.
         """
-        system, limit, tolerance = self.mechanism.map, self.next_break(joint.instant), self.settings.tolerance
+        system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
         length, decay = self.length_of(segment)
         good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
         while length >= self.shortest or joint.instant + length >= limit:
@@ -387,14 +409,14 @@ class _Course:
         s, series = (end - segment.start) / segment.scale, segment.coefficients
         guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
-        return newton_refine(self.mechanism.map, guess, tolerance=SOLVED * self.settings.tolerance)
+        return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
     def factors_at(self, reached: Converged) -> tuple[Factors, Work]:
         """Factors of C_u at a solved end; Newton's own, of the place before its last step, where these do.
 
         With z = omega |last step| their solutions are off by z^2 of themselves.
         """
-        system = self.mechanism.map
+        system = self.part.system
         matrix = system.jacobian(reached.y)
         weights = np.ones((*reached.y.shape[:-1], system.unknowns))
         z = system.lipschitz(reached.factors.preconditioner, weights) * reached.last_step
@@ -408,8 +430,8 @@ class _Course:
         off = {name: function.rounding(np.array(end)) for name, function in self.functions.items()}
         if not any(doubt.any() for doubt in off.values()):
             return np.zeros(reached.y.shape[:-1])
-        _, data = self.mechanism.known_data(reached.y, off)
-        rows = self.mechanism.map.uncertainty(reached.y, data)
+        _, data = self.mechanism.known_data(self.part.back(reached.y), off)
+        rows = self.part.system.uncertainty(reached.y, self.part.taken(data))
         return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
 
     def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
@@ -427,7 +449,8 @@ class _Course:
         moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
-        status = blocked(self.mechanism, problem, joint, goal, unfinished, instant, change)
+        place = whole_place(self.part, joint.y, joint.factors)
+        status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 

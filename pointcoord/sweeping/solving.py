@@ -99,7 +99,7 @@ class Course:
             laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
         part = laws[0].mechanism
         axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-        return cls(designs, plan_effects(laws[0].effects), axes, laws, which)
+        return cls(designs, plan_effects(laws[0].effects, None, laws[0].unreported_points), axes, laws, which)
 
     @property
     def scene(self) -> Scene:

@@ -224,7 +224,8 @@ def test_a_grid_has_every_combination_once() -> None:
 def test_blocks_are_the_sweep_in_parts() -> None:
     heights = np.linspace(-10.0, 10.0, 6)
     whole = sweep(WISHBONE, offsets={"lower_ball_joint.z": heights})
-    memory = 1.5 * solving.OF_A_DESIGN
+    course = solving.Course.of(whole.designs)
+    memory = float(course.bytes_of_a_design + course.bytes_on_the_way)
     blocks = list(sweep_blocks(WISHBONE, offsets={"lower_ball_joint.z": heights}, memory=memory))
     assert len(blocks) > 1
     assert [number for block in blocks for number in block.numbers_of_designs] == list(range(6))
@@ -237,22 +238,19 @@ def test_blocks_are_the_sweep_in_parts() -> None:
             )
 
 
-@pytest.mark.parametrize("samples", [11, 2001])
-def test_blocks_take_no_more_memory_than_is_stated(samples: int) -> None:
-    memory = 60e6
+@pytest.mark.parametrize(("samples", "count", "memory"), [(101, 300, 20e6), (2001, 30, 40e6)])
+def test_blocks_take_no_more_memory_than_is_stated(samples: int, count: int, memory: float) -> None:
     scene = few_instants(WISHBONE, samples)
-    designs = designs_of(
-        scene, offsets={"lower_ball_joint.z": np.linspace(-3.0, 3.0, 600 if samples < 100 else 60)}
-    )
+    designs = designs_of(scene, offsets={"lower_ball_joint.z": np.linspace(-3.0, 3.0, count)})
     next(sweep_blocks(designs_of(scene)))  # what is made once stays
     tracemalloc.start()
     try:
-        count = sum(1 for _ in sweep_blocks(designs, memory=memory))
+        blocks = sum(1 for _ in sweep_blocks(designs, memory=memory))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert count > 1
-    # A block is let go when the next one is there.
+    assert blocks > 1
+    # The last block is held while the next one is solved.
     assert peak <= 2.0 * memory
 
 
