@@ -22,6 +22,7 @@ ROOMS = {
         "suspensions",
         "bounds",
         "solve",
+        "patches",
         "effects",
         "method",
         "results",

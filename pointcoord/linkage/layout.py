@@ -29,7 +29,7 @@ class Layout:
     vectors: tuple[str, ...] = ()
     constants: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def unknowns(self) -> int:
         """How many coordinates are unknown."""
         return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
@@ -58,7 +58,7 @@ class Layout:
         known = self.unknowns + 2 + 3 * (len(self.chassis) + len(self.directions))
         return first | {name: known + i for i, name in enumerate((*self.driven, *self.constants))}
 
-    @property
+    @cached_property
     def size(self) -> int:
         """How many coordinates there are in all."""
         vectors = 3 * (len(self.chassis) + len(self.directions))

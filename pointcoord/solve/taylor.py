@@ -25,7 +25,7 @@ every series (see `partial_map`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import perm
 
@@ -58,6 +58,8 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-5
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
+# Segments after which it is told how many there will be.
+TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
 # Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
@@ -129,10 +131,12 @@ class Settings:
         tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
             the same fraction of that derivative's size.
         derivative: highest time derivative that will be evaluated.
+        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
     """
 
     tolerance: float
     derivative: int
+    hopeful: bool = True
 
     @property
     def kept(self) -> Settings:
@@ -172,6 +176,11 @@ def build_chain(
     while joint.instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+        if len(segments) == TELLING and not settings.hopeful:
+            # Later ones would have to be four times as long on average to be enough.
+            likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
+            if stop - start > 4.0 * (likely - start):
+                return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
         segment = course.segment_from(joint)
         orders = segment.order
         solves = orders * members
@@ -270,6 +279,7 @@ class _Course:
 
     Attributes:
         part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
+        measured: the segment that was last measured, and its length.
     """
 
     mechanism: Mechanism
@@ -278,6 +288,7 @@ class _Course:
     stop: float
     settings: Settings
     part: PartialMap
+    measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
 
     def whole(self, segment: Segment) -> Segment:
         """A segment with its coordinates in the mechanism's order."""
@@ -368,11 +379,18 @@ class _Course:
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        terms = segment.coefficients[..., : self.part.system.unknowns]
-        length = _length(terms, self.settings)
+        # Asked for twice of most segments: when it is made and when it is cut.
+        if self.measured and self.measured[0][0] is segment:
+            return self.measured[0][1]
+        self.measured[:] = [(segment, self._length_of(segment))]
+        return self.measured[0][1]
+
+    def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
+        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        length = length_by_sizes(logs, self.settings)
         if not np.isfinite(length):
             return length, None
-        decay = _decay(terms, length)
+        decay = decay_by_sizes(logs, length)
         return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
 
     def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
@@ -407,7 +425,7 @@ class _Course:
     def solved_end(self, segment: Segment, end: float) -> Converged:
         """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
         s, series = (end - segment.start) / segment.scale, segment.coefficients
-        guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+        guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
         return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
@@ -418,8 +436,7 @@ class _Course:
         """
         system = self.part.system
         matrix = system.jacobian(reached.y)
-        weights = np.ones((*reached.y.shape[:-1], system.unknowns))
-        z = system.lipschitz(reached.factors.preconditioner, weights) * reached.last_step
+        z = system.lipschitz(reached.factors.preconditioner) * reached.last_step
         if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
             return reached.factors.moved(matrix), Work()
         members = int(np.prod(reached.y.shape[:-1]))
@@ -453,11 +470,6 @@ class _Course:
         status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
-
-
-def _length(series: Array, settings: Settings) -> float:
-    """Length of a segment in its own time unit; the shortest that a member of the batch needs."""
-    return length_by_sizes(_log_sizes(series), settings)
 
 
 def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
@@ -521,16 +533,14 @@ def _log_sizes(series: Array) -> Array:
         return np.asarray(np.log(size))
 
 
-def _decay(series: Array, length: float) -> Decay:
-    """How terms fall, and what that makes of the length that was found; in the series' unit of time."""
-    return decay_by_sizes(_log_sizes(series), length)
-
-
 def decay_by_sizes(logs: Array, length: float) -> Decay:
     """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
+
+    Args:
+        logs: of the largest coefficients (see `_log_sizes`).
     """
     orders = logs.shape[-1] - 1
     pairs = np.maximum(logs[:, 1:], logs[:, :-1])
