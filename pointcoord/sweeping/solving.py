@@ -277,23 +277,16 @@ class _Block:
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
 
-        def solved_together(some: Mechanism) -> SolvedDesigns:
-            return solve_designs(some, functions, time.start, time.stop, settings, allowed)
-
-        solved = solved_together(mechanism)
+        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
         for place, status in solved.failures.items():
             if members[place] in self.failures:
                 continue
-            if isinstance(status, TooLong | TooRough) and len(members) > 1:
-                # What is too long or too rough for all together may not be so for one.
-                own = np.array([place])
-                alone = solved_together(mechanism.taken(own))
-                if not alone.failures:
-                    self._read(scene, members[own], mechanism.taken(own), functions, alone)
-                    continue
-                status = alone.failures[0]
+            if isinstance(status, TooLong | TooRough):
+                # What is too long or too rough for all together may not be so for one, or for a map.
+                self._alone(int(members[place]))
+                continue
             self.fail([members[place]], _error(status))
 
     def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
@@ -362,6 +355,21 @@ class _Block:
             self._note("tolerance", alive, kept, _the_same(words), warns=False)
         self._require_known(scene, alive[kept], functions)
         self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
+
+    def _alone(self, number: int) -> None:
+        """Solve one design as a scene of its own, by whatever follows its laws."""
+        try:
+            motion = simulate(self.course.designs.design(number))
+        except PointcoordError as error:
+            self.fail([number], error)
+            return
+        place = number - self.first
+        for quantity, names in self.course.table.places.items():
+            for name in names:
+                self.course.table.put(self.rows[place], quantity, name, motion.numbers[quantity][name])
+        self.filled[place] = True
+        words = f"solved by itself, by the method {motion.method!r}"
+        self._note("alone", np.array([number]), np.array([True]), _the_same(words), warns=False)
 
     def _require_known(self, scene: Scene, members: Numbers, functions: Mapping[str, TimeFunction]) -> None:
         """Where a law is less certain than the tolerance, hold each design to what it would be alone."""

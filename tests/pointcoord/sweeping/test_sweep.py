@@ -3,6 +3,8 @@
 import pickle
 import tracemalloc
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,6 +29,7 @@ from pointcoord import (
 )
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.simulation import effort
+from pointcoord.solve.designs import SolvedDesigns, solve_designs
 from pointcoord.sweeping import solving
 
 WISHBONE = Scene.load("double-wishbone")
@@ -322,3 +325,35 @@ def test_a_sweep_comes_back_from_another_process() -> None:
     for quantity in QUANTITIES:
         for name, array in found.numbers[quantity].items():
             np.testing.assert_array_equal(array, again.numbers[quantity][name])
+
+
+def test_a_law_of_more_swings_than_series_can_follow_is_followed_design_by_design() -> None:
+    swings = {"sine": {"amplitude": 5.0, "angular_frequency": 3e4}}
+    scene = few_instants(STRUT).model_copy(update={"inputs": {**STRUT.inputs, "rack": swings}})
+    found = sweep(scene, offsets={"strut_top.y": [0.0, 1.0]})
+    assert found.solved.all()
+    assert [note.count for note in found.notes if note.kind == "alone"] == [2]
+    for number in range(2):
+        alone = simulate(found.scene(number))
+        assert alone.method == "map"
+        for name, places in alone.position.items():
+            np.testing.assert_array_equal(found.position[name][number], places)
+
+
+def test_designs_that_are_mixed_up_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    def mixed(*given: Any) -> SolvedDesigns:
+        solved = solve_designs(*given)
+        assert solved.chain is not None
+        segments = tuple(replace(s, coefficients=s.coefficients[::-1]) for s in solved.chain.segments)
+        return replace(solved, chain=replace(solved.chain, segments=segments))
+
+    monkeypatch.setattr(solving, "solve_designs", mixed)
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": [0.0, 1e-6]})
+    with pytest.raises(AssertionError):
+        assert_same_as_alone(found.of(0), found.scene(0))
+
+
+def test_a_failure_that_is_lost_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(solving, "solve_designs", lambda *given: replace(solve_designs(*given), failures={}))
+    with pytest.raises(AssertionError):
+        sweep(WISHBONE, offsets={"lower_ball_joint.z": [0.0, 150.0]})
