@@ -273,7 +273,7 @@ class StatesOfChain:
     def still(self) -> Array:
         """Rows of the chassis points that are reported, (..., rows, 1), mm (see `_standing`)."""
         places = self._standing(self.readout.table.still)
-        return places.reshape(*places.shape[:-3], -1, 1)
+        return places.reshape(*places.shape[:-2], -1, 1)
 
     @cached_property
     def _spare_still(self) -> Array:
