@@ -89,27 +89,15 @@ class SolvedScene:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
         return {name: function.rounding(times) for name, function in self.functions.items()}
 
-    def proof(
-        self, samples: Samples, *, rates: bool = False, doubts: Mapping[str, Array] | None = None
-    ) -> Proof:
+    def proof(self, samples: Samples, *, rates: bool = False, certain: bool = False) -> Proof:
         """What is proven at each of the samples' times.
 
         Args:
             rates: every number by itself.
-            doubts: how far the laws' values may be off, where another answer than that of `doubts` is wanted.
+            certain: as if the laws' values were exact as they are computed.
         """
-        mechanism, chassis, times = self.readout.mechanism, self.readout.chassis, samples.times
-        added = self.readout.offset(times)
-        return prove(
-            mechanism,
-            times,
-            self.states,
-            samples.position,
-            np.broadcast_to(0.0 if added is None else added, (len(times), 3)),
-            chassis.rounding(times, mechanism.origin),
-            self.doubts(times) if doubts is None else doubts,
-            self._reported(samples) if rates else None,
-        )
+        reported = self._reported(samples)
+        return prove(self.readout.mechanism, samples.times, reported, rates=rates, certain=certain)
 
     def _reported(self, samples: Samples) -> Reported:
         """All numbers of samples, and what went into them beside the coordinates."""
