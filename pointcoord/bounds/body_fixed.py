@@ -44,13 +44,15 @@ def carried_errors(
 
     Args:
         y: coordinates, shape (size, N).
-        local: reported positions without what was added to report them, as high and low, in units, each
-            of shape (3, N).
+        local: positions of the points that are reported without what was added to report them, as high and
+            low, in units, each of shape (3, N).
         shifted: rounding of what was added, in units, shape (3, N).
     """
     bound, gain = np.zeros(y.shape[-1]), np.ones(y.shape[-1])
     largest = np.abs(certified.step).max(axis=0)
     for name, carriers in mechanism.topology.carried.items():
+        if name not in local:
+            continue
         weights = mechanism.carrier_weights[name]
         a, b, c = weights
         places = [list(mechanism.layout.vector(point)) for point in carriers]

@@ -169,8 +169,11 @@ def _reported_bound(
         errors: of the unknown coordinates, (unknowns, N).
     """
     topology, layout = mechanism.topology, mechanism.layout
-    found = np.zeros(y.shape[-1])
+    # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
+    found = np.where(np.isfinite(errors).all(axis=0), 0.0, np.inf)
     for name in (*topology.moving, *topology.chassis):
+        if name not in local:
+            continue
         place = list(layout.vector(name))
         each = apart(local[name], y[place]) + doubt
         # In its own frame the chassis is where it was drawn, exactly.

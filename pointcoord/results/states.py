@@ -5,7 +5,7 @@ Only what the plan of a scene asks for is evaluated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -19,7 +19,7 @@ from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
-from pointcoord.results.table import triples, vectors
+from pointcoord.results.table import State, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.pointwise import Solved
 from pointcoord.solve.status import Status
@@ -101,14 +101,13 @@ class StatesAtInstants:
             {
                 name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
                 for name in topology.points
-                if derivatives[name] >= order
+                if derivatives.get(name, -1) >= order
             }
             for order in range(len(coordinates))
         ]
         if rows is not None:
-            table = self.readout.table
-            for i, (order, name) in enumerate((*table.moving, *table.still)):
-                vectors(rows, 3 * i)[...] = states[order][name]
+            for first, (order, name) in self.readout.table.states:
+                vectors(rows, first)[...] = states[order][name]
         return states
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
@@ -168,21 +167,22 @@ class StatesOfChain:
         outside = ~((instants >= self.start) & (instants <= self.chain.stop))
         if outside.any():
             raise OutsideMotion(float(instants[outside][0]), self.start, self.chain.stop)
-        table, (reported, needed) = self.readout.table, self._series
+        table, (reported, needed) = self.readout.table, self.series
         batch, count = reported.shape[:-1], len(instants)
         if rows is None:
-            rows = np.empty((*batch, 3 * (len(table.moving) + len(table.still)), count))
-        moving, still = 3 * len(table.moving), 3 * len(table.still)
-        reported.sum(instants, rows[..., :moving, :])
-        triples(rows, slice(moving, moving + still))[...] = self._still
+            rows = np.empty((*batch, table.height, count))
+        reported.sum(instants, rows[..., : 3 * len(table.moving), :])
+        rows[..., table.first_still :, :] = self.still
         spare = np.empty((*batch, 3 * len(table.spare), count))
         if table.spare:
             needed.sum(instants, spare)
         states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
-        for i, (order, name) in enumerate((*table.moving, *table.still)):
-            states[order][name] = vectors(rows, 3 * i)
+        for first, (order, name) in table.states:
+            states[order][name] = vectors(rows, first)
         for i, (order, name) in enumerate(table.spare):
             states[order][name] = vectors(spare, 3 * i)
+        for i, (order, name) in enumerate(table.spare_still):
+            states[order][name] = np.broadcast_to(self._spare_still[..., i, None, :], (*batch, count, 3))
         return states
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
@@ -247,7 +247,7 @@ class StatesOfChain:
         )
 
     @cached_property
-    def _series(self) -> tuple[SeriesRows, SeriesRows]:
+    def series(self) -> tuple[SeriesRows, SeriesRows]:
         """The series of solved points that are reported, and those that are only needed, mm."""
         mechanism, table = self.readout.mechanism, self.readout.table
         layout, topology = mechanism.layout, mechanism.topology
@@ -270,13 +270,23 @@ class StatesOfChain:
         return reported, needed
 
     @cached_property
-    def _still(self) -> Array:
-        """States of the chassis points in the chassis' frame, where they stand, (..., states, 3, 1), mm."""
+    def still(self) -> Array:
+        """Rows of the chassis points that are reported, (..., rows, 1), mm (see `_standing`)."""
+        places = self._standing(self.readout.table.still)
+        return places.reshape(*places.shape[:-3], -1, 1)
+
+    @cached_property
+    def _spare_still(self) -> Array:
+        """Those of the chassis points that are only needed, (..., states, 3)."""
+        return self._standing(self.readout.table.spare_still)
+
+    def _standing(self, states: Sequence[State]) -> Array:
+        """States of points of the chassis in its frame, where they stand, (..., states, 3), mm."""
         mechanism = self.readout.mechanism
         unit = np.asarray(mechanism.unit)[..., None]
         batch = self.chain.segments[0].coefficients.shape[:-2]
-        places = np.zeros((*batch, len(self.readout.table.still), 3, 1))
-        for i, (order, name) in enumerate(self.readout.table.still):
+        places = np.zeros((*batch, len(states), 3))
+        for i, (order, name) in enumerate(states):
             if order == 0:
-                places[..., i, :, 0] = mechanism.drawing.vectors[name] * unit
+                places[..., i, :] = mechanism.drawing.vectors[name] * unit
         return places
