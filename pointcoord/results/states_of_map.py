@@ -67,18 +67,20 @@ class StatesOfMap:
             rows = np.empty((3 * (len(table.moving) + len(table.still)), len(instants)))
         middle, half = self._boxes
         inputs, patch = self._inputs(instants)
-        sums = np.empty((len(inputs), self._patches.coefficients.shape[-1], len(instants)))
-        sum_rows(self._patches.coefficients, middle, half, self.way.order, patch, inputs, sums)
-        place = {name: 3 * i for i, name in enumerate(moving_points(topology))}
+        wanted, tables = self._tables
+        sums = sum_rows(tables, middle, half, self.way.order, patch, inputs)
         states: list[dict[str, Array]] = [{} for _ in inputs]
+        for order, names in enumerate(wanted):
+            for i, name in enumerate(names):
+                states[order][name] = vectors(sums[order], 3 * i)
+        still = {name: drawn[name] * float(readout.mechanism.unit) for name in topology.chassis}
         for i, (order, name) in enumerate((*table.moving, *table.still)):
-            if name in place:
-                rows[3 * i : 3 * i + 3] = sums[order, place[name] : place[name] + 3]
+            seen = vectors(rows, 3 * i)
+            if name in still:
+                seen[...] = still[name] if order == 0 else 0.0
             else:
-                vectors(rows, 3 * i)[...] = drawn[name] * float(readout.mechanism.unit) if order == 0 else 0.0
-            states[order][name] = vectors(rows, 3 * i)
-        for order, name in table.spare:
-            states[order][name] = vectors(sums[order], place[name])
+                seen[...] = states[order][name]
+            states[order][name] = seen
         return states
 
     def coordinates(self, instants: Array) -> list[Array]:
@@ -119,13 +121,11 @@ class StatesOfMap:
     @property
     def work(self) -> Work:
         """What making the patches took, and the sums of each instant."""
-        readout = self.readout
-        count = 0 if self.way.patches is None else len(self.way.patches.low)
-        orders = readout.plan.derivative + 1
+        table = self.readout.table
         return self.way.work + Work(
-            segments=count,
-            derivatives_evaluated=orders,
-            coordinates_evaluated=3 * orders * len(moving_points(readout.mechanism.topology)),
+            segments=0 if self.way.patches is None else len(self.way.patches.low),
+            derivatives_evaluated=self.readout.plan.derivative + 1,
+            coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
 
     def _inputs(self, instants: Array) -> tuple[list[Array], Whole]:
@@ -146,6 +146,17 @@ class StatesOfMap:
     def _patches(self) -> Patches:
         assert self.way.patches is not None  # nothing is read where nothing is covered
         return self.way.patches
+
+    @cached_property
+    def _tables(self) -> tuple[list[list[str]], list[Array]]:
+        """By derivative, the points that are wanted, and their coefficients, (P, powers, 3 points), mm."""
+        table, place = self.readout.table, moving_points(self.readout.mechanism.topology)
+        wanted = [
+            [name for d, name in (*table.moving, *table.spare) if d == order]
+            for order in range(self.readout.plan.derivative + 1)
+        ]
+        columns = [[3 * place.index(name) + axis for name in names for axis in range(3)] for names in wanted]
+        return wanted, [np.ascontiguousarray(self._patches.coefficients[..., c]) for c in columns]
 
     @cached_property
     def _boxes(self) -> tuple[Array, Array]:
