@@ -48,6 +48,16 @@ class StatesOfMap:
     notes: tuple[str, ...] = ()
     dense: bool = True
 
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of each patch."""
+        return () if self.way.patches is None else (self.way.order,) * len(self.way.patches.low)
+
+    @property
+    def stop(self) -> float:
+        """The end of the part of the way that patches cover."""
+        return self.way.until
+
     def covered(self, instants: Array) -> Array:
         """Those on the part of the way that patches cover."""
         return instants[instants <= self.way.until]
@@ -123,7 +133,8 @@ class StatesOfMap:
         """What making the patches took, and the sums of each instant."""
         table = self.readout.table
         return self.way.work + Work(
-            segments=0 if self.way.patches is None else len(self.way.patches.low),
+            segments=len(self.orders),
+            series_orders=sum(self.orders),
             derivatives_evaluated=self.readout.plan.derivative + 1,
             coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
