@@ -295,6 +295,22 @@ class MapError(PointcoordError, ValueError):
         super().__init__(f"{what} {problem}; allowed: {allowed}")
 
 
+class SweepError(PointcoordError, ValueError):
+    """Designs cannot be made, solved or read as they were asked for.
+
+    Args:
+        what: the argument, option, file or design at fault.
+        problem: what is wrong, with the value.
+        allowed: what would be right.
+    """
+
+    def __init__(self, what: str, problem: str, allowed: str) -> None:
+        self.what = what
+        self.problem = problem
+        self.allowed = allowed
+        super().__init__(f"{what} {problem}; allowed: {allowed}")
+
+
 class NotCovered(PointcoordError, ValueError):
     """Inputs inside the range of a kinematic map at which nothing is proven.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.needed_part import needed_mechanism
 from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
@@ -31,7 +32,7 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
-from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow
+from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part
 from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
@@ -46,6 +47,8 @@ Array = NDArray[np.float64]
 TRIED = 32
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
+# Instants that are checked at a time: what is made on the way takes some 5 MB.
+BLOCK = 2**14
 
 
 def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
@@ -100,6 +103,10 @@ class Effort:
         tolerance: of positions, mm: the scene's, or the nearest that a series holds.
         part: the same as a part of the car's size, which rates are held to.
         orders: of each series.
+        moving, still: how many unknown coordinates the series have, and how many are solved once because
+            they stand still.
+        not_needed: how many are not solved for, because nothing that is reported hangs on them.
+        points_not_needed: the points that are not solved for.
         start: what assembling the start takes.
         work: what all of it takes, but for the sums at the instants.
         stop: how far the series reach, s.
@@ -111,6 +118,10 @@ class Effort:
     tolerance: float
     part: float
     orders: tuple[int, ...]
+    moving: int
+    still: int
+    not_needed: int
+    points_not_needed: tuple[str, ...]
     start: Work
     work: Work
     stop: float
@@ -126,13 +137,20 @@ def effort(scene: Scene) -> Effort:
     require_scene(scene)
     task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
     mechanism, states = task.readout.mechanism, solved.states
+    whole, mapped = scene.mechanism.topology, task.method is MAP
+    # A map is of all coordinates, whatever moves them.
+    moving = mechanism.map.unknowns if mapped else mechanism.moving_part(task.functions).system.unknowns
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
         method=task.method.name,
-        why=states.notes[0] if task.method is MAP else "",
+        why=states.notes[0] if mapped else "",
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
         orders=states.orders,
+        moving=moving,
+        still=mechanism.map.unknowns - moving,
+        not_needed=whole.layout.unknowns - mechanism.map.unknowns,
+        points_not_needed=_unsolved(task),
         start=task.start.work,
         work=task.start.work + replace(states.work, derivatives_evaluated=0, coordinates_evaluated=0),
         stop=max(states.stop, scene.time.start),
@@ -164,22 +182,28 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
     """
-    mechanism = scene_mechanism(scene, method)
+    whole = scene_mechanism(scene, method)
+    plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
+    mechanism = needed_mechanism(whole, plan.derivatives(whole.topology))
     readout = Readout(
         mechanism=mechanism,
-        plan=plan_effects(scene.effects, method.effects),
+        plan=plan,
         chassis=ChassisMotion.of(mechanism, scene.functions),
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
-    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    _check_range(mechanism, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.derivative_of_every_point)
-    first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
-    closed = close_drawing(mechanism, first, tolerance)
-    moved = closing(mechanism, closed.y)
+    functions = {name: scene.functions[name] for name in whole.topology.required_inputs}
+    check_range(whole, functions, scene.instants)
+    for block in _blocks(scene.instants):
+        readout.chassis.states(block, readout.reported_derivative)
+    # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
+    first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
+    closed = close_drawing(whole, first, tolerance)
+    moved = closing(whole, closed.y)
     require_the_drawn_car(scene, moved)
+    functions = {name: functions[name] for name in mechanism.topology.required_inputs}
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    start = assemble(mechanism, inputs, first, closed, tolerance)
+    begun = path_of_part(closed, whole, mechanism)
+    start = assemble(mechanism, inputs, first, begun, pose_tolerance(scene, method, mechanism))
     return Task(scene, method, readout, functions, start, moved)
 
 
@@ -189,7 +213,7 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
     Args:
         hopeful: whether to go on to the most segments where the first ones tell that these will not do.
     """
-    notes = _tolerance_notes(task.scene, task.readout.mechanism)
+    notes = tolerance_notes(task.scene, task.readout.mechanism)
     chain = _chain(task, hopeful)
     states = StatesOfChain(task.readout, task.functions, chain, task.scene.time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
@@ -209,7 +233,7 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     mechanism = readout.mechanism
     limits = map_limits(task.scene, mechanism, readout.plan.derivative)
     way = map_way(mechanism, task.functions, task.start, time.start, time.stop, limits)
-    notes = (*((why,) if why else ()), *_tolerance_notes(task.scene, mechanism), *way.notes)
+    notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
     states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
     if way.reason:
         states = replace(states, status=_stop_of_map(task, states))
@@ -265,7 +289,7 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
     until = max(way.until, time.start)
     known = mechanism.known_series({name: f.series(until, 0) for name, f in functions.items()})
     inputs = {name: float(value) for name, value in mechanism.input_values(known[..., 0, :]).items()}
-    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]))[0][0]
+    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]), 0)[0][0]
     later = task.scene.instants[task.scene.instants > until]
     goal = float(later[0]) if len(later) else time.stop
     for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
@@ -301,7 +325,7 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     if not len(times):
         return None
     samples = solved.samples(times)
-    _require_known(solved, samples, task.scene.tolerance)
+    require_known(solved, samples, task.scene.tolerance)
     return Motion(
         times=samples.times,
         numbers=samples.numbers,
@@ -320,9 +344,26 @@ def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]
     closed = (task.closing.words,) if task.closing.noticeable else ()
     return (
         *closed,
+        *_unsolved_in_words(task),
         *task.scene.mechanism.doubts,
         *solved.states.notes,
         *_missing_numbers(solved, samples),
+    )
+
+
+def _unsolved(task: Task) -> tuple[str, ...]:
+    """The points that are not solved for."""
+    there = task.readout.mechanism.topology.points
+    return tuple(name for name in task.scene.mechanism.topology.points if name not in there)
+
+
+def _unsolved_in_words(task: Task) -> tuple[str, ...]:
+    """Of what nothing is known, not even whether it can follow the inputs."""
+    left_out = _unsolved(task)
+    if not left_out:
+        return ()
+    return (
+        f"nothing that is reported hangs on {', '.join(left_out)}: not solved for, nor whether it can follow",
     )
 
 
@@ -377,8 +418,22 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
         raise SceneError(source, "mechanism.points", error.problem) from error
 
 
-def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved."""
+def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
+    """Find an input out of range at the scene's instants before anything is solved.
+
+    A block at a time; only of a scene that is refused are all looked at, for the value that tells most.
+    """
+    try:
+        for block in _blocks(instants):
+            _check_range_at(mechanism, functions, block)
+        return
+    except InputOutOfRange as error:
+        found = error
+    _check_range_at(mechanism, functions, instants)
+    raise found
+
+
+def _check_range_at(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
     try:
         mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
     except InputOutOfRange as error:
@@ -387,18 +442,22 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
+def _blocks(rows: Array) -> Iterator[Array]:
+    return (rows[low : low + BLOCK] for low in range(0, len(rows), BLOCK))
+
+
 def truncation_share(mechanism: Mechanism) -> float:
     """Share of a scene's tolerance that solved points may use: carried ones multiply what these are off."""
     return min(TRUNCATION_SHARE, 1.0 / mechanism.carried_gain)
 
 
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
-    """How a scene's chain of series is cut.
+    """How a scene's chain of series is cut; that of many designs as finely as the largest of them needs.
 
     Args:
         derivative: highest time derivative that will be evaluated.
     """
-    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit), derivative)
+    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit.max()), derivative)
 
 
 def map_limits(scene: Scene, mechanism: Mechanism, derivative: int) -> Limits:
@@ -430,7 +489,7 @@ def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
     return min(settings.tolerance, COARSEST)
 
 
-def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
+def tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
     settings = chain_settings(scene, mechanism, 0)
     used = settings.kept.tolerance
@@ -443,18 +502,18 @@ def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 
-def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
+def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
     """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
 
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = solved.doubts(samples.times)
-    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+    each = (doubt for block in _blocks(samples.times) for doubt in solved.doubts(block).values())
+    if all((doubt <= tolerance).all() for doubt in each):
         return
-    certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
+    doubts = solved.doubts(samples.times)
     unproven = ~np.isfinite(solved.proof(samples).bound)
-    unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
+    unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))
@@ -470,8 +529,10 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
         why = f": {effect.no_number}" if effect.no_number else ""
         for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
             for name in effect.names or channel:
-                is_number = np.isfinite(channel[name]).reshape(len(samples.times), -1).all(axis=-1)
-                if bad := int(np.count_nonzero(~is_number)):
+                numbers = channel[name].reshape(len(samples.times), -1)
+                known = (np.isfinite(block).all(axis=-1) for block in _blocks(numbers))
+                bad = sum(int(np.count_nonzero(~each)) for each in known)
+                if bad:
                     notes.append(
                         f"{channel.quantity.words} of {name} is not a number at {bad} of "
                         f"{len(samples.times)} instants{why}"

@@ -29,6 +29,7 @@ ROOMS = {
         "scene",
         "simulation",
         "drawing_stands",
+        "sweeping",
         "mapping",
         "__main__",
     ),

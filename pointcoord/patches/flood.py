@@ -218,7 +218,9 @@ class _Flood:
         count = len(domain.free)
         series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
         solves = len(arrived) * (powers(count, self.order).count - 1)
-        self.work += Work(factorisations=len(arrived), rate_solves=solves)
+        self.work += Work(
+            factorisations=len(arrived), rate_solves=solves, unknowns_solved=solves * system.unknowns
+        )
         last, along = last_terms(series[..., : system.unknowns], count, self.order)
         coarse = last * float(mechanism.unit) > COARSE * self.limits.tolerance
         for place in np.flatnonzero(coarse).tolist():

@@ -74,7 +74,7 @@ class StatesOfMap:
         readout, table = self.readout, self.readout.table
         topology, drawn = readout.mechanism.topology, readout.mechanism.drawing.vectors
         if rows is None:
-            rows = np.empty((3 * (len(table.moving) + len(table.still)), len(instants)))
+            rows = np.empty((table.height, len(instants)))
         middle, half = self._boxes
         inputs, patch = self._inputs(instants)
         wanted, tables = self._tables
@@ -83,20 +83,25 @@ class StatesOfMap:
         for order, names in enumerate(wanted):
             for i, name in enumerate(names):
                 states[order][name] = vectors(sums[order], 3 * i)
-        still = {name: drawn[name] * float(readout.mechanism.unit) for name in topology.chassis}
-        for i, (order, name) in enumerate((*table.moving, *table.still)):
-            seen = vectors(rows, 3 * i)
+        unit = float(readout.mechanism.unit)
+        still = {name: drawn[name] * unit for name in topology.chassis}
+        for first, (order, name) in table.states:
+            seen = vectors(rows, first)
             if name in still:
                 seen[...] = still[name] if order == 0 else 0.0
             else:
                 seen[...] = states[order][name]
             states[order][name] = seen
+        for order, name in table.spare_still:
+            standing = still[name] if order == 0 else np.zeros(3)
+            states[order][name] = np.broadcast_to(standing, (len(instants), 3))
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
         mechanism = self.readout.mechanism
-        unknown = self._sums(self._patches.series, self._inputs(instants))
+        states, patch = self._inputs(instants)
+        unknown = self._sums(self._patches.series, (states[: derivatives + 1], patch))
         laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
         known = mechanism.known_series(laws)
         return [
