@@ -13,7 +13,7 @@ from absolute.solution import Array, Counts
 from absolute.tracking import SMALL, Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
-BATCH = 32
+BATCH = 64
 
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 32 * EPS
