@@ -29,7 +29,7 @@ class Layout:
     vectors: tuple[str, ...] = ()
     constants: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def unknowns(self) -> int:
         """How many coordinates are unknown."""
         return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
@@ -58,7 +58,7 @@ class Layout:
         known = self.unknowns + 2 + 3 * (len(self.chassis) + len(self.directions))
         return first | {name: known + i for i, name in enumerate((*self.driven, *self.constants))}
 
-    @property
+    @cached_property
     def size(self) -> int:
         """How many coordinates there are in all."""
         vectors = 3 * (len(self.chassis) + len(self.directions))
@@ -83,6 +83,19 @@ class Layout:
         if (start, end) not in self.squared_lengths:
             raise UnknownName("link", f"{start} - {end}", (f"{a} - {b}" for a, b in self.squared_lengths))
         return self.size - len(self.squared_lengths) + self.squared_lengths.index((start, end))
+
+    def places_in(self, whole: Layout) -> list[int]:
+        """Where the coordinates are in a layout that has them all, in this one's order."""
+        scalars = (*self.driven, *self.constants)
+        return [
+            *(i for name in (*self.moving, *self.vectors) for i in whole.vector(name)),
+            *(whole.scalar(name) for name in self.ratios),
+            whole.zero,
+            whole.one,
+            *(i for name in (*self.chassis, *self.directions) for i in whole.vector(name)),
+            *(whole.scalar(name) for name in scalars),
+            *(whole.squared_length(*ends) for ends in self.squared_lengths),
+        ]
 
     def describe(self, index: int) -> str:
         """An unknown coordinate in words, such as 'y of' a point."""

@@ -253,7 +253,11 @@ class TimePart(Part):
 
 
 class Scene(Part):
-    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`."""
+    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`.
+
+    `points` names the points that are reported, all of them if it is not given; what neither they nor the
+    effects hang on is not solved for.
+    """
 
     title: str = ""
     effects: tuple[str, ...] = ()
@@ -261,6 +265,7 @@ class Scene(Part):
     mechanism: MechanismPart
     inputs: dict[str, InputPart]
     time: TimePart
+    points: tuple[str, ...] | None = None
 
     @field_validator("effects")
     @classmethod
@@ -271,6 +276,26 @@ class Scene(Part):
                 hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
                 raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
         return effects
+
+    @field_validator("points")
+    @classmethod
+    def _known_points(cls, points: tuple[str, ...] | None, others: ValidationInfo) -> tuple[str, ...] | None:
+        if points is None or "mechanism" not in others.data:
+            return points
+        there = others.data["mechanism"].topology.points
+        if not points:
+            raise ValueError(
+                f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
+            )
+        for number, name in enumerate(points):
+            if name not in there:
+                raise ValueError(
+                    f"no point of this car is called {shown(name)}{meant(name, there)}; "
+                    f"allowed: {', '.join(there)}"
+                )
+            if name in points[:number]:
+                raise ValueError(f"{name!r} is named twice; allowed: each point once")
+        return points
 
     @model_validator(mode="after")
     def _effects_have_a_meaning(self) -> Self:
@@ -303,6 +328,17 @@ class Scene(Part):
                     f"allowed: all of time, {self.time.start} to {self.time.stop} s"
                 )
         return self
+
+    @property
+    def reported_points(self) -> tuple[str, ...]:
+        """The points that are reported, in the order of the mechanism's."""
+        every = self.mechanism.topology.points
+        return tuple(name for name in every if self.points is None or name in self.points)
+
+    @property
+    def unreported_points(self) -> tuple[str, ...]:
+        """The others."""
+        return tuple(name for name in self.mechanism.topology.points if name not in self.reported_points)
 
     @property
     def instants(self) -> NDArray[np.float64]:
