@@ -111,7 +111,7 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
         if found.method == "map":
             series += " in the inputs, each proven on a patch of their way,"
-        lines[1:1] = _unknowns(found)
+        lines += _unknowns(found)
         lines.append(
             f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
             f"factorisations, {found.start.factorisations} of them to assemble the start"

@@ -204,7 +204,7 @@ def test_names_and_times_that_are_offered_exist(make_scene: Make) -> None:
 @pytest.mark.parametrize(
     ("section", "fault", "keys"),
     [
-        ((), "titel", "title, effects, tolerance, mechanism, inputs, time"),
+        ((), "titel", "title, effects, tolerance, mechanism, inputs, time, points"),
         (("time",), "step", "start, stop, samples"),
         (("inputs", "rack"), "sin", "constant, polynomial, sine, table"),
         (("inputs", "time"), "sin", "constant, polynomial, sine, table"),
