@@ -197,11 +197,14 @@ class Tracking:
             here = self._expansion = expanded(mechanism, self._here, self._target[driven])
         ahead = Ahead.of(here, places - here.place)
         count = ahead.length()
-        line = line_between(here.place, places[count - 1], places[:count])
-        while count >= SHORTEST_RUN and not (Ahead.of(here, line.beside).third <= BESIDE).all():
-            count = 3 * count // 4
+        while count >= SHORTEST_RUN:
             line = line_between(here.place, places[count - 1], places[:count])
-        if count < SHORTEST_RUN:
+            third = float(Ahead.of(here, line.beside).third.max())
+            if third <= BESIDE:
+                break
+            # A smooth way is beside its chord by the square of its length: this falls as the sixth power.
+            count = min(count - 1, int(count * (BESIDE / third) ** (1.0 / 6.0)))
+        else:
             return self._too_short()
         last, target = count - 1, targets[done + count - 1]
         start = ahead.q[last]
