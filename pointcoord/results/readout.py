@@ -49,8 +49,8 @@ class Readout:
 
     @property
     def reported_derivative(self) -> int:
-        """Highest time derivative that is reported of points."""
-        return max(self.table.reported)
+        """Highest time derivative that is reported of points; 0 where none is."""
+        return max(self.table.reported, default=0)
 
     @cached_property
     def table(self) -> Table:
