@@ -28,6 +28,7 @@ ROOMS = {
         "results",
         "scene",
         "simulation",
+        "poses",
         "drawing_stands",
         "sweeping",
         "mapping",

@@ -4,8 +4,8 @@ A batch of cars shares the segments of one chain of series. A design that cannot
 drops out with its status, and the others go on as if it had not been there.
 
 Many designs are solved as columns (see `paths_together` and `chains_together`), with one operation for all of
-them. What does not go well there is solved again by itself in the plain form, which decides, and words the reason.
-Few designs, and whatever the columns cannot do at all, are solved in the plain form from the start.
+them. What does not go well there is solved again by itself in the plain form, which decides, and words the
+reason. Few designs, and whatever the columns cannot do at all, are solved in the plain form from the start.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ from pointcoord.time_functions import TimeFunction
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# Fewer designs are solved in the plain form: the operations on columns cost as much for one as for some dozens.
+# Fewer designs are solved in the plain form: the operations on columns cost as much for one as for some
+# dozens.
 FEW = 8
 
 
@@ -141,7 +142,7 @@ class Follow:
         return _Ended(drawing, pose, chain, chain.status)
 
     def begun(self, mechanism: Mechanism) -> tuple[Path | None, Pose | Status]:
-        """The closed drawings of a batch, and its poses at the start or what stops the first that has none."""
+        """The closed drawings of a batch, and its poses at the start, or what stops the first without one."""
         drawing, start = None, self.start
         try:
             drawing = close_drawing(mechanism, start, self.tolerance)

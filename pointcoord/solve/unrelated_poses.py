@@ -1,22 +1,24 @@
 r"""Many poses of one car at unrelated inputs, each solved and proven by itself.
 
-Boxes of inputs cover what is asked. The middle of each is reached from the closed drawing along a proven path (see
-`paths_together`). With X = C_u^-1 there and the tangent T(x) to the inputs of a box, C is quadratic, so that one test
-of Newton and Kantorovich's theorem, block by block (see `block_proof`), with
+Boxes of inputs cover what is asked. The middle of each is reached from the closed drawing along a proven path
+(see `paths_together`). With X = C_u^-1 there and the tangent T(x) to the inputs of a box, C is quadratic, so
+that one test of Newton and Kantorovich's theorem, block by block (see `block_proof`), with
 
     |X B(T, T)| <= sum_ij |X B(T_i, T_j)|,      |X C_u(T)| <= sum_i |X C_u(T_i)|,
 
-proves that at all inputs of the box there is one assembly near the tangent, and that these are one branch, the
-drawing's. A box for which that is not so is divided. A pose then starts from a power series about the middle of its
-box, takes one step of Newton's method or two, and is held to its box: it must lie where the box's assembly is the
-only one, and by the theorem about itself it is off by little more than |X C(y)|, rounding included. Whatever is not
-confirmed goes along a path of its own, and then the plain way, which says what stops it.
+proves that at all inputs of the box there is one assembly near the tangent, and that these are one branch,
+the drawing's. A box for which that is not so is divided. A pose then starts from a power series about the
+middle of its box, takes one step of Newton's method or two, and is held to its box: it must lie where the
+box's assembly is the only one, and by the theorem about itself it is off by little more than |X C(y)|,
+rounding included. Whatever is not confirmed goes along a path of its own, and then the plain way, which says
+what stops it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -26,7 +28,7 @@ from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.batch_last.elimination import Eliminated
 from pointcoord.numerics.batch_last.series import ColumnSeries
-from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.paths_together import CHUNK, Columns, columns_of, follow_together
 from pointcoord.solve.status import Status, blocked_by
@@ -39,6 +41,10 @@ ORDER = 5
 # How often a box is divided, boxes at most, and poses for which a box is worth its proof.
 DIVISIONS, MOST_BOXES, WORTH = 6, 20_000, 40
 NEWTON = 3
+# |I - X J| of an inverse by elimination: some eps times the condition; beyond 1e8 nothing would be proven.
+INEXACT = 1e-6
+# What a pose may be off the tangent at least, in units, where the tangent is exact.
+NEAREST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -66,8 +72,8 @@ class _Boxes:
         y: coordinates at the middle, shape (size, boxes).
         tangents, powers: coefficients of the unknowns by parts of the half widths, shapes (driven, unknowns,
             boxes) and (monomials, unknowns, boxes).
-        inverse: entries of X. omega, contraction, alone: by block; |I - X C_b| at any assembly of the box, and how
-            far about the tangent it is the only one.
+        inverse: entries of X. omega, contraction, alone: by block; |I - X C_b| within a distance of the
+            tangent in which there is no other assembly, and that distance.
     """
 
     middle: Array
@@ -180,7 +186,7 @@ class _Solver:
             inverse = factors.inverse()
             omega = columns.proof.lipschitz(np.abs(inverse))
             still = np.zeros_like(omega)
-            off = self._off(d, inverse, omega, still, np.abs(factors.entries))
+            off, _ = self._off(d, inverse, omega, still, np.abs(factors.entries))
         good = reached.done & (off <= self._reachable())
         self.found[:, rest[good]], self.bound[rest[good]] = reached.y[:n, good], off[good]
         return rest[~good]
@@ -240,11 +246,13 @@ class _Solver:
             for i, j in combinations_with_replacement(range(len(along)), 2):
                 times = rows.bilinear(along[i]) if i == j else rows.polar(along[i], along[j])
                 missed += np.abs(proof.times(inverse, times))
-            radius = proof.radii(magnitude, omega, missed, turns, jacobian)
-            # |X C_b'| of what earlier blocks and the block itself may be off from the tangent.
-            off = proof.turning_of_all(magnitude) * radius.max(axis=0)
-            contraction = turns + off
-            alone = np.where(omega > 0.0, (1.0 - turns) / omega, np.inf)
+            missed += np.abs(proof.times(inverse, rows.residual(d)))
+            missed += proof.times(magnitude, rows.uncertainty(d, self._data))
+            radius, turns = proof.radii(magnitude, omega, missed, turns + INEXACT, jacobian)
+            # A computed pose is a little farther from the tangent than the exact one; nobody is taken beyond.
+            reach = 2.0 * radius.max(axis=0) + NEAREST
+            contraction = turns + proof.turning_of_all(magnitude) * reach
+            alone = np.minimum(np.where(omega > 0.0, (1.0 - turns) / omega, np.inf), reach)
             proven = (
                 reached.done
                 & factors.sound
@@ -266,10 +274,12 @@ class _Solver:
         return boxes.part(proven), np.asarray(proven)
 
     def _powers(self, factors: Eliminated, y: Array, half: Array) -> Array:
-        """Series of the unknowns in all driven coordinates, (monomials, unknowns, boxes), from series in lines.
+        """Series of the unknowns in all driven coordinates, (monomials, unknowns, boxes), from series in
+        lines.
 
-        The terms of degree k along a direction v are sum over monomials of their coefficients times v^monomial,
-        so series along as many directions as there are monomials of the highest degree give all of them.
+        The terms of degree k along a direction v are sum over monomials of their coefficients times
+        v^monomial, so series along as many directions as there are monomials of the highest degree give all
+        of them.
         """
         columns, n, count = self.columns, self.columns.map.unknowns, len(half)
         directions = _directions(count)
@@ -322,30 +332,30 @@ class _Solver:
                 factors = columns.factorise(d)
                 y[:n] += columns.step(factors, d)
                 d = rows.differences(y)
-                off = self._off(
-                    d, inverse, omega, boxes.contraction[:, number, None], np.abs(factors.entries)
-                )
-                away = proof.largest(y[:n] - tangent) + off / float(self.mechanism.unit) / columns.least
+                contraction, jacobian = boxes.contraction[:, number, None], np.abs(rows.jacobian(d))
+                off, radius = self._off(d, inverse, omega, contraction, jacobian)
+                away = proof.largest(y[:n] - tangent) + radius
                 off = np.where((away <= boxes.alone[:, number, None]).all(axis=0), off, np.inf)
                 if (off <= self._reachable()).all():
                     break
         return y[:n], off
 
-    def _off(self, d: Array, inverse: Array, omega: Array, contraction: Array, jacobian: Array) -> Array:
-        """Bound of poses with these differences, shape (members,), mm: |X C(y)| and its rounding, by the theorem."""
+    def _off(
+        self, d: Array, inverse: Array, omega: Array, contraction: Array, jacobian: Array
+    ) -> tuple[Array, Array]:
+        """Bound of poses with these differences, (members,), mm, and of each block in its norm."""
         columns, mechanism = self.columns, self.mechanism
         rows, proof = columns.map, columns.proof
         magnitude = np.abs(inverse)
         missed = np.abs(proof.times(inverse, rows.residual(d)))
         missed += proof.times(magnitude, rows.uncertainty(d, self._data))
-        # An entry of C_u is a sum of a few differences, each rounded once.
-        radius = proof.radii(magnitude, omega, missed, contraction + 64.0 * UNIT_ROUNDOFF, jacobian)
+        radius, _ = proof.radii(magnitude, omega, missed, contraction + INEXACT, jacobian)
         points = 3 * len(mechanism.topology.moving)
         each = radius.take(columns.owner[:points], axis=0) * proof.weights[:points, None]
         off = float(mechanism.unit) * each.max(axis=0) + EPS * float(np.abs(mechanism.origin).max())
-        return np.where(np.isfinite(off), (1.0 + 1e-6) * off, np.inf)
+        return np.where(np.isfinite(off), (1.0 + 1e-6) * off, np.inf), radius
 
-    @property
+    @cached_property
     def _data(self) -> Array:
         """Uncertainty of every coordinate for all that is asked, shape (size,)."""
         mechanism, columns = self.mechanism, self.columns
@@ -363,7 +373,7 @@ def _powers_of(x: Array) -> Array:
     """All monomials of degrees 1 to ORDER, in the order of the coefficients, (monomials, members)."""
     count = len(x)
     found: list[Array] = list(x)
-    last = {(i,): x[i] for i in range(count)}
+    last: dict[tuple[int, ...], Array] = {(i,): x[i] for i in range(count)}
     for degree in range(2, ORDER + 1):
         last = {m: last[m[:-1]] * x[m[-1]] for m in _monomials(count, degree)}
         found += list(last.values())

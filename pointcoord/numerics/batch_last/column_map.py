@@ -4,15 +4,14 @@ The rows are made of differences of coordinates, d = y_first - y_second, each ta
 
     C(y) = Q (d_left d_right) + L d,      C_u(y) = J [d, 1],
 
-with Q, L and J matrices of small whole numbers that all members share, so that a row is rounded no more than in
-the plain form (see `quadratic`). Coordinates that are constants of every mechanism, 0 and 1, are put in, which
-makes most terms linear. B(a, b) is then only the bilinear part, which is all there is of it where a and b hold no
-constant: steps, tangents and terms of a series.
+with Q, L and J matrices of small whole numbers that all members share, so that a row is rounded no more than
+in the plain form (see `quadratic`). Coordinates that are constants of every mechanism, 0 and 1, are put in,
+which makes most terms linear. B(a, b) is then only the bilinear part, which is all there is of it where a and
+b hold no constant: steps, tangents and terms of a series.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
