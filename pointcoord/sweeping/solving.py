@@ -35,7 +35,7 @@ from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import SolvedScene
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.states_of_designs import StatesOfDesigns
 from pointcoord.results.table import Table
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
 from pointcoord.scene.scene_file import Scene
@@ -340,7 +340,7 @@ class _Block:
         part = mechanism.taken(solved.alive)
         readout = _readout(self.course, scene, part)
         self.readouts[:] = [readout]
-        states = StatesOfChain(readout, functions, solved.chain, scene.time.start)
+        states = StatesOfDesigns(readout, functions, solved.chain, scene.time.start)
         whole = SolvedScene(readout, functions, states)
         places = alive - self.first
         kept = np.array([number not in self.failures for number in alive.tolist()])
