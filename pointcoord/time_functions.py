@@ -10,14 +10,15 @@ which is all that positions, velocities, accelerations and whole motions need.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import comb, factorial, perm
+from operator import mul
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import two_product, two_sum
+from pointcoord.numerics.double_double import SPLITTER, two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -53,6 +54,17 @@ class TimeFunction(Protocol):
         """
         ...
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """Between which numbers every computed value of it lies over spans of time, each (N,).
+
+        They come nearer to the least and the largest value with the square of a span's length, and are the
+        value itself where the law stands still.
+
+        Args:
+            first, last: ends of each span, (N,), s; no break lies between them.
+        """
+        ...
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """Instants where a derivative jumps, s; a power series must not be used across them."""
@@ -83,15 +95,29 @@ class Polynomial:
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(min(order + 1, len(self.coefficients))):
-                factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
-                terms = np.array(self.coefficients[k:])
-                doubled = _doubled_horner(two_product(np.array(factors), terms), t)
+                high, low = self._shifted(k)
+                if t.ndim == 0:
+                    doubled = np.asarray(_horner_of_one(high, low, float(t)))
+                else:
+                    doubled = _doubled_horner(high, low, t)
                 if not np.isfinite(doubled).all():
                     # Splitting a number above 1e300 overflows; there only the plain sum is left.
-                    plain = np.polynomial.polynomial.polyval(t, factors * terms)
+                    plain = np.polynomial.polynomial.polyval(t, np.array(high))
                     doubled = np.where(np.isfinite(doubled), doubled, plain)
                 result[..., k] = doubled
         return result
+
+    def _shifted(self, k: int) -> tuple[list[float], list[float]]:
+        """binomial(j, k) c_j as high and low, for j from k up."""
+        if k not in self._shifts:
+            factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
+            high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
+            self._shifts[k] = high.tolist(), low.tolist()
+        return self._shifts[k]
+
+    @cached_property
+    def _shifts(self) -> dict[int, tuple[list[float], list[float]]]:
+        return {}
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
@@ -111,6 +137,16 @@ class Polynomial:
                 total = total * t + factor * Enclosed.of(self.coefficients[j])
             found.append(_rounded_once(self, total, instants, derivative))
         return found
+
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The series about the middle, each term at its largest."""
+        middle, half = _middle_and_half(first, last)
+        order = len(self.coefficients) - 1
+        series = self.series(middle, order)
+        doubts = [self.rounding(middle, k) / factorial(k) for k in range(order + 1)]
+        # The rounding of a value is largest at one of the ends: it grows with the distance from zero.
+        own = np.maximum(self.rounding(first), self.rounding(last))
+        return _about(series, np.stack(doubts, axis=-1), half, own)
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -144,11 +180,12 @@ class Sine:
                 small = bool((np.abs(low) <= SMALL_ANGLE).all())
                 across, along = (low, 1.0) if small else (np.sin(low), np.cos(low))
                 sine, cosine = sine * along + cosine * across, cosine * along - sine * across
-            quarter_turns = (sine, cosine, -sine, -cosine)
+            quarter_turns = np.array((sine, cosine, -sine, -cosine))
             powers = np.float64(self.angular_frequency) ** np.arange(order + 1)
+            factors = self.amplitude * powers / _factorials(order)
             result = np.empty((*np.shape(angle), order + 1))
-            for k in range(order + 1):
-                result[..., k] = self.amplitude * powers[k] / factorial(k) * quarter_turns[k % 4]
+            for turn in range(min(4, order + 1)):
+                result[..., turn::4] = quarter_turns[turn][..., None] * factors[turn::4]
             # The offset may all but cancel a large swing: product and sum are rounded once together.
             swing, rest = two_product(np.array(self.amplitude), sine)
             value, carry = two_sum(swing, np.array(self.offset))
@@ -195,6 +232,33 @@ class Sine:
         )
         return [_rounded_once(self, value, instants, d) for d, value in enumerate(values)]
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The values at the ends, or the crest or the trough where the angle may pass one.
+
+        The angle in turns is rounded at most 8 times relative to the sum of its magnitudes.
+        """
+        ends = [self.series(t, 0)[..., 0] for t in (first, last)]
+        least, most = np.minimum(*ends), np.maximum(*ends)
+        swing = abs(self.amplitude)
+        if swing == 0.0 or self.angular_frequency == 0.0:
+            return least, most
+        with np.errstate(over="ignore", invalid="ignore"):
+            angles = [self.angular_frequency * t + self.phase for t in (first, last)]
+            sizes = np.maximum(np.abs(self.angular_frequency * first), np.abs(self.angular_frequency * last))
+            doubt = 8.0 * UNIT_ROUNDOFF * (sizes + abs(self.phase) + 1.0)
+            low, high = np.minimum(*angles) - doubt, np.maximum(*angles) + doubt
+            quarter = np.copysign(0.25, self.amplitude)
+            # False for what overflows: then it may pass both.
+            crest, trough = (
+                ~(np.ceil(low / TURN.high - turned) > high / TURN.high - turned)
+                for turned in (quarter, -quarter)
+            )
+            most = np.where(crest, self.offset + swing, most)
+            least = np.where(trough, self.offset - swing, least)
+            rounded = np.maximum(self.rounding(first), self.rounding(last))
+            rounded = 2.0 * (rounded + 8.0 * UNIT_ROUNDOFF * (swing + np.abs(most) + np.abs(least)))
+        return least - rounded, most + rounded
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """None: a sine is analytic everywhere."""
@@ -234,6 +298,24 @@ class Table:
         values = (self._spline(instants, nu=derivative) for derivative in range(3))
         return [Enclosed.of(value, 0.0, 0.0, UNIT_ROUNDOFF * np.abs(value)) for value in values]
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The cubic about the middle, each term at its largest.
+
+        A cubic is computed from the start of its piece, and rounded at most 8 times relative to the sum of
+        its terms there.
+        """
+        middle, half = _middle_and_half(first, last)
+        knots, cubics = self._spline.x, np.abs(self._spline.c[::-1])
+        place = np.clip(np.searchsorted(knots, middle, side="right") - 1, 0, len(knots) - 2)
+        reach = np.maximum(last - knots[place], 0.0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            rounded = sum(cubics[k][place] * reach**k for k in range(4))
+            doubts = np.zeros((len(middle), 4))
+            for k in range(4):
+                falling = (comb(j, k) * cubics[j][place] * reach ** (j - k) for j in range(k, 4))
+                doubts[:, k] = 8.0 * UNIT_ROUNDOFF * sum(falling)
+            return _about(self.series(middle, 3), doubts, half, 8.0 * UNIT_ROUNDOFF * rounded)
+
     @property
     def finite(self) -> bool:
         """Whether the spline exists in floating point: huge values or close times overflow its slopes."""
@@ -261,6 +343,12 @@ class Table:
         return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
 
 
+@cache
+def _factorials(order: int) -> Array:
+    """k! for k from 0 to an order."""
+    return np.array([float(factorial(k)) for k in range(order + 1)])
+
+
 def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
     """A law's value rounded to the nearest double: which one is certain, unless it lies next to a tie.
 
@@ -279,13 +367,59 @@ def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivativ
     return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
 
 
-def _doubled_horner(coefficients: tuple[Array, Array], t: Array) -> Array:
+def _middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:
+    """Middles of spans, and half lengths that reach both ends whatever is rounded."""
+    middle = first + 0.5 * (last - first)
+    return middle, np.maximum(last - middle, middle - first) * (1.0 + 4.0 * UNIT_ROUNDOFF)
+
+
+def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[Array, Array]:
+    """Between which numbers the sum of a series lies, at most `half` from its middle, each (N,).
+
+    Args:
+        series: coefficients about the middles, (N, order + 1). doubts: how far these may be off, likewise.
+        rounded: what computing a value rounds beside that, (N,).
+    """
+    powers = half[:, None] ** np.arange(series.shape[-1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        spread = (np.abs(series) + doubts)[:, 1:] * powers[:, 1:]
+        moved = spread.sum(axis=-1)
+        value = series[:, 0]
+        # Twice the rounding of the value, of the sums here and of the powers.
+        count = 4.0 * series.shape[-1] + 8.0
+        edge = moved + doubts[:, 0] + rounded
+        edge += count * UNIT_ROUNDOFF * (np.abs(value) + moved)
+        still = moved == 0.0
+        return np.where(still, value, value - edge), np.where(still, value, value + edge)
+
+
+def _horner_of_one(highs: list[float], lows: list[float], t: float) -> float:
+    """What `_doubled_horner` gives at one instant: the same operations, of Python's own numbers."""
+    if len(highs) == 1 or t == 0.0:
+        return highs[0] + lows[0]
+    scaled = SPLITTER * t
+    t_high = scaled - (scaled - t)
+    t_low = t - t_high
+    high = low = 0.0
+    for c, c_low in zip(reversed(highs), reversed(lows), strict=True):
+        product, scaled = high * t, SPLITTER * high
+        a_high = scaled - (scaled - high)
+        a_low = high - a_high
+        rest = ((a_high * t_high - product) + a_high * t_low + a_low * t_high) + a_low * t_low
+        rest += low * t
+        high = product + c
+        virtual = high - product
+        low = (product - (high - virtual)) + (c - virtual) + (rest + c_low)
+    return high + low
+
+
+def _doubled_horner(highs: list[float], lows: list[float], t: Array) -> Array:
     """sum_j (high_j + low_j) t^j, rounded about once."""
     high, low = np.zeros_like(t), np.zeros_like(t)
-    for c, c_low in zip(coefficients[0][::-1], coefficients[1][::-1], strict=True):
+    for c, c_low in zip(reversed(highs), reversed(lows), strict=True):
         product, rest = two_product(high, t)
         rest = rest + low * t
-        high, carry = two_sum(product, c)
+        high, carry = two_sum(product, np.array(c))
         low = carry + (rest + c_low)
     return high + low
 
@@ -296,6 +430,24 @@ def cosine(angle: Array) -> Array:
     c' = -s a' and s' = c a' give, term by term,
     c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
     """
+    return _cosine_of_one(angle) if angle.ndim == 1 else cosine_plainly(angle)
+
+
+def _cosine_of_one(angle: Array) -> Array:
+    """One series, in Python's own numbers; of an angle that is a polynomial only its own terms are summed."""
+    last = int(np.flatnonzero(angle)[-1]) if angle.any() else 0
+    weighted = [i * a for i, a in enumerate(angle[: last + 1].tolist())][1:]
+    c, s = [float(np.cos(angle[0]))], [float(np.sin(angle[0]))]
+    for k in range(1, len(angle)):
+        # The series so far, the latest term first, beside the terms 1, 2, ... of the angle's rate.
+        c_k = -sum(map(mul, weighted, reversed(s))) / k
+        s.append(sum(map(mul, weighted, reversed(c))) / k)
+        c.append(c_k)
+    return np.array(c)
+
+
+def cosine_plainly(angle: Array) -> Array:
+    """The same for any batch."""
     orders = angle.shape[-1]
     c = np.zeros_like(angle)
     s = np.zeros_like(angle)

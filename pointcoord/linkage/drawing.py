@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,14 @@ class Drawing:
 
     def distance(self, start: str, end: str) -> Array:
         """Drawn distance between two points, shape (...,)."""
-        return np.asarray(np.linalg.norm(self.vectors[start] - self.vectors[end], axis=-1))
+        if (start, end) not in self._distances:
+            between = self.vectors[start] - self.vectors[end]
+            self._distances[start, end] = np.asarray(np.linalg.norm(between, axis=-1))
+        return self._distances[start, end]
+
+    @cached_property
+    def _distances(self) -> dict[tuple[str, str], Array]:
+        return {}
 
     def along(self, start: str, end: str, direction: str) -> Array:
         """Component of the drawn vector from start to end along a direction, shape (...,)."""

@@ -124,9 +124,9 @@ class ArmAngle:
             InputOutOfRange: an angle outside 0 .. pi.
         """
         angle = value[..., 0]
-        outside = ~((angle >= 0.0) & (angle <= np.pi))
-        if outside.any():
-            worst = float(np.atleast_1d(angle[outside])[0])
+        inside = (angle >= 0.0) & (angle <= np.pi)
+        if not inside.all():
+            worst = float(np.atleast_1d(angle[~inside])[0])
             allowed = "0 to pi rad, measured from the upward vertical"
             if 2.0 * np.pi < worst <= 180.0:
                 allowed += f" (if {worst:.10g} is meant in degrees, it is {np.radians(worst):.10g} rad)"

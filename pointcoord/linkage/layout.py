@@ -29,7 +29,7 @@ class Layout:
     vectors: tuple[str, ...] = ()
     constants: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def unknowns(self) -> int:
         """How many coordinates are unknown."""
         return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
@@ -63,7 +63,7 @@ class Layout:
         first = self.size - len(self.squared_lengths)
         return {ends: first + i for i, ends in enumerate(self.squared_lengths)}
 
-    @property
+    @cached_property
     def size(self) -> int:
         """How many coordinates there are in all."""
         vectors = 3 * (len(self.chassis) + len(self.directions))

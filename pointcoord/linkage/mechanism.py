@@ -8,7 +8,8 @@ power of two changes no bit of a result.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,11 +64,27 @@ class Mechanism:
         driven = (drive for drive in self.topology.drives if not functions[drive.input].still)
         return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
-    @property
+    @cached_property
     def carried_gain(self) -> float:
         """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
         carried = self.topology.carried.items()
         return max((carried_gain(self.carrier_weights[n], self.drawing, c) for n, c in carried), default=1.0)
+
+    def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
+        """Some members of a batch of one dimension, by number, or one car of it."""
+        vectors = {
+            name: place[members] if place.ndim > 1 else place for name, place in self.drawing.vectors.items()
+        }
+        return replace(
+            self,
+            origin=self.origin[members],
+            unit=self.unit[members],
+            drawing=Drawing(vectors, self.unit[members]),
+            drawn=self.drawn[members],
+            drawn_lacks=self.drawn_lacks[members],
+            drawn_doubt=self.drawn_doubt[members],
+            carrier_weights={name: weights[members] for name, weights in self.carrier_weights.items()},
+        )
 
     def places(self, y: Array) -> dict[str, Array]:
         """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
@@ -93,28 +110,30 @@ class Mechanism:
             InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
         """
         topology, layout = self.topology, self.layout
+        required = topology.required_inputs
         for name in inputs:
-            if name not in topology.required_inputs:
-                raise UnknownName("driving input", name, topology.required_inputs)
-        for name in topology.required_inputs:
+            if name not in required:
+                raise UnknownName("driving input", name, required)
+        for name in required:
             if name not in inputs:
                 raise UnknownName("given input", name, inputs)
-        batch = np.broadcast_shapes(*(s.shape[:-1] for s in inputs.values()), self.drawn.shape[:-1])
-        orders = inputs[topology.required_inputs[0]].shape[-1]
+        shapes = {s.shape[:-1] for s in inputs.values()} | {self.drawn.shape[:-1]}
+        batch = () if shapes == {()} else np.broadcast_shapes(*shapes)
+        orders = inputs[required[0]].shape[-1]
         known = np.zeros((*batch, orders, layout.size - layout.unknowns))
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive in topology.drives:
             place = layout.scalar(drive.coordinate) - layout.unknowns
             known[..., place] = drive.series(inputs[drive.input], self.drawing)
+        if np.isfinite(known).all() and all(np.isfinite(series).all() for series in inputs.values()):
+            return known
         for name, series in inputs.items():
             if not np.isfinite(series).all():
                 worst = float(series[~np.isfinite(series)][0])
                 raise InputOutOfRange(name, worst, "finite values and rates of every order")
-        if not np.isfinite(known).all():
-            largest = max(inputs, key=lambda name: float(np.abs(inputs[name]).max()))
-            worst = float(np.abs(inputs[largest]).max())
-            raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
-        return known
+        largest = max(inputs, key=lambda name: float(np.abs(inputs[name]).max()))
+        worst = float(np.abs(inputs[largest]).max())
+        raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
 
     def input_values(self, known: Array) -> dict[str, Array]:
         """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""

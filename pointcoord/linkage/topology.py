@@ -60,7 +60,7 @@ class Topology:
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     puts_in_place: bool = False
 
-    @property
+    @cached_property
     def points(self) -> tuple[str, ...]:
         """Every point that a car of this kind has."""
         return (*self.chassis, *self.moving, *self.carried)
@@ -81,14 +81,24 @@ class Topology:
 
     def given(self, points: Collection[str]) -> Topology:
         """The topology of a car that gives these points: what only rides on a body may be left out."""
-        left_out = {name for name in self.carried if name in self.stand_ins and name not in points}
+        left_out = frozenset(name for name in self.carried if name in self.stand_ins and name not in points)
         if not left_out:
             return self
+        # Kept, because the order of the coordinates and the map are made once for each.
+        if left_out not in self._without:
+            self._without[left_out] = self._with_carried(left_out)
+        return self._without[left_out]
+
+    @cached_property
+    def _without(self) -> dict[frozenset[str], Topology]:
+        return {}
+
+    def _with_carried(self, left_out: frozenset[str]) -> Topology:
         inner, outer = (self.stand_ins[name] if name in left_out else name for name in self.wheel_axis)
         riding = {name: carriers for name, carriers in self.carried.items() if name not in left_out}
         return replace(self, carried=riding, wheel_axis=(inner, outer))
 
-    @property
+    @cached_property
     def required_inputs(self) -> tuple[str, ...]:
         """Inputs that must be given."""
         return tuple(drive.input for drive in self.drives)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
@@ -30,4 +30,13 @@ class Work:
     coordinates_evaluated: int = 0
 
     def __add__(self, other: Work) -> Work:
-        return Work(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+        return Work(
+            self.residuals + other.residuals,
+            self.factorisations + other.factorisations,
+            self.rate_solves + other.rate_solves,
+            self.unknowns_solved + other.unknowns_solved,
+            self.segments + other.segments,
+            self.series_orders + other.series_orders,
+            self.derivatives_evaluated + other.derivatives_evaluated,
+            self.coordinates_evaluated + other.coordinates_evaluated,
+        )

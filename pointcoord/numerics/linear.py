@@ -41,6 +41,11 @@ class Factors:
 
     def solve(self, right: Array) -> Array:
         """x with matrix x = right, shapes (..., n), refined once."""
+        if right.ndim == 1 and self.matrix.ndim == 2:
+            # Of vectors, `dot` takes half the time that the operator @ does.
+            rows = right * self.row_scale
+            found = self.inverse.dot(rows)
+            return np.asarray(found + self.inverse.dot(rows - self.matrix.dot(found)))
         scaled = (right * self.row_scale)[..., None]
         x = self.inverse @ scaled
         x += self.inverse @ (scaled - self.matrix @ x)
@@ -108,6 +113,28 @@ class Factors:
 
 def factorise(matrix: Array) -> Factors:
     """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
+    one = _factorise_one(matrix) if matrix.ndim == 2 else None
+    return factorise_plainly(matrix) if one is None else one
+
+
+def _factorise_one(matrix: Array) -> Factors | None:
+    """The same numbers for one matrix, with half the calls; None where a row or the matrix has no inverse."""
+    # The largest element of each row; what is not finite leaves no number between the bounds.
+    largest = np.maximum.reduce(np.abs(matrix), axis=1)
+    if not (float(largest.min()) > 0.0 and float(largest.max()) < np.inf):
+        return None
+    row_scale = np.ldexp(1.0, 1 - np.frexp(largest)[1])
+    scaled = matrix * row_scale[:, None]
+    try:
+        inverse = np.linalg.inv(scaled)
+    except np.linalg.LinAlgError:
+        return None
+    sizes = (float(np.add.reduce(np.abs(each), axis=1).max()) for each in (scaled, inverse))
+    return Factors(scaled, inverse, row_scale, np.asarray(next(sizes) * next(sizes)))
+
+
+def factorise_plainly(matrix: Array) -> Factors:
+    """The same for any batch, element by element."""
     largest = np.abs(matrix).max(axis=-1)
     usable = np.isfinite(largest) & (largest > 0.0)
     row_scale = np.ldexp(1.0, 1 - np.frexp(np.where(usable, largest, 1.0))[1])

@@ -36,6 +36,7 @@ LIMIT = 12
 # The rounding error of a step in parts of eps times the condition number, at most: rows are sums of some ten
 # products of coordinates near 1, each rounded a few times. A larger step need not be compared with it.
 ROUNDINGS = 1e4
+LARGEST = float(np.finfo(float).max)
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,60 @@ def newton_refine(
     Returns:
         The solution; members that do not converge are marked, never raised, and keep their last y.
     """
+    if y.ndim == 1:
+        return _refine_one(system, y, offset, float(tolerance))
+    return refine_plainly(system, y, offset, tolerance)
+
+
+def _refine_one(system: QuadraticMap, y: Array, offset: Array | float, tolerance: float) -> Converged:
+    """The same steps for one start, with plain numbers where `refine_plainly` has arrays of one."""
+    n, y = system.unknowns, y.copy()
+    converged, iterations = False, 0
+    first_step, last_noise, left, previous = np.nan, np.inf, 0.0, np.inf
+    with np.errstate(all="ignore"):
+        while iterations < LIMIT:
+            factors = factorise(system.jacobian(y))
+            step = -factors.solve(system.residual(y) - offset)
+            magnitude = np.abs(step)
+            size = float(magnitude.max())
+            iterations += 1
+            usable = size < np.inf and not factors.singular
+            small = size < 1e-8 and size >= 0.5 * previous
+            last_noise = 0.0
+            if not size > ROUNDINGS * EPS * float(factors.condition):
+                noise = _noise(system, y, factors, np.asarray(size))
+                small = small or bool((magnitude <= noise).all())
+                last_noise = float(noise.max())
+            first_step = size if iterations == 1 else first_step
+            previous = size
+            if not usable:
+                break
+            y[:n] += step
+            if not small and tolerance > 0.0:
+                left = float(what_is_left(system, factors, step))
+                small = left <= min(tolerance, LARGEST)
+            elif small:
+                left = 0.0
+            if small:
+                converged = True
+                break
+    return Converged(
+        y=y,
+        factors=factors,
+        converged=np.asarray(converged),
+        iterations=np.asarray(iterations),
+        first_step=np.asarray(first_step),
+        noise=np.asarray(last_noise),
+        left=np.asarray(left),
+        last_step=np.asarray(previous),
+        work=Work(residuals=iterations, factorisations=iterations),
+    )
+
+
+def refine_plainly(
+    system: QuadraticMap, y: Array, offset: Array | float = 0.0, tolerance: Array | float = 0.0
+) -> Converged:
+    """The same for any batch, each member of which goes on until its own end."""
     batch, n = y.shape[:-1], system.unknowns
     y = y.reshape(-1, y.shape[-1]).copy()
     offset = np.broadcast_to(offset, (*batch, len(system.rows))).reshape(-1, len(system.rows))
@@ -157,8 +212,10 @@ def what_is_left(system: QuadraticMap, factors: Factors, step: Array) -> Array:
     d[..., : system.unknowns] = step
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
-        q = np.abs((inverse @ system.residual(d)[..., None])[..., 0]).max(axis=-1)
-        omega = system.lipschitz(inverse, np.ones_like(step))
+        rows = system.residual(d)
+        bent = inverse.dot(rows) if rows.ndim == 1 else (inverse @ rows[..., None])[..., 0]
+        q = np.abs(bent).max(axis=-1)
+        omega = system.lipschitz(inverse)
         room = 1.0 - omega * np.abs(step).max(axis=-1)
         constant = 2.0 * omega * q / room**2
         rest = 2.0 * q / (room * (1.0 + np.sqrt(np.maximum(1.0 - constant, 0.0))))

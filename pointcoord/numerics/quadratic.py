@@ -38,6 +38,9 @@ class Product:
 
 Row = tuple[Product, ...]
 
+# Terms times coordinates up to which full matrices of zeros and ones cost less than picking elements.
+DENSE = 2**14
+
 
 # Rows from which on the few entries of curvature are picked; below, a product with zeros is quicker.
 LARGE = 100
@@ -101,9 +104,9 @@ class _Curvature:
         products = weights.take(self.first, axis=-1) * weights.take(self.second, axis=-1) * self.scales
         return np.asarray(np.add.reduceat(products, self.starts, axis=-1))
 
-    def bent(self, preconditioner: Array, weights: Array) -> Array:
-        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns)."""
-        sizes = self.sizes(weights)
+    def bent(self, preconditioner: Array, weights: Array | None) -> Array:
+        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights they are 1."""
+        sizes = self.plain if weights is None else self.sizes(weights)
         if len(self.table) < LARGE:
             return np.asarray((np.abs(preconditioner @ self.table) @ sizes[..., None])[..., 0])
         batch = np.broadcast_shapes(preconditioner.shape[:-2], sizes.shape[:-1])
@@ -129,6 +132,11 @@ class _Curvature:
             bent = by_row @ np.abs(some).T + sizes[..., ~self.alone] @ sums.T
             found[..., low : low + ROWS] = bent
         return found
+
+    @cached_property
+    def plain(self) -> Array:
+        """The sizes of weights of 1, (directions,)."""
+        return np.asarray(np.add.reduceat(self.scales, self.starts))
 
     @cached_property
     def alone(self) -> NDArray[np.bool_]:
@@ -189,8 +197,24 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
-    def _curvature(self) -> _Curvature:
-        """2 B restricted to the unknowns."""
+    def curvature(self) -> tuple[Array, Indices, Indices]:
+        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
+        pairs = self._pairs
+        table = np.zeros((len(self.rows), len(pairs)))
+        for column, entries in enumerate(pairs.values()):
+            for index, value in entries.items():
+                table[index, column] = value
+        ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
+        return table, ends[:, 0], ends[:, 1]
+
+    @cached_property
+    def _bends(self) -> _Curvature:
+        """The same, proportional columns as one."""
+        return _Curvature.of(self._pairs, len(self.rows))
+
+    @cached_property
+    def _pairs(self) -> dict[tuple[int, int], dict[int, float]]:
+        """2 B restricted to the unknowns, by pair and row."""
         pairs: dict[tuple[int, int], dict[int, float]] = {}
         for index, row in enumerate(self.rows):
             for p in row:
@@ -201,7 +225,7 @@ class QuadraticMap:
                             for pair in ((i, j), (j, i)):
                                 entries = pairs.setdefault(pair, {})
                                 entries[index] = entries.get(index, 0.0) + value
-        return _Curvature.of(pairs, len(self.rows))
+        return pairs
 
     @cached_property
     def reads(self) -> tuple[frozenset[int], ...]:
@@ -221,6 +245,27 @@ class QuadraticMap:
         """Which rows determine which unknowns, block after block."""
         return structure_of(self)
 
+    @cached_property
+    def dense(self) -> tuple[Array, Array] | None:
+        """Two full matrices that make a few products of many small ones; None for a map too large for that.
+
+        The first gives the left factors of all terms and then the right ones, (2 terms, size), with two
+        entries +-1 a row: a difference of coordinates comes out of it rounded once, as by itself. The second
+        sums products of factors into rows, (rows, terms).
+        """
+        coefficients, *ends, _ = self._terms
+        count = len(coefficients)
+        if count * self.size > DENSE:
+            return None
+        differences, sums = np.zeros((2 * count, self.size)), np.zeros((len(self.rows), count))
+        for half, (plus, minus) in enumerate((ends[:2], ends[2:])):
+            numbers = np.arange(half * count, (half + 1) * count)
+            differences[numbers, plus] += 1.0
+            differences[numbers, minus] -= 1.0
+        lengths = [len(row) for row in self.rows]
+        sums[np.repeat(np.arange(len(lengths)), lengths), np.arange(count)] = coefficients
+        return differences, sums
+
     @property
     def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
         """Coefficients of all terms, where each row starts, and the ends of both factors' differences."""
@@ -229,11 +274,17 @@ class QuadraticMap:
 
     def factors(self, y: Array) -> tuple[Array, Array]:
         """Both differences of every term, each of shape (..., terms)."""
+        if y.ndim == 1 and self.dense is not None:
+            differences = self.dense[0]
+            both = differences.dot(y)
+            return both[: len(both) // 2], both[len(both) // 2 :]
         _, a, b, c, d, _ = self._terms
         return y.take(a, axis=-1) - y.take(b, axis=-1), y.take(c, axis=-1) - y.take(d, axis=-1)
 
     def gather(self, products: Array) -> Array:
         """Sum the products of factors, shape (..., terms), into rows, shape (..., rows)."""
+        if products.ndim == 1 and self.dense is not None:
+            return np.asarray(self.dense[1].dot(products))
         coefficients, *_, starts = self._terms
         return np.add.reduceat(products * coefficients, starts, axis=-1)
 
@@ -251,7 +302,10 @@ class QuadraticMap:
     def jacobian(self, y: Array) -> Array:
         """C_u(y), the derivative by the unknowns, shape (..., rows, unknowns); linear in y."""
         factors, coefficients, first, flat = self._jacobian_pattern
-        both = np.concatenate(self.factors(y), axis=-1)
+        if y.ndim == 1 and self.dense is not None:
+            both = self.dense[0].dot(y)
+        else:
+            both = np.concatenate(self.factors(y), axis=-1)
         entries = np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
         matrix = np.zeros((*y.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., flat] = entries
@@ -259,15 +313,19 @@ class QuadraticMap:
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
-        factors, coefficients, first, flat = self._jacobian_pattern
         _, a, b, c, d, _ = self._terms
-        both = np.concatenate(
-            [data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)], -1
+        return self.jacobian_change(
+            data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)
         )
+
+    def jacobian_change(self, left: Array, right: Array) -> Array:
+        """The same when the two differences of each term move by `left` and `right`, (..., terms)."""
+        factors, coefficients, first, flat = self._jacobian_pattern
+        both = np.concatenate([left, right], axis=-1)
         entries = np.add.reduceat(both.take(factors, axis=-1) * np.abs(coefficients), first, axis=-1)
-        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix = np.zeros((*left.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., flat] = entries
-        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
+        return matrix.reshape(*left.shape[:-1], len(self.rows), self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).
@@ -284,15 +342,16 @@ class QuadraticMap:
         spread = gamma * left * right + left * right_error + left_error * (right + right_error)
         return np.add.reduceat(spread * np.abs(coefficients), starts, axis=-1)
 
-    def lipschitz(self, preconditioner: Array, weights: Array) -> Array:
-        r"""The Lipschitz constant of X C_u in a weighted maximum norm, shape (...,).
+    def lipschitz(self, preconditioner: Array, weights: Array | None = None) -> Array:
+        r"""The Lipschitz constant of X C_u in a maximum norm, weighted or plain, shape (...,).
 
         With |u| = max_i |u_i| / g_i it is max_i (1 / g_i) sum_jk |sum_r X_ir 2 B_rjk| g_j g_k for a
         preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns), which may have
         more leading dimensions than X. C_u is linear in y, so this one number holds everywhere.
         """
-        sums = self._curvature.bent(preconditioner, weights)
-        return np.asarray((sums / weights).max(axis=-1))
+        if weights is None:
+            return np.asarray(self._bends.bent(preconditioner, None).max(axis=-1))
+        return np.asarray((self._bends.bent(preconditioner, weights) / weights).max(axis=-1))
 
 
 def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap:

@@ -20,6 +20,9 @@ along y + e + s y1 is
     (1 - omega |e| - s z)^2 >= 2 omega |X B(e + s y1, e + s y1)|,
 
 which solves in closed form as well. Only the end is corrected to the tolerance.
+
+One pose on its way from the drawing takes longer steps, along a power series of the path (see `proven_path`);
+tangents lead where no few of these are proven to reach the end, and tell where a path stops.
 """
 
 from __future__ import annotations
@@ -40,6 +43,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.proven_path import proven_end
 from pointcoord.solve.status import Blocked
 
 Array = NDArray[np.float64]
@@ -155,6 +159,7 @@ def follow(
     target: Array,
     factors: Factors | None = None,
     tolerance: float = 0.0,
+    steps: int = STEPS,
 ) -> Path:
     """Carry poses along straight paths to other known coordinates.
 
@@ -163,6 +168,7 @@ def follow(
         target: known coordinates at the end, shape (..., size - unknowns).
         factors: factorisation of C_u at y, if it is at hand.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
+        steps: at most so many.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
@@ -181,7 +187,7 @@ def follow(
     factors = factors.reshaped((len(y),))
     side = orientation(factors)
     active = np.flatnonzero(~factors.singular)
-    for _ in range(STEPS):
+    for _ in range(steps):
         if not active.size:
             break
         left, local = remaining[active], factors.taken(active)
@@ -236,6 +242,22 @@ def follow(
     )
 
 
+def led(
+    system: QuadraticMap, y: Array, target: Array, factors: Factors | None = None, tolerance: float = 0.0
+) -> Path:
+    """What `follow` gives; one pose goes along a few series where these prove the whole path.
+
+    Args, result: as of `follow`.
+    """
+    if y.ndim == 1 and target.ndim == 1:
+        first = factorise(system.jacobian(y)) if factors is None else factors
+        end = proven_end(system, y, target, first, system.residual(y), tolerance)
+        if end is not None:
+            iterations, left = np.array(end.iterations), np.array(end.left)
+            return Path(end.y, end.factors, iterations, left, np.array(1.0), end.work)
+    return follow(system, y, target, factors, tolerance)
+
+
 def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array) -> Array:
     """What places are still off, e with C_u e = -(C(y) - wanted), shape (members, size)."""
     correction = np.zeros_like(y)
@@ -266,7 +288,7 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
         AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
     """
     own = mechanism.drawn[..., mechanism.map.unknowns :]
-    path = follow(mechanism.map, mechanism.drawn, own, tolerance=tolerance)
+    path = led(mechanism.map, mechanism.drawn, own, tolerance=tolerance)
     _require(mechanism, path, own, "the drawing cannot be assembled", instant)
     _require_sense(mechanism, path, instant)
     return path
@@ -295,7 +317,7 @@ def assemble(
     target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
     target = target[..., 0, :]
     drawing = close_drawing(mechanism, instant) if closed is None else closed
-    path = follow(mechanism.map, drawing.y, target, drawing.factors, tolerance)
+    path = led(mechanism.map, drawing.y, target, drawing.factors, tolerance)
     _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
     return Pose(mechanism, path.y, path.factors, path.iterations, path.left, drawing.work + path.work)
 

@@ -25,7 +25,7 @@ every series (see `partial_map`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import perm
 
@@ -58,6 +58,8 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-5
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
+# Segments after which it is told how many there will be.
+TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
 # Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
@@ -129,10 +131,12 @@ class Settings:
         tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
             the same fraction of that derivative's size.
         derivative: highest time derivative that will be evaluated.
+        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
     """
 
     tolerance: float
     derivative: int
+    hopeful: bool = True
 
     @property
     def kept(self) -> Settings:
@@ -161,7 +165,7 @@ def build_chain(
     part = mechanism.moving_part(functions)
     course = _Course(mechanism, functions, start, stop, settings, part)
     here = starting_place(part, pose)
-    joint = _Joint(start, here.y, here.factors, here.left, _power_of_two(stop - start))
+    joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
     side, members = orientation(joint.factors), joint.members
     work = here.work
     segments: list[Segment] = []
@@ -172,6 +176,11 @@ def build_chain(
     while joint.instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+        if len(segments) == TELLING and not settings.hopeful:
+            # Later ones would have to be four times as long on average to be enough.
+            likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
+            if stop - start > 4.0 * (likely - start):
+                return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
         segment = course.segment_from(joint)
         orders = segment.order
         solves = orders * members
@@ -270,6 +279,7 @@ class _Course:
 
     Attributes:
         part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
+        measured: the segment that was last measured, and its length.
     """
 
     mechanism: Mechanism
@@ -278,6 +288,7 @@ class _Course:
     stop: float
     settings: Settings
     part: PartialMap
+    measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
 
     def whole(self, segment: Segment) -> Segment:
         """A segment with its coordinates in the mechanism's order."""
@@ -328,7 +339,7 @@ class _Course:
             order = needed
             # In a unit of about the radius of convergence: in a longer one the terms of many orders grow too
             # large, in a shorter one those of slow inputs are lost, and what is lost seems to have converged.
-            shorter = replace(joint, scale=min(joint.scale, _power_of_two(max(length, decay.radius))))
+            shorter = replace(joint, scale=min(joint.scale, power_of_two(max(length, decay.radius))))
             segment = self.series_about(shorter, order, segment)
         if order > SAFE and not (np.abs(segment.coefficients) < LARGEST).all():
             return self.series_about(joint, SAFE)
@@ -355,7 +366,7 @@ class _Course:
         if size.any():
             with np.errstate(over="ignore"):
                 fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-            scale = min(scale, _power_of_two(min(fastest, scale)))
+            scale = min(scale, power_of_two(min(fastest, scale)))
         first = None
         if begun is not None:
             count = begun.coefficients.shape[-2]
@@ -368,11 +379,18 @@ class _Course:
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        terms = segment.coefficients[..., : self.part.system.unknowns]
-        length = _length(terms, self.settings)
+        # Asked for twice of most segments: when it is made and when it is cut.
+        if self.measured and self.measured[0][0] is segment:
+            return self.measured[0][1]
+        self.measured[:] = [(segment, self._length_of(segment))]
+        return self.measured[0][1]
+
+    def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
+        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        length = length_by_sizes(logs, self.settings)
         if not np.isfinite(length):
             return length, None
-        decay = _decay(terms, length)
+        decay = decay_by_sizes(logs, length)
         return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
 
     def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
@@ -399,7 +417,7 @@ class _Course:
                 s = (end - segment.start) / segment.scale
                 good = on_branch(system, side, segment.coefficients, s, reached, ahead)
             if good.all():
-                scale = _power_of_two(length if np.isfinite(length) else end - joint.instant)
+                scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
             length = 0.5 * (end - joint.instant)
         return _Step(None, good, work)
@@ -407,7 +425,7 @@ class _Course:
     def solved_end(self, segment: Segment, end: float) -> Converged:
         """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
         s, series = (end - segment.start) / segment.scale, segment.coefficients
-        guess = np.einsum("k,...ki->...i", s ** np.arange(series.shape[-2]), series)
+        guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
         return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
@@ -418,8 +436,7 @@ class _Course:
         """
         system = self.part.system
         matrix = system.jacobian(reached.y)
-        weights = np.ones((*reached.y.shape[:-1], system.unknowns))
-        z = system.lipschitz(reached.factors.preconditioner, weights) * reached.last_step
+        z = system.lipschitz(reached.factors.preconditioner) * reached.last_step
         if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
             return reached.factors.moved(matrix), Work()
         members = int(np.prod(reached.y.shape[:-1]))
@@ -455,14 +472,18 @@ class _Course:
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 
 
-def _length(series: Array, settings: Settings) -> float:
-    r"""Length of a segment in its own time unit; the shortest that a member of the batch needs.
+def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
+    r"""Length of a segment in its own time unit, from the logarithms of its coefficients, (members, orders).
 
     With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
     max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
+
+    Args:
+        smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
+            member's derivative is taken for larger than it is. The same unless given.
     """
-    logs = _log_sizes(series)
+    logs = logs.copy()
     logs[:, 0] = 0.0
     if not np.isfinite(logs[:, -2:]).any():
         return np.inf
@@ -474,11 +495,13 @@ def _length(series: Array, settings: Settings) -> float:
     start = float(np.min(equal.max(axis=-1)))
     falling = _falling(len(orders), settings.derivative)
     terms = logs[:, None, None, :] + falling[:, None, :]  # members, derivatives, trials, orders
+    whole_terms = terms if smallest is None else smallest[:, None, None, :] + falling[:, None, :]
 
     def fits(trials: Array) -> Array:
         # In logarithms no power is too large or too small for the arithmetic, and a missing term stays one.
-        grown = terms + trials[:, None] * orders
-        whole = grown.max(axis=-1)
+        powers = trials[:, None] * orders
+        grown = terms + powers
+        whole = (grown if smallest is None else whole_terms + powers).max(axis=-1)
         whole[:, 0] = 0.0
         last = np.logaddexp(grown[..., -2], grown[..., -1])
         return np.asarray((last <= np.log(settings.tolerance) + whole).all(axis=(0, 1)))
@@ -510,13 +533,15 @@ def _log_sizes(series: Array) -> Array:
         return np.asarray(np.log(size))
 
 
-def _decay(series: Array, length: float) -> Decay:
-    """How terms fall, and what that makes of the length that was found; in the series' unit of time.
+def decay_by_sizes(logs: Array, length: float) -> Decay:
+    """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
+
+    Args:
+        logs: of the largest coefficients (see `_log_sizes`).
     """
-    logs = _log_sizes(series)
     orders = logs.shape[-1] - 1
     pairs = np.maximum(logs[:, 1:], logs[:, :-1])
     middle = orders // 2
@@ -529,6 +554,6 @@ def _decay(series: Array, length: float) -> Decay:
     return Decay(length * float(np.exp(spread / orders)), float(spread))
 
 
-def _power_of_two(length: float) -> float:
+def power_of_two(length: float) -> float:
     """The power of two at or above a length, so that scaling by it rounds nothing; 1 for zero."""
     return float(np.ldexp(1.0, np.frexp(length)[1])) if length > 0.0 else 1.0

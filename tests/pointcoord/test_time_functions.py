@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine, cosine_plainly
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -244,3 +244,31 @@ def test_an_offset_that_nearly_cancels_a_sine_costs_no_digit(seed: int) -> None:
 def test_an_offset_far_above_a_sine_is_rounded_once(offset: float) -> None:
     instants = np.linspace(0.1, 3.0, 200)
     assert max(sine_error(Sine(1e-3, 2.0, 0.0, offset), instants)) <= 1.0
+
+
+@given(
+    coefficients=st.lists(st.floats(-1e200, 1e200), min_size=1, max_size=8),
+    instant=st.floats(-1e60, 1e60),
+    order=st.integers(0, 10),
+)
+def test_a_polynomial_at_one_instant_is_that_of_many_to_the_last_bit(
+    coefficients: list[float], instant: float, order: int
+) -> None:
+    law = Polynomial(tuple(coefficients))
+    one, many = law.series(instant, order), law.series(np.array([instant, 1.0]), order)[0]
+    assert np.array_equal(one, many, equal_nan=True)
+
+
+@given(
+    terms=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=12),
+    zeros=st.integers(0, 12),
+)
+def test_the_cosine_of_one_series_is_that_of_a_batch(terms: list[float], zeros: int) -> None:
+    angle = np.array(terms + [0.0] * zeros)
+    one, batch = cosine(angle), cosine_plainly(angle[None])[0]
+    # Both recurrences sum the same products in another order: of the series of cosh, which has their sizes.
+    size = np.array([1.0])
+    rates = np.abs(angle) * np.arange(len(angle))
+    for k in range(1, len(angle)):
+        size = np.append(size, rates[1 : k + 1] @ size[::-1] / k)
+    assert (np.abs(one - batch) <= 8 * len(angle) * np.finfo(float).eps * size).all()

@@ -92,7 +92,7 @@ class Reading:
         for low in range(0, len(self.instants), BLOCK):
             times, block = self.instants[low : low + BLOCK], rows[:, low : low + BLOCK]
             solved.states.states(times, block)
-            offset = solved.readout.offset(times)
+            offset = solved.readout.added(times)[0]
             if offset is not None:
                 triples = block.reshape(len(block) // 3, 3, len(times))
                 triples += np.broadcast_to(offset, (len(times), 3)).T

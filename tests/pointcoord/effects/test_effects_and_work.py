@@ -112,7 +112,9 @@ def test_proof_is_not_computed_until_it_is_read(
 ) -> None:
     called = []
     motion = simulate(make_scene(samples=SAMPLES))
-    monkeypatch.setattr("pointcoord.bounds.proof.factorise", lambda m: called.append(len(m)) or factorise(m))
+    monkeypatch.setattr(
+        "pointcoord.bounds.certified_poses.factorise", lambda m: called.append(len(m)) or factorise(m)
+    )
     assert simulate(make_scene(samples=SAMPLES)).position["wheel_centre"].shape == (SAMPLES, 3)
     assert called == []
     motion.proof()

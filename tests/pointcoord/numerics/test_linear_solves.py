@@ -6,7 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.numerics.linear import factorise, null_directions, smallest_left_singular_vector
+from pointcoord.numerics.linear import (
+    factorise,
+    factorise_plainly,
+    null_directions,
+    smallest_left_singular_vector,
+)
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -144,3 +149,25 @@ def test_weakest_balance_of_rows_is_shortened_the_most(seed: int, n: int) -> Non
     # The smallest stretch is 1e-6; rounding of the product is n eps.
     assert abs(np.linalg.norm(balance) - 1.0) <= 4 * n * EPS
     assert np.linalg.norm(balance @ matrix) <= 1e-6 + 16 * n * EPS
+
+
+@plain
+@given(seed=seeds, n=st.integers(1, 12), power=st.integers(0, 15))
+def test_one_matrix_is_factorised_like_a_batch_of_one(seed: int, n: int, power: int) -> None:
+    rng = np.random.default_rng(seed)
+    matrix = np.ldexp(graded(rng, n, 10.0**power), rng.integers(-50, 50, size=(n, 1)))
+    one, batch = factorise(matrix), factorise_plainly(matrix[None])
+    for name in ("matrix", "inverse", "row_scale", "condition"):
+        assert np.array_equal(getattr(one, name), getattr(batch, name)[0])
+    right = matrix @ rng.normal(size=n)
+    x, same = one.solve(right), batch.solve(right[None])[0]
+    # Both are solutions of an LU solve, see above.
+    assert np.abs(x - same).max() <= 6 * n * EPS * float(one.condition) * np.abs(same).max()
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 0.0])
+def test_one_matrix_without_an_inverse_is_marked_like_one_of_a_batch(bad: float) -> None:
+    for matrix in (np.diag([1.0, bad]), np.full((2, 2), bad), np.array([[1.0, 1.0], [1.0, 1.0]])):
+        one, batch = factorise(matrix), factorise_plainly(matrix[None])
+        assert one.singular
+        assert batch.singular[0]

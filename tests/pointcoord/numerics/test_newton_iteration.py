@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
-from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.newton import newton_refine, refine_plainly
 from pointcoord.solve.assembly import Pose, assemble
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
     reached = newton_refine(strut.map, batch)
     assert not reached.converged[0, 1]
     for member in ((0, 0), (1, 0), (1, 1)):
-        alone = newton_refine(strut.map, batch[member])
+        alone = refine_plainly(strut.map, batch[member])
         assert reached.converged[member]
         assert reached.iterations[member] == alone.iterations
         # The same operations on each member: at most the order of a sum differs.
@@ -110,3 +110,35 @@ def test_known_coordinates_stay_as_they_are(strut: Mechanism, pose: Pose) -> Non
     reached = newton_refine(strut.map, start)
     assert np.array_equal(start, kept)
     assert np.array_equal(reached.y[17:], kept[17:])
+
+
+@settings(deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1), power=st.floats(-16.0, -2.0), tolerance=st.sampled_from([0.0, 1e-9, 1e-3])
+)
+def test_one_start_takes_the_steps_that_it_takes_in_a_batch(
+    strut: Mechanism, pose: Pose, seed: int, power: float, tolerance: float
+) -> None:
+    start = displaced(pose, seed, 10.0**power)
+    one, plainly = (
+        newton_refine(strut.map, start, 0.0, tolerance),
+        refine_plainly(strut.map, start, 0.0, tolerance),
+    )
+    # Each solves C(y) = 0 to the noise of a step, at most n eps times the condition number of coordinates
+    # up to 2, or to what it proves to be left of it.
+    noise = 2 * 17 * EPS * float(pose.condition)
+    assert one.converged == plainly.converged
+    assert np.abs(one.y - plainly.y).max() <= noise + one.left + plainly.left
+    for found, right in ((one.first_step, plainly.first_step), (one.left, plainly.left)):
+        # A step's size is as uncertain as the step; what it leaves goes as its square.
+        assert abs(found - right) <= noise + 1e-6 * right
+    # Noise may end the iteration one step sooner or later.
+    assert abs(int(one.iterations) - int(plainly.iterations)) <= (1 if tolerance == 0.0 else 0)
+
+
+@pytest.mark.parametrize("value", BAD.values(), ids=BAD.keys())
+def test_one_start_that_leads_nowhere_is_marked(strut: Mechanism, pose: Pose, value: float) -> None:
+    start = pose.y.copy()
+    start[:17] = value
+    assert not newton_refine(strut.map, start).converged
+    assert not refine_plainly(strut.map, start).converged

@@ -133,7 +133,7 @@ def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(make_scene: 
     # one hangs on rounding. The law is known to 1e-29 mm there, which is more than such a tolerance allows,
     # and is not what leaves the pose unproven: none is refused for it.
     end, unproven = caught.value.reached["rack"], 0
-    for digits in range(0, 120, 3):
+    for digits in range(-300, 120, 3):
         law = [end + digits * np.spacing(end), 1e-300]
         try:
             motion = simulate(make_scene([1.6], law, samples=2, effects=(), tolerance=1e-300), "newton")
@@ -201,7 +201,7 @@ def test_names_and_times_that_are_offered_exist(make_scene: Make) -> None:
 @pytest.mark.parametrize(
     ("section", "fault", "keys"),
     [
-        ((), "titel", "title, effects, tolerance, mechanism, inputs, time"),
+        ((), "titel", "title, effects, tolerance, mechanism, inputs, time, points"),
         (("time",), "step", "start, stop, samples"),
         (("inputs", "rack"), "sin", "constant, polynomial, sine, table"),
         (("inputs", "time"), "sin", "constant, polynomial, sine, table"),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
-from pointcoord.numerics.power_series import cross_series, expand
+from pointcoord.numerics.power_series import cross_series, expand, expand_plainly
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.time_functions import Polynomial, Sine
 
@@ -175,3 +175,21 @@ def test_driven_series_are_those_of_the_inputs(strut: Mechanism, table: dict[str
     # Order 6 at 2^-6 s: what is left out is below 370 mm times (0.4 / 64)^7, below rounding.
     for s in (-(2.0**-6), 2.0**-6):
         assert abs(np.polynomial.polynomial.polyval(s, series) - rise(0.4 + s)) <= 16 * EPS * arm
+
+
+@few
+@given(t=st.floats(-0.5, 2.0), order=st.integers(1, 40), begun=st.integers(0, 12))
+def test_the_series_of_one_pose_is_that_of_a_batch(
+    strut: Mechanism, t: float, order: int, begun: int
+) -> None:
+    pose = pose_at(strut, t)
+    # In a unit of time in which the terms fall.
+    known = known_at(strut, t, order) * 0.25 ** np.arange(order + 1.0)[:, None]
+    plainly = expand_plainly(strut.map, pose.factors, pose.y, known)
+    first = plainly[: begun + 1] if 0 < begun < order else None
+    quick = expand(strut.map, pose.factors, pose.y, known, first)
+    # Each order sums products of earlier ones, rounded in another order, and is solved for.
+    size = np.abs(plainly).max(axis=-1)
+    for k in range(order + 1):
+        products = sum(size[i] * size[k - i] for i in range(k + 1))
+        assert np.abs(quick[k] - plainly[k]).max() <= 16 * (k + 1) * EPS * float(pose.condition) * products

@@ -171,7 +171,8 @@ def largest_gap(series: Motion, newton: Motion, quantity: str) -> float:
 def test_error_against_newton_falls_with_the_tolerance_and_stays_below_it(
     make_scene: Callable[..., Scene], arm: object, car: SampleCar
 ) -> None:
-    newton = simulate(make_scene(arm, (0.0, 20.0), samples=201, car=car), "newton")
+    finest = make_scene(arm, (0.0, 20.0), samples=201, tolerance=1e-13, car=car)
+    newton = simulate(finest, "newton")
     bound = float(newton.proof().bound.max())
     gaps = []
     for tolerance in (1e0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
@@ -222,10 +223,14 @@ def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
 def test_motion_that_ends_where_it_starts_has_rates(make_scene: Callable[..., Scene], car: SampleCar) -> None:
     one = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=0.7, samples=1))
     many = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=1.4, samples=2))
+    gain = one.solved.readout.mechanism.carried_gain
     for quantity in ("position", "velocity", "acceleration"):
+        first, other = getattr(one, quantity), getattr(many, quantity)
+        largest = max(np.abs(first[name]).max() for name in one.position)
         for name in one.position:
-            # The same pose, solved the same way.
-            assert np.array_equal(getattr(one, quantity)[name][0], getattr(many, quantity)[name][0])
+            # The same pose, solved the same way; products of longer series round the sums that make a carried
+            # point in another order, which are at most the gain times as large as its carriers' states.
+            assert np.abs(first[name][0] - other[name][0]).max() <= 8 * EPS * gain * largest
 
 
 @by_car

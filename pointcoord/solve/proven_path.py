@@ -1,0 +1,188 @@
+r"""A straight path of the known coordinates, solved by one power series and proven in pieces.
+
+Between two sets of known coordinates, w(s) = w_0 + s (w_1 - w_0), and with what is not yet assembled taken
+back in proportion, C(y(s)) = (1 - s) c, the unknowns are a power series in s. Cut after order p it leaves
+
+    C(p(s)) - (1 - s) c = sum_{p < k <= 2p} R_k s^k,      R_k = sum_{i + j = k} B(y_i, y_j)    exactly,
+
+because C is quadratic. On a piece of the path, |s - m| <= h, with X close to C_u(p(m))^-1 and C_u(p(m + t)) =
+sum J_k t^k, which is linear in the series,
+
+    |I - X C_u(p)| <= Z = |I - X J_0| + sum_{k>0} |X J_k| h^k,
+    |X (C(p) - (1 - s) c)| <= Y = sum |X R_k| (m + h)^k,
+
+element by element, and Newton and Kantorovich's theorem (see `kantorovich`) asks for
+
+    (1 - z)^2 >= 2 omega max Y
+
+in a weighted maximum norm. Then one assembly lies near p(s) for every s of the piece, C_u is regular there,
+and so the assemblies go on from each other. Neighbouring pieces share a place, where both find the same
+assembly, because the norm is the same: the smaller of two balls about one place lies in the other.
+
+All pieces are proven at once. Where a series does not reach the end, another one starts from the last place
+that is proven.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.numerics.branch import orientation
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.power_series import expand
+from pointcoord.numerics.quadratic import QuadraticMap
+
+Array = NDArray[np.float64]
+
+# Order and pieces of a short path, whose unknowns move by less than SHORT of the mechanism's size, and of
+# others. The proof decides; these decide what it costs.
+SHORT, FEW, MANY = 0.03, (4, 1), (14, 2)
+# Series after which a path is left to smaller steps.
+STRETCHES = 3
+# Of 1, what may be taken up in the condition: the rest is far more than anything rounds.
+ROOM = 0.9
+# What a series may leave out at its end, in parts of 1 / omega, where its length is chosen.
+LEFT_OUT = 1e-2
+# Times that weights are brought nearer to those of the smallest norm.
+WEIGHINGS = 3
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The end of a path: its coordinates, the factors of C_u there, and Newton's last steps to it.
+
+    Attributes:
+        left: proven distance to the exact assembly, rounding apart.
+    """
+
+    y: Array
+    factors: Factors
+    iterations: int
+    left: float
+    work: Work
+
+
+def proven_end(
+    system: QuadraticMap, y: Array, target: Array, factors: Factors, offset: Array, tolerance: float
+) -> Reached | None:
+    """The end of a path from one pose, if a few series prove it to be reached; None if not.
+
+    Args:
+        y: start, shape (size,), with C(y) = offset. target: known coordinates at the end.
+        factors: of C_u at the start.
+        tolerance: how far the end may be from the exact assembly, rounding apart, in units.
+    """
+    if factors.singular or system.dense is None:
+        return None
+    n, left, side = system.unknowns, 1.0, float(orientation(factors))
+    here, local, work = y, factors, Work()
+    for _ in range(STRETCHES):
+        series, share, spent = _proven_series(system, here, local, target - here[n:], left * offset)
+        work += spent
+        if not share > 0.0:
+            return None
+        left = 0.0 if share == 1.0 else left * (1.0 - share)
+        guess = share ** np.arange(len(series)) @ series
+        guess[n:] = target if share == 1.0 else here[n:] + share * (target - here[n:])
+        reached = newton_refine(system, guess, left * offset, tolerance if share == 1.0 else np.inf)
+        there = factorise(system.jacobian(reached.y))
+        work += reached.work + Work(factorisations=1)
+        # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
+        if not (bool(reached.converged) and float(orientation(there)) == side):
+            return None
+        if share == 1.0:
+            return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
+        here, local = reached.y, there
+    return None
+
+
+def _proven_series(
+    system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array
+) -> tuple[Array, float, Work]:
+    """The series of a path about its start, the share that it is proven on, and what that takes."""
+    n = system.unknowns
+    begun = np.zeros((2, len(y)))
+    begun[0], begun[1, n:] = y, change
+    with np.errstate(all="ignore"):
+        begun[1, :n] = -factors.solve(2.0 * system.polar(y, begun[1]) + offset)
+        order, pieces = FEW if float(np.abs(begun[1, :n]).max()) < SHORT else MANY
+        known = np.zeros((order + 1, len(change)))
+        known[0], known[1] = y[n:], change
+        series = expand(system, factors, y, known, begun)
+        share = _proven_share(system, series, factors, offset, pieces)
+    return series, share, Work(residuals=1, factorisations=pieces, rate_solves=order)
+
+
+def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset: Array, pieces: int) -> float:
+    """Up to where, from 0 to 1, the assemblies go on along a series; see the formulas above."""
+    order, n = len(series) - 1, system.unknowns
+    left, right = (np.ascontiguousarray(each) for each in system.factors(series))
+    first, second, starts = _beyond(order)
+    rest = system.gather(np.add.reduceat(left[first] * right[second], starts, axis=0)) * factors.row_scale
+    start = (system.residual(series[0]) - offset) * factors.row_scale
+    # As far as what is left out stays small, in the plain norm and with the inverse at the start.
+    allowed = LEFT_OUT / float(system.lipschitz(factors.preconditioner))
+    sizes = np.abs(rest @ factors.inverse.T).max(axis=-1)
+    powers = np.arange(order + 1.0, 2.0 * order + 1.0)
+    reach = min(float(np.min((allowed / sizes) ** (1.0 / powers))), 1.0)
+    if not reach > 0.0:
+        return 0.0
+    # C_u on each piece as a polynomial of what is left and right of its middle, in halves of its length.
+    matrices = system.jacobian(series) * factors.row_scale[:, None]
+    matrices *= (reach ** np.arange(order + 1.0))[:, None, None]
+    local = (_about_middles(order, pieces) @ matrices.reshape(order + 1, -1)).reshape(pieces, -1, n, n)
+    try:
+        inverse = np.linalg.inv(local[:, 0])
+    except np.linalg.LinAlgError:
+        return 0.0
+    flat = np.ascontiguousarray(local.swapaxes(1, 2)).reshape(pieces, n, -1)
+    moved = (inverse @ flat).reshape(pieces, n, order + 1, n)
+    moved[:, :, 0] -= np.eye(n)
+    change = np.abs(moved).sum(axis=2)
+    ends = (reach * np.arange(1.0, pieces + 1.0) / pieces)[:, None] ** powers
+    remaining = np.abs(inverse @ start) + (np.abs(inverse @ rest.T) @ ends[..., None])[..., 0]
+    preconditioner = inverse * factors.row_scale
+    weights, largest = np.ones(n), change.max(axis=0)
+    for _ in range(WEIGHINGS + 1):
+        z = (change.dot(weights) / weights).max(axis=-1)
+        omega = system.lipschitz(preconditioner, weights)
+        room = ROOM - z
+        proven = (room > 0.0) & (room * room >= 2.0 * omega * (remaining / weights).max(axis=-1))
+        if proven.all():
+            return reach
+        # Nearer to the weights for which the norm of a matrix of no negative elements is smallest.
+        weights = weights + largest.dot(weights) / max(float(z.max()), 1e-300)
+        weights /= weights.max()
+    return reach * int(np.argmin(proven)) / pieces
+
+
+@cache
+def _beyond(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """Pairs (i, j) of orders up to one, with i + j = k beyond it, by k; and where each k starts."""
+    pairs = [(i, k - i) for k in range(order + 1, 2 * order + 1) for i in range(k - order, order + 1)]
+    lengths = [2 * order + 1 - k for k in range(order + 1, 2 * order + 1)]
+    first, second = np.array(pairs, dtype=np.intp).T
+    return first, second, np.cumsum([0, *lengths[:-1]], dtype=np.intp)
+
+
+@cache
+def _about_middles(order: int, pieces: int) -> Array:
+    """Matrices that give a polynomial on 0 .. 1 about the middles of pieces, (pieces, order + 1, order + 1).
+
+    sum_k a_k s^k = sum_j (sum_k binomial(k, j) m^(k - j) h^j a_k) t^j for s = m + h t.
+    """
+    half = 0.5 / pieces
+    tables = np.zeros((pieces, order + 1, order + 1))
+    for piece in range(pieces):
+        middle = (2 * piece + 1) * half
+        for k in range(order + 1):
+            for j in range(k + 1):
+                tables[piece, j, k] = comb(k, j) * middle ** (k - j) * half**j
+    return tables
