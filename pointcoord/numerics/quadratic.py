@@ -104,9 +104,9 @@ class _Curvature:
         products = weights.take(self.first, axis=-1) * weights.take(self.second, axis=-1) * self.scales
         return np.asarray(np.add.reduceat(products, self.starts, axis=-1))
 
-    def bent(self, preconditioner: Array, weights: Array) -> Array:
-        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns)."""
-        sizes = self.sizes(weights)
+    def bent(self, preconditioner: Array, weights: Array | None) -> Array:
+        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights they are 1."""
+        sizes = self.plain if weights is None else self.sizes(weights)
         if len(self.table) < LARGE:
             return np.asarray((np.abs(preconditioner @ self.table) @ sizes[..., None])[..., 0])
         batch = np.broadcast_shapes(preconditioner.shape[:-2], sizes.shape[:-1])
@@ -132,6 +132,11 @@ class _Curvature:
             bent = by_row @ np.abs(some).T + sizes[..., ~self.alone] @ sums.T
             found[..., low : low + ROWS] = bent
         return found
+
+    @cached_property
+    def plain(self) -> Array:
+        """The sizes of weights of 1, (directions,)."""
+        return np.asarray(np.add.reduceat(self.scales, self.starts))
 
     @cached_property
     def alone(self) -> NDArray[np.bool_]:
@@ -192,8 +197,24 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
+    def curvature(self) -> tuple[Array, Indices, Indices]:
+        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
+        pairs = self._pairs
+        table = np.zeros((len(self.rows), len(pairs)))
+        for column, entries in enumerate(pairs.values()):
+            for index, value in entries.items():
+                table[index, column] = value
+        ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
+        return table, ends[:, 0], ends[:, 1]
+
+    @cached_property
+    def _bends(self) -> _Curvature:
+        """The same, proportional columns as one."""
+        return _Curvature.of(self._pairs, len(self.rows))
+
+    @cached_property
     def _pairs(self) -> dict[tuple[int, int], dict[int, float]]:
-        """2 B restricted to the unknowns: by pair (j, k) that occurs, its entries by row."""
+        """2 B restricted to the unknowns, by pair and row."""
         pairs: dict[tuple[int, int], dict[int, float]] = {}
         for index, row in enumerate(self.rows):
             for p in row:
@@ -205,20 +226,6 @@ class QuadraticMap:
                                 entries = pairs.setdefault(pair, {})
                                 entries[index] = entries.get(index, 0.0) + value
         return pairs
-
-    @cached_property
-    def _curvature(self) -> _Curvature:
-        return _Curvature.of(self._pairs, len(self.rows))
-
-    @cached_property
-    def curvature(self) -> tuple[Array, Indices, Indices]:
-        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
-        table = np.zeros((len(self.rows), len(self._pairs)))
-        for column, entries in enumerate(self._pairs.values()):
-            for row, value in entries.items():
-                table[row, column] = value
-        ends = np.array(list(self._pairs), dtype=np.intp).reshape(-1, 2)
-        return table, ends[:, 0], ends[:, 1]
 
     @cached_property
     def reads(self) -> tuple[frozenset[int], ...]:
@@ -343,9 +350,8 @@ class QuadraticMap:
         more leading dimensions than X. C_u is linear in y, so this one number holds everywhere.
         """
         if weights is None:
-            weights = np.ones(self.unknowns)
-        sums = self._curvature.bent(preconditioner, weights)
-        return np.asarray((sums / weights).max(axis=-1))
+            return np.asarray(self._bends.bent(preconditioner, None).max(axis=-1))
+        return np.asarray((self._bends.bent(preconditioner, weights) / weights).max(axis=-1))
 
 
 def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap:

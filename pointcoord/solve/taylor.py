@@ -467,6 +467,9 @@ class _Course:
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
         place = whole_place(self.part, joint.y, joint.factors)
+        # Members share their segments: where these become too short for all, one of them is at its end.
+        condition = np.where(unfinished, place.factors.condition, 0.0)
+        unfinished = unfinished & (condition >= condition.max())
         status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
