@@ -59,6 +59,11 @@ class Layout:
         return first | {name: known + i for i, name in enumerate((*self.driven, *self.constants))}
 
     @cached_property
+    def _lengths(self) -> dict[tuple[str, str], int]:
+        first = self.size - len(self.squared_lengths)
+        return {ends: first + i for i, ends in enumerate(self.squared_lengths)}
+
+    @cached_property
     def size(self) -> int:
         """How many coordinates there are in all."""
         vectors = 3 * (len(self.chassis) + len(self.directions))
@@ -80,9 +85,9 @@ class Layout:
 
     def squared_length(self, start: str, end: str) -> int:
         """Index of the squared length of the link from start to end."""
-        if (start, end) not in self.squared_lengths:
+        if (start, end) not in self._lengths:
             raise UnknownName("link", f"{start} - {end}", (f"{a} - {b}" for a, b in self.squared_lengths))
-        return self.size - len(self.squared_lengths) + self.squared_lengths.index((start, end))
+        return self._lengths[start, end]
 
     def places_in(self, whole: Layout) -> list[int]:
         """Where the coordinates are in a layout that has them all, in this one's order."""

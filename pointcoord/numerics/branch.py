@@ -23,7 +23,7 @@ NEAR = 0.25
 
 def orientation(factors: Factors) -> Array:
     """Sign of det C_u, shape (...,); its rows are scaled by positive numbers, which does not change it."""
-    return np.asarray(np.linalg.slogdet(factors.matrix)[0])
+    return factors.orientation
 
 
 def on_branch(

@@ -34,6 +34,7 @@ class Work:
             self.residuals + other.residuals,
             self.factorisations + other.factorisations,
             self.rate_solves + other.rate_solves,
+            self.unknowns_solved + other.unknowns_solved,
             self.segments + other.segments,
             self.series_orders + other.series_orders,
             self.derivatives_evaluated + other.derivatives_evaluated,

@@ -3,7 +3,8 @@ r"""One factorisation of a square system, used for many right-hand sides.
 The rows are first scaled by powers of two to a largest entry near 1, which changes no digit. LAPACK's
 LU with partial pivoting then gives the inverse, because the condition number and the error bound of
 a pose need it anyway; each solution is refined once with its own residual, which gives it the accuracy
-of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 and 14).
+of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 and 14). A large matrix of
+few entries is inverted block after block (see `block_inverse`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
@@ -28,12 +30,14 @@ class Factors:
         row_scale: the power of two that scales each row, shape (..., n).
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
             where the matrix is exactly singular.
+        sign: of the determinant, shape (...,), if it came with the inverse.
     """
 
     matrix: Array
     inverse: Array
     row_scale: Array
     condition: Array
+    sign: Array | None = None
 
     def solve(self, right: Array) -> Array:
         """x with matrix x = right, shapes (..., n), refined once."""
@@ -51,9 +55,10 @@ class Factors:
         """The same inverse for a matrix of shape (..., n, n) nearby, |I - inverse matrix| = z well below 1.
 
         A solution's error is z^2 of itself, because it is refined with the new matrix; the condition number
-        is that of the old one.
+        is that of the old one. The determinant's sign is the same: no matrix between the two is singular.
         """
-        return Factors(matrix * self.row_scale[..., None], self.inverse, self.row_scale, self.condition)
+        scaled = matrix * self.row_scale[..., None]
+        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sign)
 
     def reshaped(self, batch: tuple[int, ...]) -> Factors:
         """The same factors with other batch dimensions."""
@@ -63,12 +68,17 @@ class Factors:
             self.inverse.reshape(*batch, n, n),
             self.row_scale.reshape(*batch, n),
             self.condition.reshape(batch),
+            None if self.sign is None else self.sign.reshape(batch),
         )
 
     def taken(self, members: NDArray[np.intp]) -> Factors:
         """Some members, by number; one batch dimension."""
         return Factors(
-            self.matrix[members], self.inverse[members], self.row_scale[members], self.condition[members]
+            self.matrix[members],
+            self.inverse[members],
+            self.row_scale[members],
+            self.condition[members],
+            None if self.sign is None else self.sign[members],
         )
 
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
@@ -78,7 +88,17 @@ class Factors:
         result = [self.matrix.copy(), self.inverse.copy(), self.row_scale.copy(), self.condition.copy()]
         for mine, other in zip(result, (new.matrix, new.inverse, new.row_scale, new.condition), strict=True):
             mine[members] = other
-        return Factors(*result)
+        sign = None
+        if self.sign is not None and new.sign is not None:
+            sign = self.sign.copy()
+            sign[members] = new.sign
+        matrix, inverse, row_scale, condition = result
+        return Factors(matrix, inverse, row_scale, condition, sign)
+
+    @property
+    def orientation(self) -> Array:
+        """Sign of the determinant, shape (...,); positive scales of rows do not change it."""
+        return np.asarray(np.linalg.slogdet(self.matrix)[0]) if self.sign is None else self.sign
 
     @property
     def preconditioner(self) -> Array:
@@ -121,18 +141,28 @@ def factorise_plainly(matrix: Array) -> Factors:
     scaled = matrix * row_scale[..., None]
     sound = usable.all(axis=-1)
     safe = scaled if sound.all() else _with_identity(scaled, sound)
+    blocks = inverse_by_blocks(safe) if sound.all() else None
+    if blocks is not None:
+        return Factors(scaled, blocks.inverse, row_scale, _condition(scaled, blocks.inverse), blocks.sign)
     try:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:
         # One member with an exact zero pivot stops the whole batch: set such members aside.
         sound &= np.linalg.slogdet(safe)[0] != 0.0
         inverse = np.linalg.inv(_with_identity(safe, sound))
-    with np.errstate(invalid="ignore", over="ignore"):
-        condition = np.abs(scaled).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
+    condition = _condition(scaled, inverse)
     if not sound.all():
         inverse = np.where(sound[..., None, None], inverse, np.inf)
         condition = np.where(sound, condition, np.inf)
     return Factors(scaled, inverse, row_scale, condition)
+
+
+def _condition(matrix: Array, inverse: Array) -> Array:
+    """|A| |A^-1| in the maximum norm, shape (...,)."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return np.asarray(
+            np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
+        )
 
 
 def _with_identity(matrix: Array, sound: NDArray[np.bool_]) -> Array:

@@ -13,7 +13,7 @@ taken first loses nothing when the points are close together and far from the or
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -40,6 +40,111 @@ Row = tuple[Product, ...]
 
 # Terms times coordinates up to which full matrices of zeros and ones cost less than picking elements.
 DENSE = 2**14
+
+
+# Rows from which on the few entries of curvature are picked; below, a product with zeros is quicker.
+LARGE = 100
+# Rows of a large matrix at a time: what is picked from them stays in a second-level cache.
+ROWS = 32
+
+
+@dataclass(frozen=True)
+class _Curvature:
+    """The entries 2 B_rjk of a map by pairs of unknowns (j, k), proportional ones together.
+
+    Of a link most pairs have one entry, and the coordinates of a point all have those of its links: a few
+    directions stand for all pairs.
+
+    Attributes:
+        first, second, scales: the pairs by direction, and what multiplies it, positive, (pairs,).
+        starts: where each direction's pairs start, (directions,).
+        rows, values: the entries of all directions, one after the other.
+        begins: where each direction's entries begin, (directions,).
+        table: the same, (rows of the map, directions).
+    """
+
+    first: Indices
+    second: Indices
+    scales: Array
+    starts: Indices
+    rows: Indices
+    values: Array
+    begins: Indices
+    table: Array
+
+    @classmethod
+    def of(cls, pairs: Mapping[tuple[int, int], Mapping[int, float]], count: int) -> _Curvature:
+        """From the entries of each pair by row, and the number of rows."""
+        directions: dict[tuple[tuple[int, float], ...], list[tuple[int, int, float]]] = {}
+        for (j, k), own in pairs.items():
+            kept = sorted((row, value) for row, value in own.items() if value)
+            if kept:
+                scale = kept[0][1]
+                direction = tuple((row, value / scale) for row, value in kept)
+                directions.setdefault(direction, []).append((j, k, abs(scale)))
+        found = [pair for same in directions.values() for pair in same]
+        entries = [entry for direction in directions for entry in direction]
+        table = np.zeros((count, len(directions)))
+        for column, direction in enumerate(directions):
+            for row, value in direction:
+                table[row, column] = value
+        return cls(
+            np.array([j for j, _, _ in found], dtype=np.intp),
+            np.array([k for _, k, _ in found], dtype=np.intp),
+            np.array([scale for _, _, scale in found]),
+            np.cumsum([0, *(len(same) for same in directions.values())])[:-1].astype(np.intp),
+            np.array([row for row, _ in entries], dtype=np.intp),
+            np.array([value for _, value in entries]),
+            np.cumsum([0, *(len(direction) for direction in directions)])[:-1].astype(np.intp),
+            table,
+        )
+
+    def sizes(self, weights: Array) -> Array:
+        """sum g_j g_k |scale| over the pairs of each direction, shape (..., directions)."""
+        products = weights.take(self.first, axis=-1) * weights.take(self.second, axis=-1) * self.scales
+        return np.asarray(np.add.reduceat(products, self.starts, axis=-1))
+
+    def bent(self, preconditioner: Array, weights: Array) -> Array:
+        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns)."""
+        sizes = self.sizes(weights)
+        if len(self.table) < LARGE:
+            return np.asarray((np.abs(preconditioner @ self.table) @ sizes[..., None])[..., 0])
+        batch = np.broadcast_shapes(preconditioner.shape[:-2], sizes.shape[:-1])
+        sizes = np.broadcast_to(sizes, (*batch, sizes.shape[-1]))
+        found = np.empty((*batch, preconditioner.shape[-2]))
+        # One large matrix is work enough for a call.
+        for member in np.ndindex(preconditioner.shape[:-2]):
+            found[(..., *member, slice(None))] = self._bent_one(
+                preconditioner[member], sizes[(..., *member, slice(None))]
+            )
+        return found
+
+    def _bent_one(self, preconditioner: Array, sizes: Array) -> Array:
+        """The same of one large matrix, (..., unknowns), for sizes of shape (..., directions)."""
+        # A direction of one row is a column of X.
+        by_row = np.zeros((*sizes.shape[:-1], len(self.table)))
+        by_row[..., self.rows[self.begins[self.alone]]] = sizes[..., self.alone]
+        rows, values, begins = self.shared
+        found = np.empty((*sizes.shape[:-1], len(preconditioner)))
+        for low in range(0, len(preconditioner), ROWS):
+            some = preconditioner[low : low + ROWS]
+            sums = np.abs(np.add.reduceat(some.take(rows, axis=-1) * values, begins, axis=-1))
+            bent = by_row @ np.abs(some).T + sizes[..., ~self.alone] @ sums.T
+            found[..., low : low + ROWS] = bent
+        return found
+
+    @cached_property
+    def alone(self) -> NDArray[np.bool_]:
+        """The directions that have one entry."""
+        return np.asarray(np.diff(self.begins, append=len(self.rows)) == 1)
+
+    @cached_property
+    def shared(self) -> tuple[Indices, Array, Indices]:
+        """Rows and values of the entries of the others, and where each begins."""
+        lengths = np.diff(self.begins, append=len(self.rows))
+        kept = np.repeat(~self.alone, lengths)
+        begins = np.cumsum([0, *lengths[~self.alone]])[:-1].astype(np.intp)
+        return self.rows[kept], self.values[kept], begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,10 +192,9 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
-    def curvature(self) -> tuple[Array, Indices, Indices]:
-        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
-        pairs: dict[tuple[int, int], int] = {}
-        entries: list[tuple[int, int, float]] = []
+    def _pairs(self) -> dict[tuple[int, int], dict[int, float]]:
+        """2 B restricted to the unknowns: by pair (j, k) that occurs, its entries by row."""
+        pairs: dict[tuple[int, int], dict[int, float]] = {}
         for index, row in enumerate(self.rows):
             for p in row:
                 for i, left_sign in ((p.left[0], 1.0), (p.left[1], -1.0)):
@@ -98,11 +202,22 @@ class QuadraticMap:
                         if i < self.unknowns and j < self.unknowns:
                             value = p.coefficient * left_sign * right_sign
                             for pair in ((i, j), (j, i)):
-                                entries.append((index, pairs.setdefault(pair, len(pairs)), value))
-        table = np.zeros((len(self.rows), len(pairs)))
-        for index, column, value in entries:
-            table[index, column] += value
-        ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
+                                entries = pairs.setdefault(pair, {})
+                                entries[index] = entries.get(index, 0.0) + value
+        return pairs
+
+    @cached_property
+    def _curvature(self) -> _Curvature:
+        return _Curvature.of(self._pairs, len(self.rows))
+
+    @cached_property
+    def curvature(self) -> tuple[Array, Indices, Indices]:
+        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
+        table = np.zeros((len(self.rows), len(self._pairs)))
+        for column, entries in enumerate(self._pairs.values()):
+            for row, value in entries.items():
+                table[row, column] = value
+        ends = np.array(list(self._pairs), dtype=np.intp).reshape(-1, 2)
         return table, ends[:, 0], ends[:, 1]
 
     @cached_property
@@ -224,15 +339,13 @@ class QuadraticMap:
         r"""The Lipschitz constant of X C_u in a maximum norm, weighted or plain, shape (...,).
 
         With |u| = max_i |u_i| / g_i it is max_i (1 / g_i) sum_jk |sum_r X_ir 2 B_rjk| g_j g_k for a
-        preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns). C_u is
-        linear in y, so this one number holds everywhere.
+        preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns), which may have
+        more leading dimensions than X. C_u is linear in y, so this one number holds everywhere.
         """
-        table, first, second = self.curvature
         if weights is None:
-            return np.asarray(np.add.reduce(np.abs(preconditioner @ table), axis=-1).max(axis=-1))
-        products = weights.take(first, axis=-1) * weights.take(second, axis=-1)
-        sums = np.abs(preconditioner @ table) @ products[..., None]
-        return np.asarray((sums[..., 0] / weights).max(axis=-1))
+            weights = np.ones(self.unknowns)
+        sums = self._curvature.bent(preconditioner, weights)
+        return np.asarray((sums / weights).max(axis=-1))
 
 
 def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap:

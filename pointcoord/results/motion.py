@@ -28,7 +28,7 @@ class Motion(Samples):
     It can be pickled, with all that it can still be asked for.
 
     Attributes:
-        method: how it was solved: series, newton or another method's name.
+        method: how it was solved: series, map, newton or another method's name.
         status: whether it covers the whole scene, and if not, what stopped it.
         start: the assembled pose at the first instant, with its condition number and proven bound.
         closing: how far the drawing's points moved to close.

@@ -137,8 +137,8 @@ def proven_step(
     best = np.zeros(tangent.shape[:-1])
     if correction is not None:
         own, both = bent(system.residual(correction)), bent(2.0 * system.polar(correction, tangent))
-    for weights in (np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest):
-        omega = system.lipschitz(inverse, weights)
+    tried = np.stack([np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest])
+    for weights, omega in zip(tried, system.lipschitz(inverse, tried), strict=True):
         q = (bend / weights).max(axis=-1)
         z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
         if correction is None:

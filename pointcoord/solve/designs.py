@@ -22,7 +22,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Path, Pose, assemble, close_drawing
 from pointcoord.solve.chains_together import Course, NotTogether
 from pointcoord.solve.paths_together import Columns, columns_of, follow_together
-from pointcoord.solve.status import COMPLETE, Status, blocked_by
+from pointcoord.solve.status import COMPLETE, Status, TooLong, blocked_by
 from pointcoord.solve.taylor import Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
@@ -94,8 +94,9 @@ def solve_plainly(mechanism: Mechanism, follow: Follow) -> SolvedDesigns:
             closed[members] = ended.drawing.y
         if ended.status.complete:
             alive.append(members)
-        elif len(members) == 1:
-            failures[int(members[0])] = ended.status
+        elif len(members) == 1 or isinstance(ended.status, TooLong):
+            # How long a motion is hangs on its laws, which all of them share.
+            failures |= dict.fromkeys(members.tolist(), ended.status)
         else:
             # Which of them it was shows in halves.
             middle = len(members) // 2

@@ -39,7 +39,12 @@ if TYPE_CHECKING:
 
 PARTS: tuple[Part, ...] = get_args(Part)
 # Each is imported when it is measured: they need packages that a report does without.
-MODULES: Mapping[Part, str] = {"accuracy": "accuracy", "growth": "growth.rows", "loading": "loading"}
+MODULES: Mapping[Part, str] = {
+    "accuracy": "accuracy",
+    "effects": "effects",
+    "growth": "growth.rows",
+    "loading": "loading",
+}
 ROWS = "pointcoord-cost.jsonl"
 PAUSE = 0.2  # seconds between two lines of progress
 
@@ -47,7 +52,8 @@ DESCRIPTION = """\
 Measure what accuracy costs in time: every way to solve a scene, over the range of its settings,
 held to a many-digit reference and timed phase by phase. Said is who reaches an accuracy of
 1e-3, 1e-6 and 1e-9 in what time, where another way is quicker than ours, and from how many
-instants on; how time and memory grow with instants, designs and unknowns; what loading takes.
+instants on; what each effect costs; how time and memory grow with instants, designs and
+unknowns; what loading takes.
 
 A row is kept in a file when it is measured: a run that is stopped goes on where it was, and
 --from-rows makes the report again without measuring."""
@@ -73,6 +79,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--parts",
         metavar="A,B",
         help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene",
+    )
+    parser.add_argument(
+        "--effects", action="store_true", help="what each effect costs at many instants: --parts effects"
     )
     parser.add_argument(
         "--rows", metavar="FILE", default=ROWS, help=f"keeps what is measured; {ROWS} if not given"
@@ -194,8 +203,12 @@ def _check_options(options: argparse.Namespace) -> None:
 
 def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
     """The parts that are asked for, in their order."""
+    if options.effects:
+        if options.parts is not None:
+            raise UsageError("--effects and --parts both say what to measure; give one of them")
+        return ("effects",)
     if options.parts is None:
-        about_scenes: tuple[Part, ...] = ("accuracy", "growth")
+        about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth")
         return about_scenes if options.scenes and not options.from_rows else PARTS
     asked = _listed(options.parts, "--parts", PARTS)
     for name in asked:
@@ -265,6 +278,8 @@ def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tupl
     module = _module(MODULES[part])
     if part == "accuracy":
         found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=progress)
+    elif part == "effects":
+        found = module.measure_effects(store, study.scenes, study.quick, progress)
     elif part == "growth":
         found = module.measure_growth(store, study.scenes, study.ways, study.quick, progress)
     else:

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-Part = Literal["accuracy", "growth", "loading"]
+Part = Literal["accuracy", "effects", "growth", "loading"]
+NO_EFFECT = "no effect"
+"""The setting of a row of the part effects that asks for none."""
 Status = Literal["measured", "failed", "left out"]
 
 
@@ -50,7 +52,7 @@ class Row:
         errors: by quantity (see `pointcoord.effects.registry.QUANTITIES`).
         not_given: quantities that the scene asks for and the way does not give, each with the reason.
         times: by phase, for all configurations together: `set-up`, `solve`, `rates`, `output`, and `first`,
-            all four phases of the first run in this process.
+            all four phases of the first run in this process; of effects `read`, and `copy` of the same bytes.
         counts: what was done in one run.
         against: what a growth row varies: `instants`, `designs` or `unknowns`; empty elsewhere.
         size: how many of these.

@@ -41,6 +41,7 @@ MEASURED = (
     "validate/cost/ways",
     "validate/cost/growth",
     "validate/cost/loading.py",
+    "validate/cost/effects.py",
     "validate/cost/errors.py",
     "validate/cost/stopwatch.py",
     "validate/cost/instants.py",

@@ -23,7 +23,7 @@ from validate.cost.findings import (
     unit_of,
     words_of,
 )
-from validate.cost.row import QuantityError, Row, Time
+from validate.cost.row import NO_EFFECT, QuantityError, Row, Time
 from validate.cost.sentences import bytes_words, digits, duration, growth_words, power
 from validate.output import report
 
@@ -81,12 +81,12 @@ class Table:
 
 
 def short_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
-    """What a terminal shows: times to reach accuracies and the ways of each scene; growth; loading."""
+    """What a terminal shows: times to reach accuracies, the ways of each scene, effects, growth, loading."""
     tables = []
     for scene in scenes_of(accuracy_rows(rows)):
         here = [row for row in accuracy_rows(rows) if row.scene == scene]
         tables += [reach_table(here, "position"), scene_table(here)]
-    return [*tables, *growth_tables(found), *loading_tables(rows)]
+    return [*tables, *effects_tables(rows), *growth_tables(found), *loading_tables(rows)]
 
 
 def full_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
@@ -96,7 +96,7 @@ def full_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
         here = [row for row in accuracy_rows(rows) if row.scene == scene]
         tables += [reach_table(here, quantity) for quantity in quantities_of(here)]
         tables += [error_table(here), time_table(here)]
-    return [*tables, *growth_tables(found), *loading_tables(rows)]
+    return [*tables, *effects_tables(rows), *growth_tables(found), *loading_tables(rows)]
 
 
 def name_of(row: Row, short: bool = False) -> str:
@@ -301,6 +301,38 @@ def growth_tables(found: Findings) -> list[Table]:
                 ("way and setting", "of", "exponent", "fitted from", "largest", "takes", "each"),
                 tuple(lines),
                 tuple(notes),
+            )
+        )
+    return tables
+
+
+def effects_tables(rows: Iterable[Row]) -> list[Table]:
+    """Of each scene what reading it takes with each effect, beside a copy and beside positions alone."""
+    tables = []
+    for scene in scenes_of([row for row in rows if row.part == "effects"]):
+        here = [row for row in rows if row.part == "effects" and row.scene == scene]
+        alone = next((row.seconds("read") for row in here if row.setting == NO_EFFECT), None)
+        lines = []
+        for row in here:
+            read, copy = row.seconds("read"), row.seconds("copy")
+            if read is None or copy is None:
+                continue
+            time = row.times["read"]
+            lines.append(
+                (
+                    row.setting,
+                    f"{row.counts['numbers']}",
+                    duration(read),
+                    f"{50.0 * (time.upper - time.lower) / time.median:.0f} %",
+                    f"{read / copy:.2f}",
+                    "-" if not alone else f"{read / alone:.2f}",
+                )
+            )
+        count = here[0].configurations
+        head = ("asked for", "numbers", "an instant", "+-", "of a copy", "of positions")
+        tables.append(
+            Table(
+                f"Reading {scene} at {count} instants, by effects", head, tuple(lines), tuple(absences(here))
             )
         )
     return tables

@@ -39,6 +39,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         modules = {
             "accuracy": {"accuracy_rows": measure},
             "growth.rows": {"measure_growth": lambda *_: ()},
+            "effects": {"measure_effects": lambda *_: ()},
             "loading": {"measure_loading": lambda *_: ()},
         }
         for name, content in modules.items():
@@ -161,8 +162,11 @@ def test_scenes_ways_and_parts_choose_rows(
     [
         (["--from-rows", "--ways", "serie"], ["serie", "did you mean 'series'", "mujoco"]),
         (["--from-rows", "bounc"], ["bounc", "did you mean 'bounce'", "double-wishbone"]),
-        (["--from-rows", "--parts", "accuracies"], ["part", "accuracies", "accuracy, growth, loading"]),
-        (["--from-rows", "--parts", ","], ["--parts", "names nothing", "accuracy, growth, loading"]),
+        (
+            ["--from-rows", "--parts", "accuracies"],
+            ["part", "accuracies", "accuracy, effects, growth, loading"],
+        ),
+        (["--from-rows", "--parts", ","], ["--parts", "names nothing", "accuracy, effects, growth, loading"]),
         (["--from-rows", "--ways", ""], ["--ways", "names nothing", "series"]),
         (["--from-rows", "--json", "-", "--csv", "-"], ["--json -", "--csv -", "file"]),
         (["--from-rows", "--json", ""], ["--json", "names no file"]),
@@ -399,7 +403,7 @@ def test_named_scenes_are_measured_in_the_parts_that_are_about_a_scene(
 def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["cost", "--list"]) == 0
     out = capsys.readouterr().out
-    for name in ("series", "newton", "bounce", "near-toggle", "accuracy, growth, loading"):
+    for name in ("series", "newton", "bounce", "near-toggle", "accuracy, effects, growth, loading"):
         assert name in out
 
 
@@ -415,3 +419,25 @@ def test_the_program_reports_rows_as_a_shell_runs_it(store: str) -> None:
     assert done.returncode == 0
     assert done.stderr == ""
     assert done.stdout.startswith("What accuracy costs in time")
+
+
+def test_effects_alone_are_a_part_that_has_an_option_of_its_own(
+    tmp_path: Path, fake: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake(lambda *_, **__: pytest.fail("the accuracy was not asked for"))
+    row = Row("effects", "steer", "series", "no effect", configurations=10)
+    asked: list[list[str]] = []
+
+    def measure(_: Store, scenes: Any, *__: object) -> tuple[Row, ...]:
+        asked.append([scene.name for scene in scenes])
+        return (row,)
+
+    monkeypatch.setattr(sys.modules["validate.cost.effects"], "measure_effects", measure)
+    rows = ["--rows", str(tmp_path / "rows.jsonl"), "--quiet"]
+    assert main(["cost", "--effects", "steer", *rows]) == 0
+    assert asked == [["steer"]]
+
+
+def test_effects_and_parts_both_say_what_to_measure(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", "--effects", "--parts", "growth"]) == 2
+    assert "--effects and --parts both say what to measure" in capsys.readouterr().err

@@ -1,0 +1,141 @@
+"""Large maps take quicker ways than small ones; the small ones' plain form is what they are held to."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from pointcoord.numerics import block_inverse, quadratic
+from pointcoord.numerics.block_inverse import inverse_by_blocks
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.rounding import EPS
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.taylor import Settings, build_chain
+from validate.cost.growth.chain import SWING, FourBarChain
+
+N = 120
+
+
+def hidden_triangle(rng: np.random.Generator, batch: tuple[int, ...] = ()) -> np.ndarray:
+    """Well conditioned matrices with blocks of 1 to 4 rows on the diagonal, rows and columns shuffled."""
+    matrix = np.zeros((*batch, N, N))
+    low = 0
+    while low < N:
+        high = min(low + int(rng.integers(1, 5)), N)
+        own = rng.uniform(-1.0, 1.0, (*batch, high - low, high - low)) + 3.0 * np.eye(high - low)
+        matrix[..., low:high, low:high] = own * rng.choice([-1.0, 1.0], (high - low, 1))
+        for row in range(low, high):
+            places = rng.integers(0, low, 3) if low else []
+            matrix[..., row, places] = rng.uniform(-0.3, 0.3, (*batch, len(places)))
+        low = high
+    return matrix[..., rng.permutation(N), :][..., rng.permutation(N)]
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("batch", [(), (1,), (2, 3)])
+def test_block_after_block_gives_the_inverse_and_the_determinants_sign(
+    seed: int, batch: tuple[int, ...]
+) -> None:
+    matrix = hidden_triangle(np.random.default_rng(seed), batch)
+    found = inverse_by_blocks(matrix)
+    assert found is not None
+    condition = np.linalg.cond(matrix, np.inf)[..., None, None]
+    # Of each product n roundings, and of a block's inverse as many as its condition number.
+    wanted = np.linalg.inv(matrix)
+    allowed = N * EPS * condition * np.abs(wanted).max(axis=(-2, -1), keepdims=True)
+    assert (np.abs(found.inverse - wanted) <= allowed).all()
+    assert np.array_equal(found.sign, np.linalg.slogdet(matrix)[0])
+
+
+def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(5)
+    matrix, right = hidden_triangle(rng, (3,)), rng.uniform(-1.0, 1.0, (3, N))
+    by_blocks = factorise(matrix)
+    monkeypatch.setattr(block_inverse, "LARGE", np.inf)
+    plain = factorise(matrix)
+    assert by_blocks.sign is not None
+    assert plain.sign is None
+    assert np.array_equal(by_blocks.orientation, plain.orientation)
+    assert by_blocks.condition == pytest.approx(plain.condition, rel=1e-10)
+    x = by_blocks.solve(right)
+    assert (np.abs(x - plain.solve(right)).max(axis=-1) <= 8 * EPS * plain.condition * np.abs(x).max()).all()
+    for some in (
+        by_blocks.taken(np.array([2, 0])),
+        by_blocks.reshaped((1, 3)).reshaped((3,)).taken(np.array([2, 0])),
+    ):
+        assert np.array_equal(some.orientation, plain.orientation[[2, 0]])
+    turned = factorise(matrix[[1]] * np.where(np.arange(N) == 7, -1.0, 1.0))
+    replaced = by_blocks.replaced(np.array([1]), turned)
+    assert np.array_equal(replaced.orientation, plain.orientation * [1.0, -1.0, 1.0])
+
+
+def test_where_blocks_do_not_help_the_matrix_is_inverted_as_a_whole() -> None:
+    rng = np.random.default_rng(6)
+    circle = np.eye(N) + np.roll(np.eye(N), 1, axis=1) * 0.5
+    dense = rng.uniform(-1.0, 1.0, (N, N))
+    singular = hidden_triangle(rng)
+    singular[3] = 0.0
+    twice = hidden_triangle(rng)
+    twice[3] = twice[4]
+    for matrix in (np.eye(50), circle, dense):
+        assert inverse_by_blocks(matrix) is None
+        assert not factorise(matrix).singular
+    for matrix in (singular, twice):
+        assert factorise(matrix).singular
+
+
+def random_map(rng: np.random.Generator, unknowns: int) -> QuadraticMap:
+    """Rows of products of differences; unknowns in several rows, some products in more than one."""
+    shared = [tuple(rng.integers(0, unknowns + 3, 4).tolist()) for _ in range(unknowns)]
+    rows = []
+    for _ in range(unknowns):
+        chosen = rng.integers(0, len(shared), 3)
+        coefficients = rng.choice([-2.0, -1.0, 1.0, 0.5], 3)
+        rows.append(
+            tuple(
+                Product(float(c), shared[i][:2], shared[i][2:])
+                for c, i in zip(coefficients, chosen, strict=True)
+            )
+        )
+    return quadratic_map(rows, unknowns, unknowns + 3)
+
+
+@pytest.mark.parametrize("unknowns", [6, 104])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_lipschitz_constant_is_the_sum_over_all_pairs_of_unknowns(unknowns: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    system = random_map(rng, unknowns)
+    inverse = rng.uniform(-1.0, 1.0, (2, unknowns, unknowns))
+    weights = rng.uniform(0.1, 2.0, (3, 2, unknowns))
+    # By the definition: the Jacobian's derivative by each unknown, from the polar form of unit vectors.
+    units = np.eye(unknowns, system.size)
+    curvature = np.array([2.0 * system.polar(units, unit) for unit in units])  # (k, j, rows)
+    found = system.lipschitz(inverse, weights)
+    for one, member in product(range(3), range(2)):
+        g = weights[one, member]
+        bent = np.abs(curvature @ inverse[member].T)  # (k, j, i)
+        wanted = (np.einsum("kji,j,k->i", bent, g, g) / g).max()
+        assert found[one, member] == pytest.approx(wanted, rel=1e-12)
+        assert system.lipschitz(inverse[member], g) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    chain = FourBarChain.with_unknowns(114)
+    settings, stop = Settings(1e-12, 0), 0.25
+
+    def solved() -> tuple[np.ndarray, object]:
+        mechanism = chain.mechanism()
+        start = assemble(mechanism, {"arm_angle": SWING.series(0.0, 0)[0]}, closed=close_drawing(mechanism))
+        built = build_chain(mechanism, {"arm_angle": SWING}, start, 0.0, stop, settings)
+        last = built.segments[-1]
+        s = (stop - last.start) / last.scale
+        return s ** np.arange(last.order + 1.0) @ last.coefficients, (start.work, built.work)
+
+    by_blocks, work = solved()
+    monkeypatch.setattr(block_inverse, "LARGE", np.inf)
+    monkeypatch.setattr(quadratic, "LARGE", np.inf)
+    plain, plain_work = solved()
+    assert work == plain_work
+    # Truncation of either, and rounding of poses of condition numbers near 1000.
+    assert np.abs(by_blocks - plain).max() <= 2e-12 + 1e3 * 4 * EPS
