@@ -12,9 +12,9 @@ earlier unknowns within R_e of their predictors,
 
 say by 2 omega eta <= (1 - z)^2 that exactly one assembly of the block lies within
 R_b = 2 eta / ((1 - z)(1 + sqrt(1 - h))), h = 2 omega eta / (1 - z)^2. All of it grows with s if p does, so
-what holds at the end of a step
-holds all along it: the assemblies along it are one branch, and by the uniqueness in each block no other one
-is within (1 - z) / omega of them. The norm of a block weighs its unknowns, max_i |u_i| / g_i, by how far they
+what holds at the end of a step holds all along it: the assemblies along it are one branch, and by the
+uniqueness in each block no other one is within (1 - z) / omega of them. The norm of a block weighs its
+unknowns, max_i |u_i| / g_i, by how far they
 go together, so that one that moves little counts as much as one that moves far.
 """
 
