@@ -14,7 +14,6 @@ dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -156,6 +155,8 @@ def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
 
 def _inverse(number: int) -> Enclosed:
     high = 1.0 / number
+    from fractions import Fraction
+
     return Enclosed.of(high, float(Fraction(1, number) - Fraction(high)), UNIT_ROUNDOFF**2 * high)
 
 

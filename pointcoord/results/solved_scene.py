@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.proof import Proof, prove
-from pointcoord.bounds.reported_bounds import Reported
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates
 from pointcoord.time_functions import TimeFunction
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.proof import Proof
+    from pointcoord.bounds.reported_bounds import Reported
 
 Array = NDArray[np.float64]
 
@@ -79,6 +82,9 @@ class SolvedScene:
             rates: every number by itself.
             doubts: how far the laws' values may be off, where another answer than that of `doubts` is wanted.
         """
+        # What proves is imported where it is asked for, as most motions are read only.
+        from pointcoord.bounds.proof import prove
+
         mechanism, chassis, times = self.readout.mechanism, self.readout.chassis, samples.times
         added = self.readout.offset(times)
         return prove(
@@ -94,6 +100,8 @@ class SolvedScene:
 
     def _reported(self, samples: Samples) -> Reported:
         """All numbers of samples, and what went into them beside the coordinates."""
+        from pointcoord.bounds.reported_bounds import Reported
+
         readout = self.readout
         return Reported(
             numbers=samples.numbers,

@@ -6,8 +6,6 @@ it; then a part may check what its keys make together. All faults of a scene are
 
 from __future__ import annotations
 
-import copy
-import json
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, NoReturn, Self, dataclass_transform
 
@@ -158,6 +156,8 @@ class Part:
         Raises:
             SceneError: a value is not allowed, or there is no such key.
         """
+        import copy
+
         if update:
             changed = {**self._as_given(), **update}
             return type(self).checked(
@@ -192,6 +192,8 @@ class Part:
 
     def model_dump_json(self) -> str:
         """The part as JSON."""
+        import json
+
         return json.dumps(self.model_dump(mode="json"), separators=(",", ":"))
 
     def __eq__(self, other: object) -> bool:

@@ -35,7 +35,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.proof import pose_bound
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import orientation
@@ -95,6 +94,9 @@ class Pose:
 
         Infinite where nothing is proven. See `kantorovich` for what it covers; computed when it is read.
         """
+        # Imported here, like all that proves: most poses are never asked for it.
+        from pointcoord.bounds.proof import pose_bound
+
         return pose_bound(self.mechanism, self.y, self.factors)
 
 
