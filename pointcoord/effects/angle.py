@@ -8,12 +8,12 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity
 from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.topology import Topology

@@ -8,11 +8,10 @@ of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]

@@ -99,7 +99,7 @@ def test_counts_are_what_was_done(
         return factorise(matrix)
 
     solving = pointcoord.solve
-    for module in (newton, assembly, solving.taylor, solving.pointwise, solving.chord):
+    for module in (newton, assembly, solving.proven_path, solving.taylor, solving.pointwise, solving.chord):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0
