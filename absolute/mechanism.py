@@ -88,11 +88,32 @@ class Mechanism:
         pin.forwardKinematics(self.pin_model, self.pin_data, q)
         return Poses(self._rotations.copy(), self._origins.copy())
 
+    def poses_of(self, q: Array) -> Poses:
+        """Poses at N configurations (N, 7 * moving bodies): (N, bodies, 3, 3) and (N, bodies, 3)."""
+        many = Poses(np.empty((len(q), *self._rotations.shape)), np.empty((len(q), *self._origins.shape)))
+        for each, rotation, origin in zip(q, *many, strict=True):
+            pin.forwardKinematics(self.pin_model, self.pin_data, each)
+            rotation[...] = self._rotations
+            origin[...] = self._origins
+        return many
+
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configuration after a step [o', w] per body in world axes; Pinocchio takes body axes."""
         local = step.reshape(-1, 2, 3) @ rotation[1:]
-        moved: Array = pin.normalize(self.pin_model, pin.integrate(self.pin_model, q, local.ravel()))
+        return self.normalized(pin.integrate(self.pin_model, q, local.ravel()))
+
+    def moved_all(self, q: Array, rotation: Array, steps: Array) -> Array:
+        """N configurations after a step each: (N, 7 * moving bodies), (N, bodies, 3, 3), (N, rows)."""
+        local = (steps.reshape(len(steps), -1, 2, 3) @ rotation[:, 1:]).reshape(len(steps), -1)
+        moved = np.empty_like(q)
+        for number, (each, step) in enumerate(zip(q, local, strict=True)):
+            moved[number] = pin.normalize(self.pin_model, pin.integrate(self.pin_model, each, step))
         return moved
+
+    def normalized(self, q: Array) -> Array:
+        """A configuration with unit quaternions."""
+        unit: Array = pin.normalize(self.pin_model, q)
+        return unit
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
         """Values of the inputs by name."""

@@ -10,7 +10,7 @@ from absolute.mechanism import Mechanism
 from absolute.newton import MOST_CORRECTIONS, rounding_of
 from absolute.precision import EPS
 from absolute.solution import Array, Counts
-from absolute.tracking import Found
+from absolute.tracking import SMALL, Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 32
@@ -31,6 +31,8 @@ class Refined(NamedTuple):
         closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
         kept: (N,) whether the pose is on the branch of the drawing.
         world: (N, features, 3) points and directions that tell it.
+        sure: (N,) whether what was predicted was right: a small first correction, the determinant's sign.
+        q: (N, configuration) of Pinocchio.
     """
 
     rotation: Array
@@ -43,9 +45,11 @@ class Refined(NamedTuple):
     closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
     world: Array
+    sure: NDArray[np.bool_]
+    q: Array
 
 
-def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool) -> Refined:
+def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> Refined:
     """Newton with a fresh Jacobian each time until corrections and rows are rounding, for all together.
 
     The Jacobian of the last, negligible correction is that of the pose itself: its factors serve
@@ -57,20 +61,18 @@ def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool
         rates: False leaves velocity and acceleration empty.
     """
     stack = mechanism.stack
-    q = [each.q for each in found]
-    corrections = np.array([each.corrections for each in found], dtype=np.int64)
-    rotation, origin = poses_of(mechanism, q)
+    q, corrections = found.q.copy(), found.corrections.copy()
+    rotation, origin = mechanism.poses_of(q)
     placed = stack.place(rotation, origin)
-    factors = [eigenpy.PartialPivLU(jacobian) for jacobian in stack.jacobian(placed)]
-    steps = solved(factors, targets[0] - placed.values)
-    previous = np.linalg.norm(steps, axis=1)
+    steps = solved_once(stack.jacobian(placed), targets[0] - placed.values)
+    first = previous = lengths(steps)
+    factors: list[eigenpy.PartialPivLU] = [None] * len(q)
     pending = np.arange(len(q))
     for _ in range(MOST_CORRECTIONS):
         order = pending.tolist()
-        for instant, step in zip(order, steps, strict=True):
-            q[instant] = mechanism.moved(q[instant], rotation[instant], step)
+        q[pending] = mechanism.moved_all(q[pending], rotation[pending], steps)
         corrections[pending] += 1
-        poses = poses_of(mechanism, [q[instant] for instant in order])
+        poses = mechanism.poses_of(q[pending])
         fresh = stack.place(*poses)
         if len(order) == len(q):
             (rotation, origin), placed = poses, fresh
@@ -81,14 +83,17 @@ def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool
         for instant, jacobian in zip(order, stack.jacobian(fresh), strict=True):
             factors[instant] = eigenpy.PartialPivLU(jacobian)
         steps = solved([factors[instant] for instant in order], targets[0, pending] - fresh.values)
-        size = np.linalg.norm(steps, axis=1)
+        size = lengths(steps)
         # Negated, so that what is not a number counts as more to do.
         more = ~(size <= ROUNDING)
         for place in np.flatnonzero(more & (size > 0.5 * previous[pending])).tolist():
             more[place] = not size[place] <= rounding_of(factors[order[place]].rcond())
         # Near a fold corrections become as small as rounding before the rows close.
         more |= ~stack.closed(fresh, targets[0, pending])
-        previous[pending] = size
+        if len(order) == len(q):
+            previous = size
+        else:
+            previous[pending] = size
         pending, steps = pending[more], steps[more]
         if not pending.size:
             break
@@ -103,9 +108,28 @@ def refine(mechanism: Mechanism, found: list[Found], targets: Array, rates: bool
         acceleration = solved(factors, targets[2] - drift)
     residual = np.abs(targets[0] - placed.values).max(axis=1)
     kept = mechanism.branch_signs.kept(placed.world)
+    sure = np.ones(len(q), dtype=np.bool_)
+    for place in np.flatnonzero(found.predicted).tolist():
+        sure[place] = first[place] <= SMALL and factors[place].determinant() * found.sign > 0
     return Refined(
-        rotation, origin, velocity, acceleration, corrections, residual, previous, closed, kept, placed.world
+        rotation,
+        origin,
+        velocity,
+        acceleration,
+        corrections,
+        residual,
+        previous,
+        closed,
+        kept,
+        placed.world,
+        sure,
+        q,
     )
+
+
+def lengths(steps: Array) -> Array:
+    """(N,) of N steps."""
+    return np.asarray(np.sqrt(np.vecdot(steps, steps)))
 
 
 def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
@@ -113,7 +137,10 @@ def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
     return np.array([lu.solve(column) for lu, column in zip(factors, right_hand, strict=True)])
 
 
-def poses_of(mechanism: Mechanism, q: list[Array]) -> tuple[Array, Array]:
-    """Rotations (N, bodies, 3, 3) and origins (N, bodies, 3) of many configurations."""
-    poses = [mechanism.poses(each) for each in q]
-    return np.array([pose.rotation for pose in poses]), np.array([pose.origin for pose in poses])
+def solved_once(jacobian: Array, right_hand: Array) -> Array:
+    """Solutions (N, rows) of N systems (N, rows, rows) whose factors serve nothing else."""
+    try:
+        solution = np.asarray(np.linalg.solve(jacobian, right_hand[..., None])[..., 0], dtype=float)
+    except np.linalg.LinAlgError:  # one of them is singular to the last digit: not a number for that one
+        return solved([eigenpy.PartialPivLU(each) for each in jacobian], right_hand)
+    return solution

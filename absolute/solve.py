@@ -14,7 +14,10 @@ from absolute.mechanism import Mechanism
 from absolute.refine import BATCH, Refined, refine
 from absolute.results import Asked, Record
 from absolute.solution import Array, Solution
-from absolute.tracking import Tracking
+from absolute.tracking import Found, Tracking
+
+# Instants that are tracked before they are refined: enough for long runs.
+BLOCK = 256
 
 
 def solve(
@@ -98,17 +101,19 @@ def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Recor
     """
     # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
     with np.errstate(over="ignore", invalid="ignore"):
-        for start in range(0, len(series), BATCH):
-            _solve_batch(tracking, series[start : start + BATCH], rates, record)
+        for start in range(0, len(series), BLOCK):
+            _solve_block(tracking, series[start : start + BLOCK], rates, record)
 
 
-def _solve_batch(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
+def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
     """Track the pose through some instants, then refine all that were reached, even if one was not.
 
-    An instant that ends on another branch is tried once more, from the assembled drawing.
+    Where a prediction was not right, the way goes on step by step. An instant that ends on another branch is
+    tried once more, from the assembled drawing.
     """
     begin, again = record.written, -1
-    values, targets = series[:, 0].tolist(), tracking.mechanism.target_series(series)
+    mechanism, targets = tracking.mechanism, tracking.mechanism.target_series(series)
+    values = series[:, 0].tolist()
     while record.written < begin + len(series):
         failure: AbsoluteError | None = None
         done = record.written - begin
@@ -116,28 +121,50 @@ def _solve_batch(tracking: Tracking, series: Array, rates: bool, record: Record)
             found = tracking.advance(values[done:], targets[0, done:])
         except AbsoluteError as error:
             failure, found = error, tracking.found
-        if found:
-            refined = refine(tracking.mechanism, found, targets[:, done : done + len(found)], rates)
-            good = (
-                refined.closed
-                & refined.kept
-                & (np.isfinite(refined.acceleration).all(axis=1) if rates else True)
-            )
-            count = len(found) if good.all() else int(np.argmin(good))
-            record.store(refined, count)
-            if count < len(found):
-                bad = record.written
-                if not refined.closed[count]:
-                    raise _stalled(tracking.mechanism, bad, values[bad - begin], refined, count)
-                if refined.kept[count]:
-                    raise _overflow(tracking.mechanism, bad, series[bad - begin, 1:].tolist())
-                if again == bad:
-                    raise branch_error(tracking.mechanism, bad, values[bad - begin], refined.world[count])
-                again = bad
-                tracking.back_to(bad)
-                continue
-        if failure is not None:
-            raise failure
+        wrong = _store(mechanism, found, targets[:, done:], rates, record)
+        if wrong is None:
+            if failure is not None:
+                raise failure
+            continue
+        refined, place, before = wrong
+        bad = record.written
+        here = bad - begin
+        if not refined.sure[place]:
+            tracking.step_to(bad, before, values[here - 1], targets[0, here - 1])
+            continue
+        if not refined.closed[place]:
+            raise _stalled(mechanism, bad, values[here], refined, place)
+        if refined.kept[place]:
+            raise _overflow(mechanism, bad, series[here, 1:].tolist())
+        if again == bad:
+            raise branch_error(mechanism, bad, values[here], refined.world[place])
+        again = bad
+        tracking.back_to(bad)
+
+
+def _store(
+    mechanism: Mechanism, found: Found, targets: Array, rates: bool, record: Record
+) -> tuple[Refined, int, Array | None] | None:
+    """Refine and write down what was found, up to the first instant that is not right.
+
+    Returns:
+        Where there is such an instant, the part it is in, its place there, and the configuration of the
+        instant before if that was found as well.
+    """
+    before: Array | None = None
+    for start in range(0, len(found.q), BATCH):
+        part = slice(start, min(start + BATCH, len(found.q)))
+        refined = refine(mechanism, found.part(part), targets[:, part], rates)
+        good = refined.closed & refined.kept & refined.sure
+        if rates:
+            good &= np.isfinite(refined.acceleration).all(axis=1)
+        count = len(good) if good.all() else int(np.argmin(good))
+        record.store(refined, count)
+        if count:
+            before = refined.q[count - 1]
+        if count < len(good):
+            return refined, count, before
+    return None
 
 
 def _stalled(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         InputOutOfRange,
         MapError,
         MechanismError,
+        MotionNotMapped,
         MotionTooLong,
         MotionTooRough,
         NotComputed,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         PointcoordError,
         SceneError,
         SingularConfiguration,
+        SweepError,
         UnknownName,
     )
     from pointcoord.mapping.kinematic_map import KinematicMap, kinematic_map
@@ -34,15 +36,20 @@ if TYPE_CHECKING:
     from pointcoord.results.samples import Samples
     from pointcoord.scene.scene_file import Scene, built_in_scenes
     from pointcoord.simulation import simulate
+    from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
+    from pointcoord.sweeping.sweep import sweep, sweep_blocks
+    from pointcoord.sweeping.swept import Sweep
 
 __all__ = [
     "AssemblyError",
+    "Designs",
     "InputNotKnown",
     "InputOutOfRange",
     "KinematicMap",
     "MapError",
     "MechanismError",
     "Motion",
+    "MotionNotMapped",
     "MotionTooLong",
     "MotionTooRough",
     "NotComputed",
@@ -54,24 +61,38 @@ __all__ = [
     "SceneError",
     "SingularConfiguration",
     "Standing",
+    "Sweep",
+    "SweepError",
     "UnknownName",
     "built_in_scenes",
+    "designs_of",
+    "designs_of_scenes",
+    "grid_of",
     "kinematic_map",
     "simulate",
     "standing",
+    "sweep",
+    "sweep_blocks",
 ]
 
 # Where names are that are no errors.
 _MODULES = {
+    "Designs": "sweeping.designs",
     "KinematicMap": "mapping.kinematic_map",
     "Motion": "results.motion",
     "Samples": "results.samples",
     "Scene": "scene.scene_file",
     "Standing": "drawing_stands",
+    "Sweep": "sweeping.swept",
     "built_in_scenes": "scene.scene_file",
+    "designs_of": "sweeping.designs",
+    "designs_of_scenes": "sweeping.designs",
+    "grid_of": "sweeping.designs",
     "kinematic_map": "mapping.kinematic_map",
     "simulate": "simulation",
     "standing": "drawing_stands",
+    "sweep": "sweeping.sweep",
+    "sweep_blocks": "sweeping.sweep",
 }
 
 

@@ -26,7 +26,7 @@ else:
 
     PARAMETERS, MARK = Sample.__dataclass_params__, Sample.__dataclass_fields__["value"]._field_type
 
-    def dataclass(*, frozen: bool, repr: bool = True):
+    def dataclass(*, frozen: bool, repr: bool = True, eq: bool = True):
         """A frozen data class of the annotated attributes of a class and of those that it is made from."""
         if not frozen:
             raise TypeError("a data class that can change: take the standard library's")
@@ -41,7 +41,8 @@ else:
             cls.__match_args__ = tuple(fields)
             cls.__init__ = _on_first_use(cls, fields)
             cls.__setattr__, cls.__delattr__ = _refuse_to_set, _refuse_to_delete
-            cls.__eq__, cls.__hash__ = _compared(tuple(fields))
+            if eq:
+                cls.__eq__, cls.__hash__ = _compared(tuple(fields))
             if repr:
                 cls.__repr__ = _shown
             return cls

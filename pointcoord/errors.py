@@ -234,6 +234,28 @@ class MotionTooRough(PointcoordError):
         )
 
 
+class MotionNotMapped(PointcoordError):
+    """A motion whose inputs go where no map of them is proven.
+
+    Args:
+        instant: up to when the way of the inputs is covered, s; the start if nothing is.
+        inputs: value of each input there.
+        reason: why not further.
+        partial: the motion up to the instant, if any.
+    """
+
+    def __init__(self, instant: float, inputs: Mapping[str, float], reason: str, partial: Any) -> None:
+        self.instant = instant
+        self.inputs = dict(inputs)
+        self.reason = reason
+        self.partial = partial
+        place = ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
+        super().__init__(
+            f"the map of the inputs does not cover their way after t = {instant:.10g} s, {place}: {reason}; "
+            "keep the inputs farther from there, or use the method 'series' or 'newton'"
+        )
+
+
 class SingularConfiguration(PointcoordError):
     """The equations lose rank at a pose: a direction is free and the rates are not determined."""
 
@@ -264,6 +286,22 @@ class MapError(PointcoordError, ValueError):
 
     Args:
         what: the argument or the file at fault.
+        problem: what is wrong, with the value.
+        allowed: what would be right.
+    """
+
+    def __init__(self, what: str, problem: str, allowed: str) -> None:
+        self.what = what
+        self.problem = problem
+        self.allowed = allowed
+        super().__init__(f"{what} {problem}; allowed: {allowed}")
+
+
+class SweepError(PointcoordError, ValueError):
+    """Designs cannot be made, solved or read as they were asked for.
+
+    Args:
+        what: the argument, option, file or design at fault.
         problem: what is wrong, with the value.
         allowed: what would be right.
     """

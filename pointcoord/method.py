@@ -27,6 +27,8 @@ class Method:
     Attributes:
         name: in results and messages.
         by_series: a chain of power series, dense in time; or poses at each of the scene's instants.
+        by_map: series in the inputs along their way, dense in time as well; beside `by_series`, only where a
+            chain is too long or no step of it follows an input.
         at_instants: how these are solved for.
         suspensions: those that it can solve, by type, with the closures that it can.
         only: why there are no others, in words.
@@ -37,18 +39,30 @@ class Method:
 
     name: str
     by_series: bool = False
+    by_map: bool = False
     at_instants: InstantSolver = solve_instants
     suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
     only: str = ""
     square_velocity_term: SquareVelocityTerm = square_velocity_term
     effects: Mapping[str, Effect] = field(default_factory=dict)
 
+    @property
+    def dense(self) -> bool:
+        """Whether its motions are known between the scene's instants too."""
+        return self.by_series or self.by_map
+
     def __str__(self) -> str:
         return self.name
 
 
+AUTO = Method("auto", by_series=True, by_map=True)
+"""A chain of power series, or a map of the inputs where that is too long or too rough."""
+
 SERIES = Method("series", by_series=True)
 """A chain of power series, dense in time."""
+
+MAP = Method("map", by_map=True)
+"""A map of the inputs along their way, dense in time, however long or rough the motion is."""
 
 NEWTON = Method("newton")
 """The paper's algorithm, at the scene's instants only, each from the one before."""
@@ -59,7 +73,9 @@ NEWTON_COLD = Method("newton-cold", at_instants=solve_from_drawing)
 CHORD = Method("chord", at_instants=solve_by_chord)
 """The same as `newton` with one factorisation kept for many instants."""
 
-METHODS: Mapping[str, Method] = {method.name: method for method in (SERIES, NEWTON, NEWTON_COLD, CHORD)}
+METHODS: Mapping[str, Method] = {
+    method.name: method for method in (AUTO, SERIES, MAP, NEWTON, NEWTON_COLD, CHORD)
+}
 
 
 def method_of(name: Method | str) -> Method:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +21,8 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.method import SERIES, Method, method_of
+from pointcoord.linkage.needed_part import needed_mechanism
+from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.closing import ALLOWED, Closing, closing
@@ -30,24 +33,34 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
-from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.status import Status
-from pointcoord.solve.taylor import COARSEST, FINEST, SOLVED, Chain, Settings, build_chain
+from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part
+from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
+from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
+
+if TYPE_CHECKING:
+    from pointcoord.patches.flood import Limits
+    from pointcoord.results.states_of_map import StatesOfMap
 
 Array = NDArray[np.float64]
 
+# How many places are tried between the end of a map and the next instant, to tell what stops it.
+TRIED = 32
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
+# Instants that are checked at a time: what is made on the way takes some 5 MB.
+BLOCK = 2**14
 
 
-def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
+def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
     """Solve a scene by point coordinates.
 
     Args:
-        method: `series` (a chain of power series, dense in time); at the scene's instants only `newton` (the
-            paper's algorithm), `newton-cold` (each instant from the drawing) and `chord` (a factorisation
-            kept); or a method of your own.
+        method: `auto` (`series`, and `map` where that would take too many series or cannot follow an input);
+            dense in time `series` (a chain of power series) and `map` (series in the inputs, on patches
+            that cover their way); at the scene's instants only `newton` (the paper's algorithm),
+            `newton-cold` (each instant from the drawing) and `chord` (a factorisation kept); or a method of
+            your own. The motion's `method` and notes say which was used, and why.
     Raises:
         UnknownName: there is no such method.
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
@@ -57,6 +70,7 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
             there is none.
         MotionTooLong: the motion takes too many series; likewise.
         MotionTooRough: no series follows an input; likewise.
+        MotionNotMapped: no map covers the way of the inputs, though no pose on it is singular; likewise.
 
     >>> motion = simulate(Scene.load("steer"))
     >>> motion.position["wheel_centre"].shape
@@ -67,7 +81,12 @@ def simulate(scene: Scene, method: Method | str = SERIES) -> Motion:
     require_scene(scene)
     # Its dictionaries can be written after it was read.
     task = prepare_task(Scene.checked(scene, scene.title or "scene"), method_of(method))
-    solved = solve_by_series(task) if task.method.by_series else _at_instants(task)
+    if task.method.by_series and task.method.by_map:
+        task, solved = solve_by_either(task)
+    elif task.method.by_series:
+        solved = solve_by_series(task)
+    else:
+        solved = solve_by_map(task) if task.method.by_map else _at_instants(task)
     motion = _motion(task, solved)
     error = solved.states.status.error(motion)
     if error is not None:
@@ -84,6 +103,10 @@ class Effort:
         tolerance: of positions, mm: the scene's, or the nearest that a series holds.
         part: the same as a part of the car's size, which rates are held to.
         orders: of each series.
+        moving, still: how many unknown coordinates the series have, and how many are solved once because
+            they stand still.
+        not_needed: how many are not solved for, because nothing that is reported hangs on them.
+        points_not_needed: the points that are not solved for.
         start: what assembling the start takes.
         work: what all of it takes, but for the sums at the instants.
         stop: how far the series reach, s.
@@ -93,6 +116,10 @@ class Effort:
     tolerance: float
     part: float
     orders: tuple[int, ...]
+    moving: int
+    still: int
+    not_needed: int
+    points_not_needed: tuple[str, ...]
     start: Work
     work: Work
     stop: float
@@ -108,12 +135,17 @@ def effort(scene: Scene) -> Effort:
     require_scene(scene)
     task = prepare_task(Scene.checked(scene, scene.title or "scene"), SERIES)
     mechanism = task.readout.mechanism
-    chain = _chain(task)
+    chain, part = _chain(task), mechanism.moving_part(task.functions)
+    whole = scene.mechanism.topology
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
         orders=tuple(segment.order for segment in chain.segments),
+        moving=part.system.unknowns,
+        still=mechanism.map.unknowns - part.system.unknowns,
+        not_needed=whole.layout.unknowns - mechanism.map.unknowns,
+        points_not_needed=_unsolved(task),
         start=task.start.work,
         work=task.start.work + chain.work,
         stop=chain.stop if chain.segments else scene.time.start,
@@ -145,35 +177,130 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
     """
-    mechanism = scene_mechanism(scene, method)
+    whole = scene_mechanism(scene, method)
+    plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
+    mechanism = needed_mechanism(whole, plan.derivatives(whole.topology))
     readout = Readout(
         mechanism=mechanism,
-        plan=plan_effects(scene.effects, method.effects),
+        plan=plan,
         chassis=ChassisMotion.of(mechanism, scene.functions),
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
-    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    _check_range(mechanism, functions, scene.instants)
-    readout.chassis.states(scene.instants, readout.derivative_of_every_point)
-    first, tolerance = scene.time.start, pose_tolerance(scene, method, mechanism)
-    closed = close_drawing(mechanism, first, tolerance)
-    moved = closing(mechanism, closed.y)
+    functions = {name: scene.functions[name] for name in whole.topology.required_inputs}
+    check_range(whole, functions, scene.instants)
+    for block in _blocks(scene.instants):
+        readout.chassis.states(block, readout.reported_derivative)
+    # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
+    first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
+    closed = close_drawing(whole, first, tolerance)
+    moved = closing(whole, closed.y)
     require_the_drawn_car(scene, moved)
+    functions = {name: functions[name] for name in mechanism.topology.required_inputs}
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
-    start = assemble(mechanism, inputs, first, closed, tolerance)
+    begun = path_of_part(closed, whole, mechanism)
+    start = assemble(mechanism, inputs, first, begun, pose_tolerance(scene, method, mechanism))
     return Task(scene, method, readout, functions, start, moved)
 
 
-def solve_by_series(task: Task) -> SolvedScene:
-    """Solve a motion as a chain of power series."""
-    notes = _tolerance_notes(task.scene, task.readout.mechanism)
-    states = StatesOfChain(task.readout, task.functions, _chain(task), task.scene.time.start, notes)
+def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
+    """Solve a motion as a chain of power series.
+
+    Args:
+        hopeful: whether to go on to the most segments where the first ones tell that these will not do.
+    """
+    notes = tolerance_notes(task.scene, task.readout.mechanism)
+    chain = _chain(task, hopeful)
+    states = StatesOfChain(task.readout, task.functions, chain, task.scene.time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
 
 
-def _chain(task: Task) -> Chain:
+def solve_by_map(task: Task, why: str = "") -> SolvedScene:
+    """Solve a motion by a map of its inputs along their way.
+
+    Args:
+        why: a note on why by a map, if that was not asked for.
+    """
+    # Imported here: few scenes need it.
+    from pointcoord.patches.way_map import map_way
+    from pointcoord.results.states_of_map import StatesOfMap
+
+    readout, time = task.readout, task.scene.time
+    mechanism = readout.mechanism
+    limits = map_limits(task.scene, mechanism, readout.plan.derivative)
+    way = map_way(mechanism, task.functions, task.start, time.start, time.stop, limits)
+    notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
+    states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
+    if way.reason:
+        states = replace(states, status=_stop_of_map(task, states))
+    return SolvedScene(readout, task.functions, states)
+
+
+def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
+    """Solve a motion by series, or where they are too long or too rough for it by a map.
+
+    Returns:
+        The task with the method that was used, and the motion; that of the series if neither is whole.
+    """
+    status = foreseen(task)
+    if status is None:
+        solved = solve_by_series(task, hopeful=False)
+        status = solved.states.status
+    if isinstance(status, TooLong | TooRough):
+        mapped = solve_by_map(task, why_map(status))
+        if mapped.states.status.complete:
+            return replace(task, method=MAP), mapped
+        # As far as they come, then.
+        solved = solve_by_series(task)
+    return replace(task, method=SERIES), solved
+
+
+def foreseen(task: Task) -> Status | None:
+    """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
+    time = task.scene.time
+    breaks = np.concatenate([np.array(law.breaks) for law in task.functions.values()])
+    inner = np.unique(breaks[(breaks > time.start) & (breaks < time.stop)])
+    if len(inner) < MOST_SEGMENTS:
+        return None
+    return TooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
+
+
+def why_map(status: TooLong | TooRough) -> str:
+    """Why a map was used instead of series, as a note."""
+    if isinstance(status, TooRough):
+        reason = f"no series in time follows {status.name!r} after t = {status.instant:.10g} s"
+    else:
+        count = status.limit * (status.stop - status.start) / (status.instant - status.start)
+        reason = f"series in time would be about {count:.2g}, and {status.limit} are allowed"
+    return f"solved by a map of the inputs: {reason}"
+
+
+def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
+    """Why a map does not cover the way of the inputs.
+
+    The way is tried a little further from the last pose that is covered, along straight paths: where these
+    are blocked, that is what stops the motion.
+    """
+    mechanism, functions, way, time = task.readout.mechanism, task.functions, states.way, task.scene.time
+    until = max(way.until, time.start)
+    known = mechanism.known_series({name: f.series(until, 0) for name, f in functions.items()})
+    inputs = {name: float(value) for name, value in mechanism.input_values(known[..., 0, :]).items()}
+    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]), 0)[0][0]
+    later = task.scene.instants[task.scene.instants > until]
+    goal = float(later[0]) if len(later) else time.stop
+    for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
+        target = mechanism.known_series({name: f.series(instant, 0) for name, f in functions.items()})[0]
+        path = follow(mechanism.map, y, target)
+        if path.done < 1.0:
+            problem = "the mechanism cannot be assembled"
+            return blocked(mechanism, problem, path, target, path.done < 1.0, instant)
+        y = path.y
+    return NotMapped(until, inputs, way.reason)
+
+
+def _chain(task: Task, hopeful: bool = True) -> Chain:
     mechanism, time = task.readout.mechanism, task.scene.time
     settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
+    settings = replace(settings, hopeful=hopeful)
     return build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
 
 
@@ -193,7 +320,7 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     if not len(times):
         return None
     samples = solved.samples(times)
-    _require_known(solved, samples, task.scene.tolerance)
+    require_known(solved, samples, task.scene.tolerance)
     return Motion(
         times=samples.times,
         numbers=samples.numbers,
@@ -212,9 +339,26 @@ def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]
     closed = (task.closing.words,) if task.closing.noticeable else ()
     return (
         *closed,
+        *_unsolved_in_words(task),
         *task.scene.mechanism.doubts,
         *solved.states.notes,
         *_missing_numbers(solved, samples),
+    )
+
+
+def _unsolved(task: Task) -> tuple[str, ...]:
+    """The points that are not solved for."""
+    there = task.readout.mechanism.topology.points
+    return tuple(name for name in task.scene.mechanism.topology.points if name not in there)
+
+
+def _unsolved_in_words(task: Task) -> tuple[str, ...]:
+    """Of what nothing is known, not even whether it can follow the inputs."""
+    left_out = _unsolved(task)
+    if not left_out:
+        return ()
+    return (
+        f"nothing that is reported hangs on {', '.join(left_out)}: not solved for, nor whether it can follow",
     )
 
 
@@ -269,8 +413,22 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
         raise SceneError(source, "mechanism.points", error.problem) from error
 
 
-def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved."""
+def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
+    """Find an input out of range at the scene's instants before anything is solved.
+
+    A block at a time; only of a scene that is refused are all looked at, for the value that tells most.
+    """
+    try:
+        for block in _blocks(instants):
+            _check_range_at(mechanism, functions, block)
+        return
+    except InputOutOfRange as error:
+        found = error
+    _check_range_at(mechanism, functions, instants)
+    raise found
+
+
+def _check_range_at(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
     try:
         mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
     except InputOutOfRange as error:
@@ -279,18 +437,31 @@ def _check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], in
         raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
+def _blocks(rows: Array) -> Iterator[Array]:
+    return (rows[low : low + BLOCK] for low in range(0, len(rows), BLOCK))
+
+
 def truncation_share(mechanism: Mechanism) -> float:
     """Share of a scene's tolerance that solved points may use: carried ones multiply what these are off."""
     return min(TRUNCATION_SHARE, 1.0 / mechanism.carried_gain)
 
 
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
-    """How a scene's chain of series is cut.
+    """How a scene's chain of series is cut; that of many designs as finely as the largest of them needs.
 
     Args:
         derivative: highest time derivative that will be evaluated.
     """
-    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit), derivative)
+    return Settings(truncation_share(mechanism) * scene.tolerance / float(mechanism.unit.max()), derivative)
+
+
+def map_limits(scene: Scene, mechanism: Mechanism, derivative: int) -> Limits:
+    """How near the patches of a scene's map must be; what rounding loses is bounded apart, as of series."""
+    from pointcoord.patches.flood import Limits
+
+    kept = chain_settings(scene, mechanism, derivative).kept.tolerance
+    tolerance = kept * float(mechanism.unit) / truncation_share(mechanism)
+    return Limits(tolerance, derivative, keep_rounded=True)
 
 
 def finest_tolerance(scene: Scene) -> float:
@@ -307,13 +478,13 @@ def finest_tolerance(scene: Scene) -> float:
 def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
     """How far a pose that is solved for may be from the exact assembly, rounding apart, in units."""
     settings = chain_settings(scene, mechanism, 0)
-    if method.by_series:
+    if method.dense:
         return SOLVED * settings.kept.tolerance
     # Finer than a sum of series can be, but no coarser.
     return min(settings.tolerance, COARSEST)
 
 
-def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
+def tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     """Where the chain is cut by another tolerance than the scene's."""
     settings = chain_settings(scene, mechanism, 0)
     used = settings.kept.tolerance
@@ -326,18 +497,18 @@ def _tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
 
 
-def _require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
+def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
     """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
 
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = solved.doubts(samples.times)
-    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+    each = (doubt for block in _blocks(samples.times) for doubt in solved.doubts(block).values())
+    if all((doubt <= tolerance).all() for doubt in each):
         return
-    certain = {name: np.zeros_like(doubt) for name, doubt in doubts.items()}
+    doubts = solved.doubts(samples.times)
     unproven = ~np.isfinite(solved.proof(samples).bound)
-    unproven &= np.isfinite(solved.proof(samples, doubts=certain).bound)
+    unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))
@@ -353,8 +524,10 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
         why = f": {effect.no_number}" if effect.no_number else ""
         for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
             for name in effect.names or channel:
-                is_number = np.isfinite(channel[name]).reshape(len(samples.times), -1).all(axis=-1)
-                if bad := int(np.count_nonzero(~is_number)):
+                numbers = channel[name].reshape(len(samples.times), -1)
+                known = (np.isfinite(block).all(axis=-1) for block in _blocks(numbers))
+                bad = sum(int(np.count_nonzero(~each)) for each in known)
+                if bad:
                     notes.append(
                         f"{channel.quantity.words} of {name} is not a number at {bad} of "
                         f"{len(samples.times)} instants{why}"

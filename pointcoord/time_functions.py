@@ -54,9 +54,25 @@ class TimeFunction(Protocol):
         """
         ...
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """Between which numbers every computed value of it lies over spans of time, each (N,).
+
+        They come nearer to the least and the largest value with the square of a span's length, and are the
+        value itself where the law stands still.
+
+        Args:
+            first, last: ends of each span, (N,), s; no break lies between them.
+        """
+        ...
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """Instants where a derivative jumps, s; a power series must not be used across them."""
+        ...
+
+    @property
+    def still(self) -> bool:
+        """Whether it is constant by its form, whatever the instants."""
         ...
 
 
@@ -122,10 +138,25 @@ class Polynomial:
             found.append(_rounded_once(self, total, instants, derivative))
         return found
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The series about the middle, each term at its largest."""
+        middle, half = _middle_and_half(first, last)
+        order = len(self.coefficients) - 1
+        series = self.series(middle, order)
+        doubts = [self.rounding(middle, k) / factorial(k) for k in range(order + 1)]
+        # The rounding of a value is largest at one of the ends: it grows with the distance from zero.
+        own = np.maximum(self.rounding(first), self.rounding(last))
+        return _about(series, np.stack(doubts, axis=-1), half, own)
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """None: a polynomial is analytic everywhere."""
         return ()
+
+    @property
+    def still(self) -> bool:
+        """Of degree 0."""
+        return not any(self.coefficients[1:])
 
 
 @dataclass(frozen=True)
@@ -201,10 +232,42 @@ class Sine:
         )
         return [_rounded_once(self, value, instants, d) for d, value in enumerate(values)]
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The values at the ends, or the crest or the trough where the angle may pass one.
+
+        The angle in turns is rounded at most 8 times relative to the sum of its magnitudes.
+        """
+        ends = [self.series(t, 0)[..., 0] for t in (first, last)]
+        least, most = np.minimum(*ends), np.maximum(*ends)
+        swing = abs(self.amplitude)
+        if swing == 0.0 or self.angular_frequency == 0.0:
+            return least, most
+        with np.errstate(over="ignore", invalid="ignore"):
+            angles = [self.angular_frequency * t + self.phase for t in (first, last)]
+            sizes = np.maximum(np.abs(self.angular_frequency * first), np.abs(self.angular_frequency * last))
+            doubt = 8.0 * UNIT_ROUNDOFF * (sizes + abs(self.phase) + 1.0)
+            low, high = np.minimum(*angles) - doubt, np.maximum(*angles) + doubt
+            quarter = np.copysign(0.25, self.amplitude)
+            # False for what overflows: then it may pass both.
+            crest, trough = (
+                ~(np.ceil(low / TURN.high - turned) > high / TURN.high - turned)
+                for turned in (quarter, -quarter)
+            )
+            most = np.where(crest, self.offset + swing, most)
+            least = np.where(trough, self.offset - swing, least)
+            rounded = np.maximum(self.rounding(first), self.rounding(last))
+            rounded = 2.0 * (rounded + 8.0 * UNIT_ROUNDOFF * (swing + np.abs(most) + np.abs(least)))
+        return least - rounded, most + rounded
+
     @property
     def breaks(self) -> tuple[float, ...]:
         """None: a sine is analytic everywhere."""
         return ()
+
+    @property
+    def still(self) -> bool:
+        """Without an amplitude, or without a frequency."""
+        return not (self.amplitude and self.angular_frequency)
 
 
 @dataclass(frozen=True)
@@ -235,6 +298,24 @@ class Table:
         values = (self._spline(instants, nu=derivative) for derivative in range(3))
         return [Enclosed.of(value, 0.0, 0.0, UNIT_ROUNDOFF * np.abs(value)) for value in values]
 
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The cubic about the middle, each term at its largest.
+
+        A cubic is computed from the start of its piece, and rounded at most 8 times relative to the sum of
+        its terms there.
+        """
+        middle, half = _middle_and_half(first, last)
+        knots, cubics = self._spline.x, np.abs(self._spline.c[::-1])
+        place = np.clip(np.searchsorted(knots, middle, side="right") - 1, 0, len(knots) - 2)
+        reach = np.maximum(last - knots[place], 0.0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            rounded = sum(cubics[k][place] * reach**k for k in range(4))
+            doubts = np.zeros((len(middle), 4))
+            for k in range(4):
+                falling = (comb(j, k) * cubics[j][place] * reach ** (j - k) for j in range(k, 4))
+                doubts[:, k] = 8.0 * UNIT_ROUNDOFF * sum(falling)
+            return _about(self.series(middle, 3), doubts, half, 8.0 * UNIT_ROUNDOFF * rounded)
+
     @property
     def finite(self) -> bool:
         """Whether the spline exists in floating point: huge values or close times overflow its slopes."""
@@ -255,6 +336,11 @@ class Table:
     def breaks(self) -> tuple[float, ...]:
         """The inner times of the table."""
         return self.times[1:-1]
+
+    @property
+    def still(self) -> bool:
+        """Of one value, which is what the spline then gives everywhere."""
+        return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
 
 
 @cache
@@ -279,6 +365,32 @@ def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivativ
     values = np.where(sharp, nearest, computed)
     expected = coarse + UNIT_ROUNDOFF * np.abs(values)
     return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
+
+
+def _middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:
+    """Middles of spans, and half lengths that reach both ends whatever is rounded."""
+    middle = first + 0.5 * (last - first)
+    return middle, np.maximum(last - middle, middle - first) * (1.0 + 4.0 * UNIT_ROUNDOFF)
+
+
+def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[Array, Array]:
+    """Between which numbers the sum of a series lies, at most `half` from its middle, each (N,).
+
+    Args:
+        series: coefficients about the middles, (N, order + 1). doubts: how far these may be off, likewise.
+        rounded: what computing a value rounds beside that, (N,).
+    """
+    powers = half[:, None] ** np.arange(series.shape[-1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        spread = (np.abs(series) + doubts)[:, 1:] * powers[:, 1:]
+        moved = spread.sum(axis=-1)
+        value = series[:, 0]
+        # Twice the rounding of the value, of the sums here and of the powers.
+        count = 4.0 * series.shape[-1] + 8.0
+        edge = moved + doubts[:, 0] + rounded
+        edge += count * UNIT_ROUNDOFF * (np.abs(value) + moved)
+        still = moved == 0.0
+        return np.where(still, value, value - edge), np.where(still, value, value + edge)
 
 
 def _horner_of_one(highs: list[float], lows: list[float], t: float) -> float:

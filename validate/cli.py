@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-from validate.commands import comparison, cost, draw, hard, motion, scenes
+from validate.commands import comparison, cost, draw, hard, motion, scenes, sweep
 from validate.commands.usage import UsageError
 from validate.door import guarded
 from validate.exit_status import HELP, ExitStatus
@@ -20,7 +20,7 @@ share no code, and everything that they compute is compared. A mechanism and its
 scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
 form."""
 
-COMMANDS = (comparison, motion, scenes, draw, hard, cost)
+COMMANDS = (comparison, motion, sweep, scenes, draw, hard, cost)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

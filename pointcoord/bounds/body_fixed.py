@@ -23,9 +23,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair
-from pointcoord.numerics.kantorovich import INFLATION, Certificate
+from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
@@ -33,37 +34,50 @@ Carriers = tuple[Array, Array, Array]
 
 
 ROUNDINGS = 10.0 * UNIT_ROUNDOFF  # the nine of p and one for the distance from what is reported
+NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # of the axes, in a circle
 
 
 def carried_errors(
-    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], certificate: Certificate, shifted: Array
+    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], certified: CertifiedPoses, shifted: Array
 ) -> tuple[Array, Array]:
-    """Bound of the reported carried points, in units, and their gain over their carriers, shape (...,).
+    """Bound of the reported carried points, in units, and their gain over their carriers, shape (N,).
 
     Args:
-        local: reported positions without what was added to report them, as high and low, in units, each
-            of shape (..., 3).
-        shifted: rounding of what was added, in units, shape (..., 3).
+        y: coordinates, shape (size, N).
+        local: positions of the points that are reported without what was added to report them, as high and
+            low, in units, each of shape (3, N).
+        shifted: rounding of what was added, in units, shape (3, N).
     """
-    bound, gain = np.zeros(y.shape[:-1]), np.ones(y.shape[:-1])
+    bound, gain = np.zeros(y.shape[-1]), np.ones(y.shape[-1])
+    largest = np.abs(certified.step).max(axis=0)
     for name, carriers in mechanism.topology.carried.items():
+        if name not in local:
+            continue
         weights = mechanism.carrier_weights[name]
+        a, b, c = weights
         places = [list(mechanism.layout.vector(point)) for point in carriers]
-        base, first, second = (y[..., place] for place in places)
-        blocks = _derivatives(weights, base, first, second)
-        steps, spreads = ([v[..., place] for place in places] for v in (certificate.step, certificate.spread))
-        magnitude = np.stack([np.abs(block) for block in blocks])
-        moved = np.abs(sum(_applied(block, step) for block, step in zip(blocks, steps, strict=True)))
-        doubt = sum(
-            _applied(np.abs(block), spread + certificate.tail[..., None] + 32 * UNIT_ROUNDOFF * np.abs(step))
-            for block, spread, step in zip(blocks, spreads, steps, strict=True)
-        )
-        curved = 8.0 * np.abs(weights[..., 2]) * certificate.radius**2
+        base, first, second = (y[place] for place in places)
+        e1, e2 = first - base, second - base
+        # K0 = (1 - a - b) I + c [e2 - e1]x, K1 = a I - c [e2]x and K2 = b I + c [e1]x: their diagonals, and
+        # the vectors whose cross products they are.
+        derivatives = ((abs(1.0 - a - b), np.abs(e2 - e1)), (abs(a), np.abs(e2)), (abs(b), np.abs(e1)))
+        steps, spreads = ([v[place] for place in places] for v in (certified.step, certified.spread))
+        first_step, second_step = steps[1] - steps[0], steps[2] - steps[0]
+        turned = _cross(first_step, e2) + _cross(e1, second_step)
+        moved = np.abs(steps[0] + a * first_step + b * second_step + c * turned)
+        rows = sum(along + abs(c) * (edge[NEXT] + edge[LAST]) for along, edge in derivatives)
+        doubt = rows * certified.tail
+        for (along, edge), spread in zip(derivatives, spreads, strict=True):
+            doubt += along * spread + abs(c) * (edge[NEXT] * spread[LAST] + edge[LAST] * spread[NEXT])
+        # The step moves the point by as much as these products at most, and each is rounded a few times.
+        reach = 1.0 + 2.0 * (abs(a) + abs(b) + 2.0 * abs(c) * (np.abs(e1) + np.abs(e2)).max(axis=0))
+        doubt += 32 * UNIT_ROUNDOFF * reach * largest
+        curved = 8.0 * abs(c) * certified.radius**2
         found, size = _carried(weights, (base, first, second))
         each = moved + doubt + apart(local[name], found) + ROUNDINGS * size + shifted
-        total = INFLATION * (each.max(axis=-1) + curved + _unsolved(mechanism, name, carriers))
-        bound = np.maximum(bound, np.where(np.isfinite(certificate.radius), total, np.inf))
-        gain = np.maximum(gain, INFLATION * magnitude.sum(axis=(0, -1)).max(axis=-1))
+        total = INFLATION * (each.max(axis=0) + curved + _unsolved(mechanism, name, carriers))
+        bound = np.maximum(bound, np.where(np.isfinite(certified.radius), total, np.inf))
+        gain = np.maximum(gain, INFLATION * rows.max(axis=0))
     return bound, gain
 
 
@@ -73,41 +87,26 @@ def apart(pair: Pair, place: Array) -> Array:
     return np.abs((high - place) + low)
 
 
-def _derivatives(weights: Array, base: Array, first: Array, second: Array) -> list[Array]:
-    """K0, K1, K2, each of shape (..., 3, 3)."""
-    a, b, c = (weights[..., i, None, None] for i in range(3))
-    by_first = a * np.eye(3) - c * _cross_matrix(second - base)
-    by_second = b * np.eye(3) + c * _cross_matrix(first - base)
-    return [np.eye(3) - by_first - by_second, by_first, by_second]
-
-
-def _applied(matrix: Array, vector: Array) -> Array:
-    return np.asarray((matrix @ vector[..., None])[..., 0])
-
-
 def _carried(weights: Array, carriers: Carriers) -> tuple[Array, Array]:
-    """The carried point and M, both of shape (..., 3)."""
+    """The carried point and M, from carriers of shape (3, N); both of that shape."""
     base, first, second = carriers
     e1, e2 = first - base, second - base
-    a, b, c = (weights[..., i, None] for i in range(3))
-    point = base + a * e1 + b * e2 + c * np.cross(e1, e2)
-    crossed = _applied(np.abs(_cross_matrix(e1)), np.abs(e2))
-    size = np.abs(base) + np.abs(a * e1) + np.abs(b * e2) + np.abs(c) * crossed
-    return point, size
+    a, b, c = weights
+    point = base + a * e1 + b * e2 + c * _cross(e1, e2)
+    long, wide = np.abs(e1), np.abs(e2)
+    crossed = long[NEXT] * wide[LAST] + long[LAST] * wide[NEXT]
+    return point, np.abs(base) + abs(a) * long + abs(b) * wide + abs(c) * crossed
 
 
-def _unsolved(mechanism: Mechanism, name: str, carriers: tuple[str, str, str]) -> Array:
-    """Length of what the weights leave of the drawn point, shape (...,)."""
+def _unsolved(mechanism: Mechanism, name: str, carriers: tuple[str, str, str]) -> float:
+    """Length of what the weights leave of the drawn point."""
     vectors = mechanism.drawing.vectors
     base, first, second = (vectors[point] for point in carriers)
     found, size = _carried(mechanism.carrier_weights[name], (base, first, second))
     rest = np.abs(vectors[name] - found) + ROUNDINGS * size
-    return np.asarray(np.linalg.norm(rest, axis=-1))
+    return float(np.linalg.norm(rest))
 
 
-def _cross_matrix(v: Array) -> Array:
-    """[v]x with [v]x w = v x w, shape (..., 3, 3)."""
-    x, y, z = np.moveaxis(v, -1, 0)
-    zero = np.zeros_like(x)
-    rows = ((zero, -z, y), (z, zero, -x), (-y, x, zero))
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+def _cross(a: Array, b: Array) -> Array:
+    """a x b over the first dimension."""
+    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])

@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.body_fixed import apart, carried_errors
-from pointcoord.bounds.reported_bounds import Numbers, Proven, Reported, joined, reported_bounds
-from pointcoord.bounds.solved_coordinates import SolvedCoordinates
+from pointcoord.bounds.certified_poses import CertifiedPoses, Certifier
+from pointcoord.bounds.reported_bounds import POSITION, Numbers, Proven, Reported, reported_bounds
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.kantorovich import INFLATION, Certificate, certify
+from pointcoord.numerics.kantorovich import INFLATION, certify
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
-# Poses per batch: their matrices (two of n x n and one of n x pairs each) stay below 100 MB.
-BLOCK = 4096
+# Instants at a time: a row of them stays in a first-level cache, and all rows of a block below 20 MB.
+BLOCK = 2048
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,9 @@ class Proof:
             for what it covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
-        condition: condition number of the Jacobian, (N,).
-        residual: largest row of C(y), (N,), in the mechanism's units.
+        condition: condition number of the Jacobian, (N,); between neighbours that share an inverse it is
+            interpolated, to a few per cent, and to a third where the power of two that scales a row changes.
+        residual: largest row of C(y) about what the user's numbers mean, (N,), in the mechanism's units.
         proven: by quantity and name, the error of every reported number, rates and angles too, at most; empty
             unless asked for.
         expected: the error that the method makes of each at most where nothing is wrong; likewise.
@@ -65,14 +66,12 @@ class Proof:
 def prove(
     mechanism: Mechanism,
     times: Array,
-    solved: SolvedCoordinates,
-    reported: Mapping[str, Array],
-    offset: Array,
-    rounding: Array,
-    laws: Mapping[str, Array],
-    everything: Reported | None = None,
+    reported: Reported,
+    *,
+    rates: bool = False,
+    certain: bool = False,
 ) -> Proof:
-    """Prove poses in blocks.
+    """Prove poses, in blocks of instants.
 
     What is reported was summed, and shifted to the user's origin and by the chassis' motion, apart from
     the coordinates y that are proven. Both are at hand, so what lies between them is measured, without
@@ -80,43 +79,65 @@ def prove(
 
     Args:
         times: instants, shape (N,), s.
-        solved: the coordinates y and as many of their time derivatives as were solved for.
-        reported: position of every point at the times, (N, 3), mm.
-        offset: what was added to every point to report it, (N, 3), mm.
-        rounding: of the offset itself, at most, (N, 3), mm.
-        laws: how far the value of each driving input may be off, (N,), rad or mm.
-        everything: all that was reported, to bound each number of it as well.
+        reported: the numbers, and what went into them.
+        rates: bound each number by itself.
+        certain: take the values of the laws as they are computed for exact.
     """
-    parts, bounds = [], []
+    order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
+    columns = np.empty((6, len(times)))
+    certifier = Certifier(mechanism)
+    bounds = _Bounds(len(times))
     for low in range(0, len(times), BLOCK):
-        here = times[low : low + BLOCK]
-        y, *rates = solved.coordinates(here)
-        factors = factorise(mechanism.map.jacobian(y))
-        residual = np.abs(mechanism.map.residual(y)).max(axis=-1)
-        off = {name: doubt[low : low + BLOCK] for name, doubt in laws.items()}
-        lacking, uncertainty = mechanism.known_data(y, off)
-        expected = uncertainty + np.abs(lacking)
-        driven = {} if everything is None else everything.driven(mechanism, here)
-        lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
-        for place, (value, _, _) in driven.items():
-            expected[:, place] = value.radius[1]
-        certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
-        local = {
-            name: _local(mechanism, place[low : low + BLOCK], offset[low : low + BLOCK])
-            for name, place in reported.items()
-        }
-        doubt = rounding[low : low + BLOCK] / mechanism.unit
-        bound = mechanism.unit * _reported_bound(mechanism, y, local, certificate, doubt)
-        carried, gain = carried_errors(mechanism, y, local, certificate, doubt)
-        own = mechanism.unit * certificate.coordinates[..., : 3 * len(mechanism.topology.moving)].max(axis=-1)
-        if everything is not None:
-            pose = Proven(factors, certificate, here, (y, *rates), (lacking, uncertainty, expected), driven)
-            bounds.append(reported_bounds(mechanism, pose, everything.part(low, low + BLOCK)))
-        parts.append((own, bound, mechanism.unit * carried, gain, factors.condition, residual))
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+        here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
+        part = reported.part(here)
+        if rates:
+            pose, certified = _alone(mechanism, times[here], part, certain)
+            bounds.put(here, *reported_bounds(mechanism, pose, part))
+            y = np.ascontiguousarray(pose.states[0].T)
+        else:
+            y = np.ascontiguousarray(part.solved.coordinates(times[here], 0)[0].T)
+            certified = certifier.certify(times[here], y, part.doubts(times[here], certain))
+        columns[:, here] = _positions(mechanism, times[here], part, y, certified)
     own, bound, carried, gain, condition, residual = columns
-    each = (joined([part[place] for part in bounds]) for place in (0, 1))
-    return Proof(times, own, bound, carried, gain, condition, residual, *each)
+    return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
+
+
+def _positions(
+    mechanism: Mechanism, times: Array, reported: Reported, y: Array, certified: CertifiedPoses
+) -> tuple[Array, ...]:
+    """What is proven of the positions at some instants: the arrays of a `Proof`.
+
+    Args:
+        y: coordinates, (size, N).
+    """
+    unit, added = mechanism.unit, reported.added(times, mechanism.origin)
+    doubt = reported.chassis.rounding(times, mechanism.origin).T / unit
+    local = {name: _local(place.T, added, unit) for name, place in reported.numbers[POSITION].items()}
+    with np.errstate(invalid="ignore", over="ignore"):
+        errors = INFLATION * (np.abs(certified.step) + certified.spread + certified.tail)
+        own = errors[: 3 * len(mechanism.topology.moving)].max(axis=0)
+        bound = _reported_bound(mechanism, y, local, errors, doubt)
+        carried, gain = carried_errors(mechanism, y, local, certified, doubt)
+    return unit * own, unit * bound, unit * carried, gain, certified.condition, certified.residual
+
+
+def _alone(
+    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
+) -> tuple[Proven, CertifiedPoses]:
+    """Poses that are proven each by its own inverse, with all that their rates depend on."""
+    y, *rates = (np.ascontiguousarray(state) for state in reported.solved.coordinates(times, 2))
+    factors = factorise(mechanism.map.jacobian(y))
+    lacking, uncertainty = mechanism.known_data(y, reported.doubts(times, certain))
+    expected = uncertainty + np.abs(lacking)
+    driven = reported.driven(mechanism, times)
+    lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
+    for place, (value, _, _) in driven.items():
+        expected[:, place] = value.radius[1]
+    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
+    certified = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
+    certified.put_alone(np.arange(len(times)), certificate, factors)
+    data = (lacking, uncertainty, expected)
+    return Proven(factors, certificate, times, (y, *rates), data, driven), certified
 
 
 def _sharpened(
@@ -131,22 +152,58 @@ def _sharpened(
     return lacking, uncertainty
 
 
-def _local(mechanism: Mechanism, reported: Array, offset: Array) -> Pair:
-    high, low = two_sum(reported, -offset)
-    return high / mechanism.unit, low / mechanism.unit
+def _local(reported: Array, added: Array | None, unit: Array) -> Pair:
+    """Reported coordinates (3, N) without what was added to report them, in units."""
+    if added is None:
+        return reported / unit, np.zeros(1)
+    high, low = two_sum(reported, -added)
+    return high / unit, low / unit
 
 
 def _reported_bound(
-    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], certificate: Certificate, doubt: Array
+    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], errors: Array, doubt: Array
 ) -> Array:
-    """Bound on the reported coordinates of solved points and of the chassis, shape (...,), in units."""
+    """Bound on the reported coordinates of solved points and of the chassis, shape (N,), in units.
+
+    Args:
+        errors: of the unknown coordinates, (unknowns, N).
+    """
     topology, layout = mechanism.topology, mechanism.layout
-    # In its own frame the chassis is where it was drawn, exactly.
-    drawn = np.zeros((*y.shape[:-1], layout.size - layout.unknowns))
-    own = np.concatenate([certificate.coordinates, drawn], axis=-1)
-    places = {name: list(layout.vector(name)) for name in (*topology.moving, *topology.chassis)}
-    each = [own[..., place] + apart(local[name], y[..., place]) + doubt for name, place in places.items()]
-    return np.asarray(INFLATION * np.concatenate(each, axis=-1).max(axis=-1))
+    # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
+    found = np.where(np.isfinite(errors).all(axis=0), 0.0, np.inf)
+    for name in (*topology.moving, *topology.chassis):
+        if name not in local:
+            continue
+        place = list(layout.vector(name))
+        each = apart(local[name], y[place]) + doubt
+        # In its own frame the chassis is where it was drawn, exactly.
+        if name in topology.moving:
+            each += errors[place]
+        found = np.maximum(found, each.max(axis=0))
+    return np.asarray(INFLATION * found)
+
+
+@dataclass
+class _Bounds:
+    """Bounds of every number at some instants, written block by block.
+
+    Attributes:
+        count: of the instants.
+    """
+
+    count: int
+    proven: dict[str, dict[str, Array]] = field(default_factory=dict)
+    expected: dict[str, dict[str, Array]] = field(default_factory=dict)
+
+    def put(self, here: slice | NDArray[np.intp], *parts: Numbers) -> None:
+        """Write proven and expected bounds at some of them."""
+        for whole, part in zip((self.proven, self.expected), parts, strict=True):
+            for quantity, arrays in part.items():
+                found = whole.setdefault(quantity, {})
+                for name, array in arrays.items():
+                    if name not in found:
+                        found[name] = np.empty((self.count, *array.shape[1:]))
+                    found[name][here] = array
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:

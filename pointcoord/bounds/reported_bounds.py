@@ -21,6 +21,7 @@ from pointcoord.numerics.linear import Factors
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
+POSITION = "position"
 Numbers = Mapping[str, Mapping[str, Array]]
 """Arrays by quantity and by name: of a point or a body (N, 3), of a car (N,)."""
 
@@ -72,9 +73,26 @@ class Reported:
                 found[mechanism.layout.scalar(drive.coordinate)] = drive.enclosed(law, mechanism.drawing)
         return found
 
-    def part(self, low: int, high: int) -> Reported:
+    def doubts(self, times: Array, certain: bool) -> dict[str, Array]:
+        """How far the computed value of each law may be from the law's own, each (N,), rad or mm.
+
+        Args:
+            certain: take them for exact.
+        """
+        if certain:
+            return {name: np.zeros_like(times) for name in self.laws}
+        return {name: law.rounding(times) for name, law in self.laws.items()}
+
+    def added(self, times: Array, origin: Array) -> Array | None:
+        """What was added to every position to report it, as it was computed, (3, N), mm; None if nothing."""
+        moved = self.chassis.states(times, 0)
+        if moved:
+            return (origin + moved[0]).T
+        return np.repeat(origin[:, None], len(times), axis=1) if origin.any() else None
+
+    def part(self, here: slice | NDArray[np.intp]) -> Reported:
         """The same at some of the instants."""
-        part = {q: {n: a[low:high] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
+        part = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
         return replace(self, numbers=part)
 
 
@@ -135,13 +153,3 @@ def _unit_of_time(states: Sequence[Array]) -> Array:
         fastest = np.maximum(fastest, np.abs(state).max(axis=-1) ** (1.0 / d))
     exponent = np.frexp(np.where(np.isfinite(fastest) & (fastest > 0.0), fastest, 1.0))[1]
     return np.asarray(np.ldexp(1.0, -np.clip(exponent, -LONGEST, LONGEST)))
-
-
-def joined(parts: Sequence[Numbers]) -> Numbers:
-    """Bounds of consecutive instants as one; none of none."""
-    if not parts:
-        return {}
-    return {
-        quantity: {name: np.concatenate([part[quantity][name] for part in parts]) for name in names}
-        for quantity, names in parts[0].items()
-    }

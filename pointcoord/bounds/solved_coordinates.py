@@ -17,8 +17,12 @@ Array = NDArray[np.float64]
 class SolvedCoordinates(Protocol):
     """The coordinates of a linkage and their time derivatives, as they were solved for."""
 
-    def coordinates(self, instants: Array) -> list[Array]:
-        """y and as many of its derivatives as were solved for, each (N, size), units per s^d."""
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and its derivatives up to one, or as many as were solved for, each (N, size), units per s^d.
+
+        Args:
+            instants: shape (N,), s; they do not decrease.
+        """
         ...
 
     def summed(self, instants: Array) -> Sequence[Summed]:

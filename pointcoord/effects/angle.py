@@ -7,14 +7,14 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity
+from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity
 from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -134,20 +134,34 @@ class WheelAngles(Effect):
         return ""
 
     def doubts(
-        self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
-    ) -> tuple[str, ...]:
-        """Angles of the drawing that are steeper than any car's."""
-        found = []
-        for angle in self.angles:
-            start, end = angle.ends(topology)
-            limit = angle.steepest_by_default if _missing(topology, start) else angle.steepest
-            degrees = float(np.degrees(angle.value(drawn[start], drawn[end], axes)))
-            if angle.line not in told and abs(degrees) > limit:
-                found.append(
-                    f"the drawn {angle.words} is {degrees:.4g} deg, that of the line from {start} to {end}: "
-                    f"{'are they swapped' if abs(degrees) > 90.0 else 'is one of them misdrawn'}?"
-                )
-        return tuple(found)
+        self,
+        topology: Topology,
+        drawn: Mapping[str, Array],
+        axes: CarAxes,
+        told: Mapping[str, NDArray[np.bool_]],
+    ) -> tuple[Doubt, ...]:
+        """Angles of drawings that are steeper than any car's."""
+        return tuple(
+            _steep(angle, topology, drawn, axes, told.get(angle.line, np.array(False)))
+            for angle in self.angles
+        )
+
+
+def _steep(
+    angle: Angle, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
+) -> Doubt:
+    start, end = angle.ends(topology)
+    limit = angle.steepest_by_default if _missing(topology, start) else angle.steepest
+    degrees = np.degrees(angle.value(drawn[start], drawn[end], axes))
+
+    def words(member: tuple[int, ...]) -> str:
+        steepness = float(degrees[member])
+        return (
+            f"the drawn {angle.words} is {steepness:.4g} deg, that of the line from {start} to {end}: "
+            f"{'are they swapped' if abs(steepness) > 90.0 else 'is one of them misdrawn'}?"
+        )
+
+    return Doubt(~told & (np.abs(degrees) > limit), words)
 
 
 def _missing(topology: Topology, point: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -37,6 +37,19 @@ class Quantity:
     words: str
     unit: str
     of: Literal["point", "body", "car"]
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Something that looks wrong with drawings although they can be solved.
+
+    Attributes:
+        where: the drawings that it looks wrong in, shape (...,).
+        words: what and why, of the drawing at an index of these.
+    """
+
+    where: NDArray[np.bool_]
+    words: Callable[[tuple[int, ...]], str]
 
 
 @dataclass(frozen=True)
@@ -127,12 +140,16 @@ class Effect(ABC):
         return ""
 
     def doubts(
-        self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: Container[str]
-    ) -> tuple[str, ...]:
-        """What it shows that looks wrong in a drawing, in words.
+        self,
+        topology: Topology,
+        drawn: Mapping[str, Array],
+        axes: CarAxes,
+        told: Mapping[str, NDArray[np.bool_]],
+    ) -> tuple[Doubt, ...]:
+        """What it shows that looks wrong in drawings; as many doubts whichever drawings these are.
 
         Args:
-            drawn: the points, each (3,), mm.
-            told: axes of the topology that were already found to be misdrawn.
+            drawn: the points, each (..., 3), mm.
+            told: by axis of the topology, the drawings in which it was already found to be misdrawn.
         """
         return ()

@@ -17,9 +17,11 @@ class Plan:
 
     Attributes:
         computed: what is always computed, then what the scene asks for, in the order of the registry.
+        unreported: points of the car whose states are not reported.
     """
 
     computed: tuple[Effect, ...]
+    unreported: tuple[str, ...] = ()
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -36,20 +38,30 @@ class Plan:
         """Highest time derivative that is solved for, of any point."""
         return max(effect.derivative for effect in self.computed)
 
+    def reported(self, topology: Topology) -> tuple[str, ...]:
+        """The points whose states are reported, in the topology's order."""
+        return tuple(name for name in topology.points if name not in self.unreported)
+
     def derivatives(self, topology: Topology) -> dict[str, int]:
-        """Highest time derivative that is evaluated of each point."""
-        highest = dict.fromkeys(topology.points, 0)
+        """Highest time derivative that is evaluated of each point that is reported or needed."""
+        found: dict[str, int] = {}
         for effect in self.computed:
-            for point in effect.needs(topology):
-                highest[point] = max(highest[point], effect.derivative)
-        return highest
+            points = self.reported(topology) if effect.reports_states else effect.needs(topology)
+            for point in points:
+                found[point] = max(found.get(point, 0), effect.derivative)
+        return {point: found[point] for point in topology.points if point in found}
 
 
-def plan_effects(effects: Iterable[str], instead: Mapping[str, Effect] | None = None) -> Plan:
+def plan_effects(
+    effects: Iterable[str],
+    instead: Mapping[str, Effect] | None = None,
+    unreported: Iterable[str] = (),
+) -> Plan:
     """The plan for a list of effects.
 
     Args:
         instead: by name, effects that are computed in another way than the registry's.
+        unreported: points of the car whose states are not reported.
     Raises:
         UnknownName: an effect that does not exist.
     """
@@ -58,4 +70,5 @@ def plan_effects(effects: Iterable[str], instead: Mapping[str, Effect] | None = 
         if name not in EFFECTS:
             raise UnknownName("effect", name, EFFECTS)
     known = {**EFFECTS, **(instead or {})}
-    return Plan((*ALWAYS, *(known[name] for name in EFFECTS if name in asked)))
+    computed = (*ALWAYS, *(known[name] for name in EFFECTS if name in asked))
+    return Plan(computed, tuple(unreported))

@@ -29,7 +29,7 @@ class PointStates(Effect):
         return True
 
     def needs(self, topology: Topology) -> Collection[str]:
-        """Every point."""
+        """Every point; a plan says which of them are reported."""
         return topology.points
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:

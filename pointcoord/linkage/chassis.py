@@ -48,23 +48,32 @@ class ChassisMotion:
             InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
         """
         sums: list[Array] = []
-        for name, function in self.functions.items():
-            with np.errstate(over="ignore", invalid="ignore"):
-                series = function.series(instants, derivatives) * FACTORIALS[: derivatives + 1]
-            if not (np.abs(series) < LARGEST).all():
-                place, order = np.argwhere(~(np.abs(series) < LARGEST))[0]
-                what = ("values", "rates", "accelerations")[order]
-                raise InputOutOfRange(
-                    name,
-                    float(series[place, order]),
-                    f"{what} below {LARGEST:g} mm{('', '/s', '/s^2')[order]} in size",
-                    float(instants[place]),
-                )
+        for name in self.functions:
             # The instants lie side by side in memory, as in a table of results.
             along = self.directions[name][..., None]
-            parts = [(along * series[..., None, :, d]).swapaxes(-1, -2) for d in range(derivatives + 1)]
+            rates = self.law(name, instants, derivatives)
+            parts = [(along * rate[..., None, :]).swapaxes(-1, -2) for rate in rates]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
         return sums
+
+    def law(self, name: str, instants: Array, derivatives: int) -> Array:
+        """The value of an input and its time derivatives, shape (derivatives + 1, N), mm.
+
+        Raises:
+            InputOutOfRange: as `states`.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            series = self.functions[name].series(instants, derivatives) * FACTORIALS[: derivatives + 1]
+        if not (np.abs(series) < LARGEST).all():
+            place, order = np.argwhere(~(np.abs(series) < LARGEST))[0]
+            what = ("values", "rates", "accelerations")[order]
+            raise InputOutOfRange(
+                name,
+                float(series[place, order]),
+                f"{what} below {LARGEST:g} mm{('', '/s', '/s^2')[order]} in size",
+                float(instants[place]),
+            )
+        return np.moveaxis(series, -1, 0)
 
     def enclosed(self, instants: Array, origin: Array) -> list[Enclosed]:
         """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s."""

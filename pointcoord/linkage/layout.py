@@ -84,6 +84,19 @@ class Layout:
             raise UnknownName("link", f"{start} - {end}", (f"{a} - {b}" for a, b in self.squared_lengths))
         return self.size - len(self.squared_lengths) + self.squared_lengths.index((start, end))
 
+    def places_in(self, whole: Layout) -> list[int]:
+        """Where the coordinates are in a layout that has them all, in this one's order."""
+        scalars = (*self.driven, *self.constants)
+        return [
+            *(i for name in (*self.moving, *self.vectors) for i in whole.vector(name)),
+            *(whole.scalar(name) for name in self.ratios),
+            whole.zero,
+            whole.one,
+            *(i for name in (*self.chassis, *self.directions) for i in whole.vector(name)),
+            *(whole.scalar(name) for name in scalars),
+            *(whole.squared_length(*ends) for ends in self.squared_lengths),
+        ]
+
     def describe(self, index: int) -> str:
         """An unknown coordinate in words, such as 'y of' a point."""
         vectors = (*self.moving, *self.vectors)

@@ -8,6 +8,7 @@ power of two changes no bit of a result.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,7 +20,9 @@ from pointcoord.linkage.carried_points import carried_gain, carried_series
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
@@ -57,11 +60,32 @@ class Mechanism:
         """The constraints."""
         return self.topology.map
 
+    def moving_part(self, functions: Mapping[str, TimeFunction]) -> PartialMap:
+        """What of the constraints moves under these laws of the inputs; all of them if nothing would."""
+        driven = (drive for drive in self.topology.drives if not functions[drive.input].still)
+        return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
+
     @cached_property
     def carried_gain(self) -> float:
         """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
         carried = self.topology.carried.items()
         return max((carried_gain(self.carrier_weights[n], self.drawing, c) for n, c in carried), default=1.0)
+
+    def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
+        """Some members of a batch of one dimension, by number, or one car of it."""
+        vectors = {
+            name: place[members] if place.ndim > 1 else place for name, place in self.drawing.vectors.items()
+        }
+        return replace(
+            self,
+            origin=self.origin[members],
+            unit=self.unit[members],
+            drawing=Drawing(vectors, self.unit[members]),
+            drawn=self.drawn[members],
+            drawn_lacks=self.drawn_lacks[members],
+            drawn_doubt=self.drawn_doubt[members],
+            carrier_weights={name: weights[members] for name, weights in self.carrier_weights.items()},
+        )
 
     def places(self, y: Array) -> dict[str, Array]:
         """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""

@@ -35,13 +35,15 @@ from pointcoord.errors import (
 )
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.evaluation import sum_series, sum_series_once
-from pointcoord.mapping.flood import flood
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.reported_points import moving_points
 from pointcoord.mapping.stored import Stored, read, write
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.evaluation import sum_series, sum_series_once
+from pointcoord.patches.flood import Limits, flood
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.lookup import Lookup, part_of
+from pointcoord.patches.reported_points import moving_points
+from pointcoord.patches.way_map import order_for
 from pointcoord.results.closing import closing
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
@@ -56,7 +58,6 @@ HALVINGS = 6
 MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
 # Patches of one map: a few hundred MB while it is made.
 MOST = 4096
-LEAST_ORDER, MOST_ORDER = 6, 16
 VARIABLES = 3
 
 
@@ -314,7 +315,7 @@ class KinematicMap:
         (values,), _, _ = self._split([inputs])
         low, high = self.domain.ends
         inside = np.asarray(((values >= low) & (values <= high)).all(axis=-1))
-        number = self._table[self._boxes_of(np.where(inside[..., None], values, low))]
+        number = self._lookup.at(np.where(inside[..., None], values, low))
         return np.asarray(inside & (number >= 0))
 
     def save(self, path: str | PathLike[str]) -> None:
@@ -347,38 +348,18 @@ class KinematicMap:
         return self.domain.middle_and_half(self.stored.low, self.stored.high)
 
     @cached_property
-    def _table(self) -> Whole:
+    def _lookup(self) -> Lookup:
         """The patch of each of the smallest boxes, or -1 - the place of the reason why there is none."""
-        table = np.full((self.domain.parts,) * len(self.inputs), -1, dtype=np.int64)
+        lookup = Lookup.of(self.domain, self.stored.low, self.stored.high)
         boxes = zip(self.stored.gap_low, self.stored.gap_high, self.stored.gap_reason, strict=True)
         for low, high, reason in boxes:
-            table[_inside(low, high)] = -1 - reason
-        for number, (low, high) in enumerate(zip(self.stored.low, self.stored.high, strict=True)):
-            table[_inside(low, high)] = number
-        return table
-
-    @cached_property
-    def _single(self) -> bool:
-        """Whether one patch is all."""
-        return bool((self._table == 0).all())
-
-    @cached_property
-    def _corner(self) -> tuple[list[float], list[float], list[float]]:
-        """The lower and upper ends of the inputs, and how many of the smallest boxes lie along a unit."""
-        low, high = self.domain.ends
-        return low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist()
+            lookup.table[part_of(low, high)] = -1 - reason
+        return lookup
 
     def _ranges_of(self, low: Whole, high: Whole) -> Ranges:
         """The ranges of a box."""
         first, last = self.domain.inputs_at(2 * low), self.domain.inputs_at(2 * high)
         return {name: (float(first[i]), float(last[i])) for i, name in enumerate(self.inputs)}
-
-    def _boxes_of(self, values: Array) -> tuple[Whole, ...]:
-        """The smallest box that holds each value, along each input."""
-        low, _, along = self._corner
-        last = self.domain.parts - 1
-        places = (((values[..., i] - low[i]) * along[i]).astype(np.int64) for i in range(len(self.inputs)))
-        return tuple(np.minimum(place, last) for place in places)
 
     def _patches_of(self, values: Array) -> Whole:
         """The patch of each pose, (N, p) to (N,)."""
@@ -389,9 +370,9 @@ class KinematicMap:
             if column.size and not (column.min() >= low[i] and column.max() <= high[i]):
                 worst = column[~((column >= low[i]) & (column <= high[i]))][0]
                 raise self._out_of_range(name, float(worst))
-        if self._single:
+        if self._lookup.single:
             return np.zeros(len(values), dtype=np.int64)
-        number = self._table[self._boxes_of(values)]
+        number = self._lookup.at(values)
         if (number < 0).any():
             gaps = np.flatnonzero(number < 0)
             raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
@@ -399,13 +380,13 @@ class KinematicMap:
 
     def _patch_of(self, value: Array) -> int:
         """The patch of one pose."""
-        low, high, along = self._corner
+        low, high, along = self._lookup.corner
         box = []
         for i, number in enumerate(value.tolist()):
             if not low[i] <= number <= high[i]:
                 raise self._out_of_range(self.inputs[i], number)
             box.append(min(int((number - low[i]) * along[i]), self.domain.parts - 1))
-        patch = int(self._table[tuple(box)])
+        patch = int(self._lookup.table[tuple(box)])
         if patch < 0:
             raise self._not_covered(value, patch, 1, 1)
         return patch
@@ -499,10 +480,6 @@ def _needs_rates() -> NotComputed:
     return NotComputed("an acceleration of a point", "", "give the rates of the inputs as well")
 
 
-def _inside(low: Whole, high: Whole) -> tuple[slice, ...]:
-    return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
-
-
 def kinematic_map(
     scene: Scene, ranges: Ranges, tolerance: float = 1e-9, halvings: int = HALVINGS
 ) -> KinematicMap:
@@ -547,22 +524,13 @@ def kinematic_map(
     values = domain.inputs_at(twice)
     held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
     start = assemble(mechanism, held | dict(zip(domain.free, values, strict=True)), None, closed)
-    order = order_for(tolerance, float(mechanism.unit))
-    cover = flood(domain, order, tolerance, (twice, start.y), MOST)
+    order = order_for(tolerance, float(mechanism.unit), 0, len(domain.free))
+    cover = flood(domain, order, Limits(tolerance), (twice, start.y), MOST)
     reasons = tuple(dict.fromkeys(reason for _, reason in cover.given_up))
     if cover.patches is None:
         inputs = {name: float(value) for name, value in zip(domain.free, values, strict=True)}
         raise NotCovered(inputs, reasons[0], 1, 1)
     return KinematicMap(scene, tolerance, Stored.of(domain, order, cover, reasons))
-
-
-def order_for(tolerance: float, size: float) -> int:
-    """Total degree of the series: one for each digit of a tolerance, relative to the mechanism's size, mm.
-
-    A pose costs in proportion to the number of powers, order^p, and the number of patches falls with the
-    order; between half and twice this order both together change little.
-    """
-    return int(np.clip(round(-np.log10(tolerance / size)), LEAST_ORDER, MOST_ORDER))
 
 
 def _checked_halvings(halvings: int) -> int:

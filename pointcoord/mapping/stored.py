@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MapError, PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.flood import Cover
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers
-from pointcoord.mapping.reported_points import moving_points
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.flood import Cover
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers
+from pointcoord.patches.reported_points import moving_points
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import scene_mechanism
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from operator import add, attrgetter
+
 from pointcoord.data_classes import dataclass
 
 
@@ -13,6 +16,7 @@ class Work:
         residuals: evaluations of the constraints.
         factorisations: Jacobians built and factorised.
         rate_solves: linear solves for rates (velocity, acceleration and higher orders).
+        unknowns_solved: unknowns of these, summed.
         segments: power series that the motion is made of.
         series_orders: orders of those series, summed.
         derivatives_evaluated: time derivatives evaluated at the instants (0 position, 1 velocity, ...).
@@ -22,18 +26,14 @@ class Work:
     residuals: int = 0
     factorisations: int = 0
     rate_solves: int = 0
+    unknowns_solved: int = 0
     segments: int = 0
     series_orders: int = 0
     derivatives_evaluated: int = 0
     coordinates_evaluated: int = 0
 
     def __add__(self, other: Work) -> Work:
-        return Work(
-            self.residuals + other.residuals,
-            self.factorisations + other.factorisations,
-            self.rate_solves + other.rate_solves,
-            self.segments + other.segments,
-            self.series_orders + other.series_orders,
-            self.derivatives_evaluated + other.derivatives_evaluated,
-            self.coordinates_evaluated + other.coordinates_evaluated,
-        )
+        return Work(*map(add, _counts(self), _counts(other)))
+
+
+_counts = attrgetter(*(each.name for each in fields(Work)))

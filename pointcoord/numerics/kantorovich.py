@@ -47,6 +47,46 @@ INFLATION = 1.0 + 1e-6
 
 
 @dataclass(frozen=True)
+class Ball:
+    """What eta, z and omega prove, each of their shape.
+
+    Attributes:
+        proven: whether exactly one assembly lies in the ball; radius: its own, where it is.
+        outer: no other assembly lies within this distance.
+        constant: h = 2 omega eta / (1 - z)^2, proven where it is below 1.
+        contraction: z + omega radius.
+        tail: z radius + omega radius^2 / 2.
+    """
+
+    proven: NDArray[np.bool_]
+    radius: Array
+    outer: Array
+    constant: Array
+    contraction: Array
+    tail: Array
+
+
+def ball(eta: Array, z: Array, omega: Array) -> Ball:
+    """The smallest ball about u that the test holds for; floating point warnings are the caller's."""
+    room = 1.0 - z
+    constant = 2.0 * omega * eta / room**2
+    root = np.sqrt(np.maximum(1.0 - constant, 0.0))
+    radius = INFLATION * 2.0 * eta / (room * (1.0 + root))
+    outer = room * (1.0 + root) / omega / INFLATION
+    contraction = INFLATION * (z + omega * radius)
+    tail = INFLATION * (z * radius + 0.5 * omega * radius**2)
+    proven = (room > 0.0) & (constant < 1.0) & np.isfinite(radius)
+    return Ball(
+        proven=proven,
+        radius=np.where(proven, radius, np.inf),
+        outer=np.where(proven, outer, 0.0),
+        constant=np.where(room > 0.0, constant, np.inf),
+        contraction=np.where(proven, contraction, np.inf),
+        tail=np.where(proven, tail, np.inf),
+    )
+
+
+@dataclass(frozen=True)
 class Certificate:
     """Error bound of each pose of a batch; lengths in the units of y.
 
@@ -57,6 +97,7 @@ class Certificate:
         contraction: z + omega radius >= |I - X C_u| everywhere within the radius, shape (...,); infinite
             where nothing could be proven.
         defect: |I - X C_u(y)| element by element, shape (..., unknowns, unknowns).
+        residual: C(y) about what the known coordinates mean, shape (..., rows).
         step: e, shape (..., unknowns).
         spread: uncertainty of each component of e, |X| d, shape (..., unknowns).
         tail: what is left, for every coordinate, shape (...,); infinite where nothing could be proven.
@@ -67,6 +108,7 @@ class Certificate:
     newton_constant: Array
     contraction: Array
     defect: Array
+    residual: Array
     step: Array
     spread: Array
     tail: Array
@@ -103,20 +145,15 @@ def certify(
         defect = np.abs(np.eye(n) - inverse @ matrix) + magnitude @ doubted
         z = defect.sum(axis=-1).max(axis=-1)
         omega = system.lipschitz(inverse, np.ones((*y.shape[:-1], n)))
-        room = 1.0 - z
-        constant = 2.0 * omega * eta / room**2
-        root = np.sqrt(np.maximum(1.0 - constant, 0.0))
-        radius = INFLATION * 2.0 * eta / (room * (1.0 + root))
-        outer = room * (1.0 + root) / omega / INFLATION
-        tail = INFLATION * (z * radius + 0.5 * omega * radius**2)
-        proven = (room > 0.0) & (constant < 1.0) & np.isfinite(radius)
+        found = ball(eta, z, omega)
     return Certificate(
-        radius=np.where(proven, radius, np.inf),
-        unique_within=np.where(proven, outer, 0.0),
-        newton_constant=np.where(room > 0.0, constant, np.inf),
-        contraction=np.where(proven, INFLATION * (z + omega * radius), np.inf),
+        radius=found.radius,
+        unique_within=found.outer,
+        newton_constant=found.constant,
+        contraction=found.contraction,
         defect=defect,
+        residual=residual,
         step=step,
         spread=spread,
-        tail=np.where(proven, tail, np.inf),
+        tail=found.tail,
     )

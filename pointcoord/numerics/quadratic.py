@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -41,11 +42,12 @@ Row = tuple[Product, ...]
 DENSE = 2**14
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class QuadraticMap:
     """A system of quadratic rows in `size` coordinates, of which the first `unknowns` are unknown.
 
-    Every array may have leading batch dimensions, and nothing loops over them.
+    Every array may have leading batch dimensions, and nothing loops over them. A map is equal to itself only,
+    so that what is made of it can be remembered by it.
     """
 
     rows: tuple[Row, ...]
@@ -85,7 +87,7 @@ class QuadraticMap:
         return factors, np.array([entry[2] for entry in entries]), first, flat[first]
 
     @cached_property
-    def _curvature(self) -> tuple[Array, Indices, Indices]:
+    def curvature(self) -> tuple[Array, Indices, Indices]:
         """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
         pairs: dict[tuple[int, int], int] = {}
         entries: list[tuple[int, int, float]] = []
@@ -102,6 +104,24 @@ class QuadraticMap:
             table[index, column] += value
         ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
         return table, ends[:, 0], ends[:, 1]
+
+    @cached_property
+    def reads(self) -> tuple[frozenset[int], ...]:
+        """The coordinates that each row reads; a product with no difference in it reads none."""
+        return tuple(
+            frozenset(
+                i
+                for p in row
+                if p.coefficient and p.left[0] != p.left[1] and p.right[0] != p.right[1]
+                for i in (*p.left, *p.right)
+            )
+            for row in self.rows
+        )
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Which rows determine which unknowns, block after block."""
+        return structure_of(self)
 
     @cached_property
     def dense(self) -> tuple[Array, Array] | None:
@@ -171,15 +191,19 @@ class QuadraticMap:
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
-        factors, coefficients, first, flat = self._jacobian_pattern
         _, a, b, c, d, _ = self._terms
-        both = np.concatenate(
-            [data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)], -1
+        return self.jacobian_change(
+            data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)
         )
+
+    def jacobian_change(self, left: Array, right: Array) -> Array:
+        """The same when the two differences of each term move by `left` and `right`, (..., terms)."""
+        factors, coefficients, first, flat = self._jacobian_pattern
+        both = np.concatenate([left, right], axis=-1)
         entries = np.add.reduceat(both.take(factors, axis=-1) * np.abs(coefficients), first, axis=-1)
-        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix = np.zeros((*left.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., flat] = entries
-        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
+        return matrix.reshape(*left.shape[:-1], len(self.rows), self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).
@@ -203,7 +227,7 @@ class QuadraticMap:
         preconditioner X of shape (..., unknowns, rows) and weights g of shape (..., unknowns). C_u is
         linear in y, so this one number holds everywhere.
         """
-        table, first, second = self._curvature
+        table, first, second = self.curvature
         if weights is None:
             return np.asarray(np.add.reduce(np.abs(preconditioner @ table), axis=-1).max(axis=-1))
         products = weights.take(first, axis=-1) * weights.take(second, axis=-1)

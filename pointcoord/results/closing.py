@@ -87,13 +87,7 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
     Args:
         closed: coordinates of the closed drawing, shape (size,).
     """
-    topology, drawn, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
-    places = mechanism.places(closed)
-    movements = {
-        name: unit * float(np.linalg.norm(places[name] - drawn[name]))
-        for name in (*topology.moving, *topology.carried)
-    }
-    stack = np.array([drawn[name] for name in topology.points])
+    topology, unit = mechanism.topology, float(mechanism.unit)
     residual = np.abs(mechanism.map.residual(mechanism.drawn))
     misses, first = {}, 0
     for constraint in topology.constraints:
@@ -103,5 +97,25 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
         if constraint.is_length and miss > 64 * EPS:
             misses[constraint.name] = unit * miss
         first = last
-    size = unit * float(np.max(np.ptp(stack, axis=0)))
-    return Closing(movements, misses, size)
+    moved = {name: float(far) for name, far in movements(mechanism, closed).items()}
+    return Closing(moved, misses, float(car_size(mechanism)))
+
+
+def movements(mechanism: Mechanism, closed: Array) -> dict[str, Array]:
+    """How far each point of one car or of many moves that is solved for or rides on a body, (...,), mm.
+
+    Args:
+        closed: coordinates of the closed drawings, shape (..., size).
+    """
+    topology, drawn = mechanism.topology, mechanism.drawing.vectors
+    places = mechanism.places(closed)
+    return {
+        name: np.asarray(mechanism.unit * np.linalg.norm(places[name] - drawn[name], axis=-1))
+        for name in (*topology.moving, *topology.carried)
+    }
+
+
+def car_size(mechanism: Mechanism) -> Array:
+    """Longest side of the box around the points as they are drawn, (...,), mm."""
+    stack = np.stack([mechanism.drawing.vectors[name] for name in mechanism.topology.points], axis=-2)
+    return np.asarray(mechanism.unit * np.ptp(stack, axis=-2).max(axis=-1))

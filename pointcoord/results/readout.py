@@ -44,13 +44,13 @@ class Readout:
 
     @property
     def derivatives(self) -> dict[str, int]:
-        """Highest time derivative that is evaluated of each point."""
+        """Highest time derivative that is evaluated of each point that is reported or needed."""
         return self.plan.derivatives(self.mechanism.topology)
 
     @property
-    def derivative_of_every_point(self) -> int:
-        """Highest time derivative that is evaluated of every point."""
-        return min(self.derivatives.values())
+    def reported_derivative(self) -> int:
+        """Highest time derivative that is reported of points."""
+        return max(self.table.reported)
 
     @cached_property
     def table(self) -> Table:
@@ -64,8 +64,8 @@ class Readout:
         for low in range(0, len(times), BLOCK):
             block = rows[..., low : low + BLOCK]
             here = [{name: each[..., low : low + BLOCK, :] for name, each in s.items()} for s in states]
-            for i, (derivative, point) in enumerate((*self.table.moving, *self.table.still)):
-                vectors(block, 3 * i)[...] = here[derivative][point]
+            for first, (derivative, point) in self.table.states:
+                vectors(block, first)[...] = here[derivative][point]
             self.complete(times[low : low + BLOCK], here, block)
         return self.named(times, rows)
 
@@ -73,7 +73,7 @@ class Readout:
         """The numbers of a whole table, by name."""
         found = self.table.numbers(rows)
         numbers = {
-            name: Channel(quantity, found.get(name, {}), self._left_out(name))
+            name: Channel(quantity, found.get(name, {}), self._left_out(name), self._unreported(name))
             for name, quantity in QUANTITIES.items()
         }
         return Samples(times.copy(), numbers)
@@ -84,22 +84,41 @@ class Readout:
         Args:
             rows: a table or some columns of one, shape (..., height, N), with the states in their places.
         """
-        table = self.table
-        shifts = self.chassis.states(times, self.derivative_of_every_point)
-        rest = [None] * (len(states) - 1)
-        added = (self._offset(shifts), *(shifts[1:] or rest))
-        if table.computed:
-            poses = Poses(self.mechanism, self.axes, states, added)
-            for effect in table.computed:
-                for quantity, arrays in effect.evaluate(poses).items():
-                    for name, array in arrays.items():
-                        table.put(rows, quantity, name, array)
-        for derivative in table.reported:
+        added = self.added(times)
+        self.compute(states, added, rows)
+        for derivative in self.table.reported:
             more = added[derivative]
             if more is not None:
-                for part in table.states_of(derivative):
+                for part in self.table.states_of(derivative):
                     places = triples(rows, part)
                     places += more.swapaxes(-1, -2)[..., None, :, :]
+
+    def _unreported(self, quantity: str) -> tuple[str, ...]:
+        """The points whose states of a quantity the scene leaves out."""
+        computed = any(
+            q.name == quantity for e in self.plan.computed if e.reports_states for q in e.quantities
+        )
+        return self.plan.unreported if computed else ()
+
+    def compute(self, states: States, added: Sequence[Array | None], rows: Array) -> None:
+        """Compute the numbers that are made of states.
+
+        Args:
+            added: what reporting adds to these.
+            rows: as of `complete`.
+        """
+        if self.table.computed:
+            poses = Poses(self.mechanism, self.axes, states, added)
+            for effect in self.table.computed:
+                for quantity, arrays in effect.evaluate(poses).items():
+                    for name, array in arrays.items():
+                        self.table.put(rows, quantity, name, array)
+
+    def added(self, times: Array) -> tuple[Array | None, ...]:
+        """By time derivative, what reporting adds to every point; None where that is zero."""
+        shifts = self.chassis.states(times, self.reported_derivative)
+        rest: list[Array | None] = [*shifts[1:]] or [None] * self.plan.derivative
+        return self._offset(shifts), *rest
 
     def _left_out(self, quantity: str) -> dict[str, tuple[str, ...] | None]:
         """The effects that would give more of a quantity, and what each gives of it."""
@@ -107,10 +126,6 @@ class Readout:
         return {
             other.name: other.gives_numbers[quantity] for other in others if quantity in other.gives_numbers
         }
-
-    def offset(self, times: Array) -> Array | None:
-        """What is added to every position, the origin and the chassis' displacement; None if it is zero."""
-        return self._offset(self.chassis.states(times, 0))
 
     def _offset(self, shifts: Sequence[Array]) -> Array | None:
         origin = self.mechanism.origin[..., None, :]

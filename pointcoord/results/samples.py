@@ -26,15 +26,18 @@ class Channel(Mapping[str, Array]):
         quantity: Quantity,
         arrays: Mapping[str, Array],
         left_out: Mapping[str, tuple[str, ...] | None],
+        unreported: tuple[str, ...] = (),
     ) -> None:
         """The numbers that were computed.
 
         Args:
             left_out: by name, the effects that were not computed and what of this quantity each would give;
                 None for every point or body.
+            unreported: names of which the scene asks for nothing of this quantity.
         """
         self.quantity = quantity
         self.left_out = dict(left_out)
+        self.unreported = unreported
         self._arrays = dict(arrays)
         for array in self._arrays.values():
             array.setflags(write=False)
@@ -46,11 +49,13 @@ class Channel(Mapping[str, Array]):
 
     def with_arrays(self, arrays: Mapping[str, Array]) -> Channel:
         """The same quantity with other numbers."""
-        return Channel(self.quantity, arrays, self.left_out)
+        return Channel(self.quantity, arrays, self.left_out, self.unreported)
 
     def __getitem__(self, name: str) -> Array:
         if name in self._arrays:
             return self._arrays[name]
+        if name in self.unreported:
+            raise NotComputed(f"{self.quantity.words} of {name}", "", f"add {name!r} to the scene's points")
         for effect, names in self.left_out.items():
             if names is None or name in names:
                 raise NotComputed(f"{self.quantity.words} of {name}", effect)
@@ -71,7 +76,7 @@ class Channel(Mapping[str, Array]):
 
     def __reduce__(self) -> tuple[type[Channel], tuple[object, ...]]:
         # Arrays come back from a pickle as arrays that can be written.
-        return type(self), (self.quantity, self._arrays, self.left_out)
+        return type(self), (self.quantity, self._arrays, self.left_out, self.unreported)
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.results.cells import CloseInstants
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
-from pointcoord.results.states import SolvedStates
+from pointcoord.results.states import SolvedStates, StatesOfChain
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ Array = NDArray[np.float64]
 
 # Instants in any order are sorted this many at a time, which takes 24 MB.
 SORTED = 2**20
+# Of those, how many are computed before they are put where they belong: 13 MB of them.
+ORDERED = 2**14
 
 
 @dataclass(frozen=True)
@@ -56,15 +60,30 @@ class SolvedScene:
         return readout.named(times, rows)
 
     def _fill(self, times: Array, rows: Array) -> None:
-        order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
-        for low in range(0, len(times), BLOCK):
-            high = min(low + BLOCK, len(times))
-            if order is None:
-                self._fill_block(times[low:high], rows[..., low:high])
-            else:
-                block = np.empty((*rows.shape[:-1], high - low))
-                self._fill_block(times[order[low:high]], block)
-                rows[..., order[low:high]] = block
+        if (times[1:] >= times[:-1]).all():
+            self._fill_ordered(times, rows)
+            return
+        order = np.argsort(times, kind="stable")
+        room = np.empty((*rows.shape[:-1], min(ORDERED, len(times))))
+        for low in range(0, len(times), ORDERED):
+            places = order[low : low + ORDERED]
+            block = room[..., : len(places)]
+            self._fill_ordered(times[places], block)
+            rows[..., places] = block
+
+    def _fill_ordered(self, times: Array, rows: Array) -> None:
+        stretches = [(0, len(times))] if self._close is None else self._close.fill(times, rows)
+        for first, last in stretches:
+            for low in range(first, last, BLOCK):
+                here = slice(low, min(low + BLOCK, last))
+                self._fill_block(times[here], rows[..., here])
+
+    @cached_property
+    def _close(self) -> CloseInstants | None:
+        """What fills a table where instants lie close together; none of a batch, or of single poses."""
+        if isinstance(self.states, StatesOfChain) and self.readout.mechanism.drawn.ndim == 1:
+            return CloseInstants(self.readout, self.states)
+        return None
 
     def _fill_block(self, times: Array, rows: Array) -> None:
         self.readout.complete(times, self.states.states(times, rows), rows)
@@ -73,30 +92,18 @@ class SolvedScene:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
         return {name: function.rounding(times) for name, function in self.functions.items()}
 
-    def proof(
-        self, samples: Samples, *, rates: bool = False, doubts: Mapping[str, Array] | None = None
-    ) -> Proof:
+    def proof(self, samples: Samples, *, rates: bool = False, certain: bool = False) -> Proof:
         """What is proven at each of the samples' times.
 
         Args:
             rates: every number by itself.
-            doubts: how far the laws' values may be off, where another answer than that of `doubts` is wanted.
+            certain: as if the laws' values were exact as they are computed.
         """
         # What proves is imported where it is asked for, as most motions are read only.
         from pointcoord.bounds.proof import prove
 
-        mechanism, chassis, times = self.readout.mechanism, self.readout.chassis, samples.times
-        added = self.readout.offset(times)
-        return prove(
-            mechanism,
-            times,
-            self.states,
-            samples.position,
-            np.broadcast_to(0.0 if added is None else added, (len(times), 3)),
-            chassis.rounding(times, mechanism.origin),
-            self.doubts(times) if doubts is None else doubts,
-            self._reported(samples) if rates else None,
-        )
+        reported = self._reported(samples)
+        return prove(self.readout.mechanism, samples.times, reported, rates=rates, certain=certain)
 
     def _reported(self, samples: Samples) -> Reported:
         """All numbers of samples, and what went into them beside the coordinates."""

@@ -5,7 +5,7 @@ Only what the plan of a scene asks for is evaluated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
@@ -18,7 +18,7 @@ from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
-from pointcoord.results.table import triples, vectors
+from pointcoord.results.table import State, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
@@ -93,7 +93,7 @@ class StatesAtInstants:
         """States at some of the instants."""
         mechanism, derivatives = self.readout.mechanism, self.readout.derivatives
         layout, topology = mechanism.layout, mechanism.topology
-        coordinates = self.coordinates(instants)
+        coordinates = self.coordinates(instants, self.readout.plan.derivative)
         taylor = np.stack([state / max(order, 1) for order, state in enumerate(coordinates)], axis=-2)
         places = {name: list(layout.vector(name)) for name in (*topology.chassis, *topology.moving)}
         series = {name: taylor[..., place] for name, place in places.items()}
@@ -103,19 +103,18 @@ class StatesAtInstants:
             {
                 name: series[name][..., order, :] * (max(order, 1) * mechanism.unit)
                 for name in topology.points
-                if derivatives[name] >= order
+                if derivatives.get(name, -1) >= order
             }
             for order in range(len(coordinates))
         ]
         if rows is not None:
-            table = self.readout.table
-            for i, (order, name) in enumerate((*table.moving, *table.still)):
-                vectors(rows, 3 * i)[...] = states[order][name]
+            for first, (order, name) in self.readout.table.states:
+                vectors(rows, first)[...] = states[order][name]
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that were solved for, at some of the instants, each (N, size)."""
-        return self.solved.coordinates(instants)
+        return self.solved.coordinates(instants)[: derivatives + 1]
 
     def summed(self, instants: Array) -> tuple[Summed, ...]:
         """Nothing: they were solved for."""
@@ -170,33 +169,54 @@ class StatesOfChain:
         outside = ~((instants >= self.start) & (instants <= self.chain.stop))
         if outside.any():
             raise OutsideMotion(float(instants[outside][0]), self.start, self.chain.stop)
-        table, (reported, needed) = self.readout.table, self._series
+        table, (reported, needed) = self.readout.table, self.series
         batch, count = reported.shape[:-1], len(instants)
         if rows is None:
-            rows = np.empty((*batch, 3 * (len(table.moving) + len(table.still)), count))
-        moving, still = 3 * len(table.moving), 3 * len(table.still)
-        reported.sum(instants, rows[..., :moving, :])
-        triples(rows, slice(moving, moving + still))[...] = self._still
+            rows = np.empty((*batch, table.height, count))
+        reported.sum(instants, rows[..., : 3 * len(table.moving), :])
+        rows[..., table.first_still :, :] = self.still
         spare = np.empty((*batch, 3 * len(table.spare), count))
         if table.spare:
             needed.sum(instants, spare)
         states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
-        for i, (order, name) in enumerate((*table.moving, *table.still)):
-            states[order][name] = vectors(rows, 3 * i)
+        for first, (order, name) in table.states:
+            states[order][name] = vectors(rows, first)
         for i, (order, name) in enumerate(table.spare):
             states[order][name] = vectors(spare, 3 * i)
+        for i, (order, name) in enumerate(table.spare_still):
+            states[order][name] = np.broadcast_to(self._spare_still[..., i, None, :], (*batch, count, 3))
         return states
 
-    def coordinates(self, instants: Array) -> list[Array]:
-        """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
-        mechanism, derivative = self.readout.mechanism, self.readout.plan.derivative
-        pieces = [segment.coefficients for segment in self.chain.segments]
-        y, *rates = (
-            np.ascontiguousarray(state) for state in evaluate(self.chain, pieces, instants, derivative)
-        )
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and the derivatives that the plan solves for, at instants that do not decrease, each (N, size).
+
+        The instants lie side by side in memory.
+        """
+        mechanism = self.readout.mechanism
+        count, unknowns = len(instants), mechanism.map.unknowns
         known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
-        y[..., mechanism.map.unknowns :] = known[..., 0, :]
-        return [y, *rates]
+        if derivatives == 0:
+            y = np.empty((mechanism.map.size, count))
+            self._unknowns.sum(instants, y[:unknowns])
+            states = y[None]
+        else:
+            states = np.empty((self.readout.plan.derivative + 1, mechanism.map.size, count))
+            self._coordinates.sum(instants, states.reshape(-1, count))
+        states[0, unknowns:] = known[..., 0, :].T
+        return list(states[: derivatives + 1].swapaxes(-1, -2))
+
+    @cached_property
+    def _unknowns(self) -> SeriesRows:
+        """The series of the unknown coordinates."""
+        pieces = [segment.coefficients for segment in self.chain.segments]
+        return SeriesRows.of(self.chain, pieces, [range(self.readout.mechanism.map.unknowns)])
+
+    @cached_property
+    def _coordinates(self) -> SeriesRows:
+        """The series of all coordinates and of the derivatives that the plan solves for."""
+        pieces = [segment.coefficients for segment in self.chain.segments]
+        size = range(self.readout.mechanism.map.size)
+        return SeriesRows.of(self.chain, pieces, [size] * (self.readout.plan.derivative + 1))
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
@@ -231,7 +251,7 @@ class StatesOfChain:
         )
 
     @cached_property
-    def _series(self) -> tuple[SeriesRows, SeriesRows]:
+    def series(self) -> tuple[SeriesRows, SeriesRows]:
         """The series of solved points that are reported, and those that are only needed, mm."""
         mechanism, table = self.readout.mechanism, self.readout.table
         layout, topology = mechanism.layout, mechanism.topology
@@ -254,13 +274,23 @@ class StatesOfChain:
         return reported, needed
 
     @cached_property
-    def _still(self) -> Array:
-        """States of the chassis points in the chassis' frame, where they stand, (..., states, 3, 1), mm."""
+    def still(self) -> Array:
+        """Rows of the chassis points that are reported, (..., rows, 1), mm (see `_standing`)."""
+        places = self._standing(self.readout.table.still)
+        return places.reshape(*places.shape[:-3], -1, 1)
+
+    @cached_property
+    def _spare_still(self) -> Array:
+        """Those of the chassis points that are only needed, (..., states, 3)."""
+        return self._standing(self.readout.table.spare_still)
+
+    def _standing(self, states: Sequence[State]) -> Array:
+        """States of points of the chassis in its frame, where they stand, (..., states, 3), mm."""
         mechanism = self.readout.mechanism
         unit = np.asarray(mechanism.unit)[..., None]
         batch = self.chain.segments[0].coefficients.shape[:-2]
-        places = np.zeros((*batch, len(self.readout.table.still), 3, 1))
-        for i, (order, name) in enumerate(self.readout.table.still):
+        places = np.zeros((*batch, len(states), 3))
+        for i, (order, name) in enumerate(states):
             if order == 0:
-                places[..., i, :, 0] = mechanism.drawing.vectors[name] * unit
+                places[..., i, :] = mechanism.drawing.vectors[name] * unit
         return places

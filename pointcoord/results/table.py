@@ -26,18 +26,20 @@ class Table:
     """The rows of a table.
 
     Attributes:
-        moving, still: states that are reported, of points that are solved for and of the chassis: three rows
-            each, in this order from row 0.
+        moving: states that are reported of points that are solved for: three rows each from row 0.
+        still: the same of the chassis' points, in the last rows.
         spare: states of solved points that are only needed; they are in no table.
+        spare_still: likewise of points of the chassis.
         places: by quantity and name the rows of every number, in the order of results.
         computed: the effects that compute their numbers from states.
         height: how many rows there are.
-        reported: the derivatives of all points that are reported.
+        reported: the derivatives of points that are reported.
     """
 
     moving: tuple[State, ...]
     still: tuple[State, ...]
     spare: tuple[State, ...]
+    spare_still: tuple[State, ...]
     places: Mapping[str, Mapping[str, slice]]
     computed: tuple[Effect, ...]
     height: int
@@ -50,38 +52,55 @@ class Table:
         Args:
             highest: time derivative of each point that is needed.
         """
-        solved = (*topology.moving, *topology.carried)
+        solved, points = (*topology.moving, *topology.carried), plan.reported(topology)
         reported = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
-        moving = tuple((d, point) for d in sorted(reported) for point in solved)
-        still = tuple((d, point) for d in sorted(reported) for point in topology.chassis)
-        spare = tuple(
-            (d, point)
-            for d in range(plan.derivative + 1)
-            for point in solved
-            if d not in reported and highest[point] >= d
+        moving, still = (
+            tuple((d, point) for d in sorted(reported) for point in kind if point in points)
+            for kind in (solved, topology.chassis)
         )
-        first = {state: 3 * i for i, state in enumerate((*moving, *still))}
-        height = 3 * len(first)
+        spare, spare_still = (
+            tuple(
+                (d, point)
+                for d in range(plan.derivative + 1)
+                for point in kind
+                if highest.get(point, -1) >= d and not (d in reported and point in points)
+            )
+            for kind in (solved, topology.chassis)
+        )
+        height = 3 * len(moving)
         places: dict[str, dict[str, slice]] = {q.name: {} for e in plan.computed for q in e.quantities}
-        for d, named in reported.items():
-            places[named] = {p: slice(first[d, p], first[d, p] + 3) for p in topology.points}
         computed = tuple(effect for effect in plan.computed if not effect.reports_states)
         for effect in computed:
             for quantity in effect.quantities:
-                every = topology.points if quantity.of == "point" else tuple(topology.bodies)
+                every = points if quantity.of == "point" else tuple(topology.bodies)
                 rows = 1 if quantity.of == "car" else 3
                 for name in every if effect.names is None else effect.names:
                     places[quantity.name][name] = slice(height, height + rows)
                     height += rows
-        return cls(moving, still, spare, places, computed, height, tuple(sorted(reported)))
+        first = {state: 3 * i for i, state in enumerate(moving)}
+        first |= {state: height + 3 * i for i, state in enumerate(still)}
+        for d, named in reported.items():
+            places[named] = {p: slice(first[d, p], first[d, p] + 3) for p in points}
+        height += 3 * len(still)
+        return cls(moving, still, spare, spare_still, places, computed, height, tuple(sorted(reported)))
+
+    @property
+    def first_still(self) -> int:
+        """The row from which on the chassis' points are."""
+        return self.height - 3 * len(self.still)
+
+    @property
+    def states(self) -> list[tuple[int, State]]:
+        """The first row of every reported state, and which it is."""
+        moving = [(3 * i, state) for i, state in enumerate(self.moving)]
+        return moving + [(self.first_still + 3 * i, state) for i, state in enumerate(self.still)]
 
     def states_of(self, derivative: int) -> tuple[slice, slice]:
         """The rows of a reported derivative of all points: of those that are solved for, of the chassis."""
-        found, before = [], 0
-        for states in (self.moving, self.still):
+        found = []
+        for states, before in ((self.moving, 0), (self.still, self.first_still)):
             own = [i for i, (d, _) in enumerate(states) if d == derivative]
             found.append(slice(before + 3 * own[0], before + 3 * own[-1] + 3) if own else slice(0, 0))
-            before += 3 * len(states)
         return found[0], found[1]
 
     def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:

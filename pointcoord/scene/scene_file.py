@@ -87,6 +87,25 @@ def _known_points(points: dict[str, Vector], others: Others) -> dict[str, Vector
     return topology.with_defaults(points)
 
 
+def _points_of_the_car(points: tuple[str, ...] | None, others: Others) -> tuple[str, ...] | None:
+    if points is None or "mechanism" not in others:
+        return points
+    there = others["mechanism"].topology.points
+    if not points:
+        raise ValueError(
+            f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
+        )
+    for place, name in enumerate(points):
+        if name not in there:
+            raise ValueError(
+                f"no point of this car is called {shown(name)}{meant(name, there)}; "
+                f"allowed: {', '.join(there)}"
+            )
+        if name in points[:place]:
+            raise ValueError(f"{name!r} is named twice; allowed: each point once")
+    return points
+
+
 def _known_effects(effects: tuple[str, ...], others: Others) -> tuple[str, ...]:
     for name in effects:
         if name not in EFFECTS:
@@ -262,7 +281,11 @@ class TimePart(Part):
 
 
 class Scene(Part):
-    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`."""
+    """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`.
+
+    `points` names the points that are reported, all of them if it is not given; what neither they nor the
+    effects hang on is not solved for.
+    """
 
     title: str = key(text, default="")
     effects: tuple[str, ...] = key(list_of(text), default=(), agrees=_known_effects)
@@ -270,6 +293,7 @@ class Scene(Part):
     mechanism: MechanismPart = key(part(MechanismPart))
     inputs: dict[str, InputPart] = key(table_of(part(InputPart)))
     time: TimePart = key(part(TimePart))
+    points: tuple[str, ...] | None = key(optional(list_of(text)), default=None, agrees=_points_of_the_car)
 
     def agree(self) -> None:
         """Its effects and its inputs belong to its mechanism."""
@@ -303,6 +327,17 @@ class Scene(Part):
                     f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
                     f"allowed: all of time, {self.time.start} to {self.time.stop} s"
                 )
+
+    @property
+    def reported_points(self) -> tuple[str, ...]:
+        """The points that are reported, in the order of the mechanism's."""
+        every = self.mechanism.topology.points
+        return tuple(name for name in every if self.points is None or name in self.points)
+
+    @property
+    def unreported_points(self) -> tuple[str, ...]:
+        """The others."""
+        return tuple(name for name in self.mechanism.topology.points if name not in self.reported_points)
 
     @property
     def instants(self) -> NDArray[np.float64]:

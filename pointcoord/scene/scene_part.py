@@ -147,6 +147,11 @@ class Part:
             ValueError: what is wrong.
         """
 
+    @property
+    def model_fields_set(self) -> frozenset[str]:
+        """The keys that were given."""
+        return self._given
+
     def _as_given(self) -> dict[str, Any]:
         return {name: self.__dict__[name] for name in self._keys if name in self._given}
 

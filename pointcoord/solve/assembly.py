@@ -161,6 +161,7 @@ def follow(
     target: Array,
     factors: Factors | None = None,
     tolerance: float = 0.0,
+    steps: int = STEPS,
 ) -> Path:
     """Carry poses along straight paths to other known coordinates.
 
@@ -169,6 +170,7 @@ def follow(
         target: known coordinates at the end, shape (..., size - unknowns).
         factors: factorisation of C_u at y, if it is at hand.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
+        steps: at most so many.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
@@ -187,7 +189,7 @@ def follow(
     factors = factors.reshaped((len(y),))
     side = orientation(factors)
     active = np.flatnonzero(~factors.singular)
-    for _ in range(STEPS):
+    for _ in range(steps):
         if not active.size:
             break
         left, local = remaining[active], factors.taken(active)
@@ -321,6 +323,15 @@ def assemble(
     path = led(mechanism.map, drawing.y, target, drawing.factors, tolerance)
     _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
     return Pose(mechanism, path.y, path.factors, path.iterations, path.left, drawing.work + path.work)
+
+
+def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
+    """Poses of a mechanism as poses of a part of it (see `needed_part`)."""
+    if part is whole:
+        return path
+    y = path.y[..., part.layout.places_in(whole.layout)]
+    work = path.work + Work(factorisations=int(np.prod(y.shape[:-1])))
+    return Path(y, factorise(part.map.jacobian(y)), path.iterations, path.left, path.done, work)
 
 
 def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:

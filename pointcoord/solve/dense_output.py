@@ -54,12 +54,16 @@ class SeriesRows:
         """Leading dimensions and rows of the sums."""
         return self.tables[0].shape[:-1]
 
+    def edges(self, instants: Array) -> list[int]:
+        """Where the instants of each segment begin among instants that do not decrease, and their end."""
+        return [0, *np.searchsorted(instants, self.starts[1:], side="left").tolist(), len(instants)]
+
     def sum(self, instants: Array, out: Array) -> None:
         """Sum the rows at instants that do not decrease, shape (N,), into an array of shape (..., rows, N).
 
         With s = (t - start) / scale of the segment that t is in, each is sum_k table_k s^k.
         """
-        edges = [0, *np.searchsorted(instants, self.starts[1:], side="left").tolist(), len(instants)]
+        edges = self.edges(instants)
         powers = np.empty((max(table.shape[-1] for table in self.tables), min(BLOCK, len(instants))))
         for i, table in enumerate(self.tables):
             for low in range(edges[i], edges[i + 1], BLOCK):

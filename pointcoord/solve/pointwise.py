@@ -2,8 +2,27 @@ r"""The paper's own algorithm: Newton at every instant, then two linear solves.
 
     C(u, w) = 0,    C_u u' = -C_w w',    C_u u'' = -C_w w'' - 2 B(y', y')      (eqs. 1, 19, 22)
 
-Each instant starts from the one before it, so time is a loop; or from the drawing, and then all are solved at
-once. The rates are solved for many instants at once either way. This is what the series are measured against.
+Each instant is reached from the one before it, by proof. That is no loop over time: from a pose y0 with
+X = C_u(y0)^-1 the poses of many instants ahead are guessed by three terms of the straight way to their
+inputs,
+
+    u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
+
+and corrected by Newton's method, all at once; then each is proven to continue the one before it. With T the
+tangent that X gives from one instant's pose y to the known coordinates of the next, C is quadratic, so
+
+    C(y + s T) = C(y) + s 2 B(y, T) + s^2 B(T, T)      exactly,
+
+and with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every s
+from 0 to 1 if it does with
+
+    eta = |X C(y)| + |X 2 B(y, T)| + |X B(T, T)|,    z = |I - X C_u(y)| + |X C_u(T)|,
+    2 omega eta < (1 - z)^2.
+
+Then one branch leads from y to the next instant, and no other assembly lies within (1 - z) / omega of y + T:
+a pose that does is the next one. Where that is not so the path is followed in proven steps (see `assembly`).
+Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved for many instants at
+once either way. This is what the series are measured against.
 """
 
 from __future__ import annotations
@@ -19,8 +38,11 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked, close_drawing, follow
+from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -29,6 +51,12 @@ SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 
 # Instants that are solved at once: their matrices, some six of them, stay below 100 MB.
 BLOCK = 4096
+# Instants ahead that are tried first; twice as many after all of them were proven.
+FIRST_AHEAD = 8
+# What |I - X C_u| may be: C_u then has an inverse on all of the way, far beyond any rounding of that bound.
+FARTHEST = 0.9
+# Where n eps cond(C_u) is larger, rounding may be more than that.
+ROUNDED = 1e-2
 
 
 @dataclass(frozen=True)
@@ -95,27 +123,105 @@ def solve_instants(
         derivative: highest time derivative to solve for, 0 to 2.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
     Returns:
-        The states, up to the first instant that cannot be reached.
+        The states, up to the first instant that cannot be reached. What stands still is solved once.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
-    here, factors, rest, work = pose.y, pose.factors, pose.left, Work()
+    y[:1], left[:1] = pose.y, pose.left
+    part = mechanism.moving_part(functions)
+    begun = starting_place(part, pose)
+    here, factors, work, done, ahead = begun.y, begun.factors, begun.work, 1, FIRST_AHEAD
+    goals = part.known(here, known[:, :1])[:, 0]
     status: Status = COMPLETE
-    for i in range(len(times)):
-        if i > 0:
-            path = follow(system, here, known[i, 0], factors, tolerance)
-            work += path.work
-            if path.done < 1.0:
-                problem = "the mechanism cannot be assembled"
-                status = blocked(mechanism, problem, path, known[i, 0], path.done < 1.0, float(times[i]))
-                y, left, known, times = y[:i], left[:i], known[:i], times[:i]
-                break
-            here, factors, rest = path.y, path.factors, path.left
-        y[i], left[i] = here, rest
+    while done < len(times):
+        targets = goals[done : done + ahead]
+        found = _proven_ahead(part.system, here, factors, targets, tolerance)
+        work += found.work
+        count = len(found.left)
+        y[done : done + count], left[done : done + count] = part.back(found.y), found.left
+        done += count
+        ahead = min(2 * ahead, BLOCK) if count == len(targets) else max(count, FIRST_AHEAD)
+        if count:
+            here = found.y[-1]
+            factors = factorise(part.system.jacobian(here))
+            work += Work(factorisations=1)
+            continue
+        path = follow(part.system, here, goals[done], factors, tolerance)
+        work += path.work
+        if path.done < 1.0:
+            problem = "the mechanism cannot be assembled"
+            place = whole_place(part, path.y, path.factors)
+            status = blocked(mechanism, problem, place, known[done, 0], path.done < 1.0, float(times[done]))
+            y, left, known, times = y[:done], left[:done], known[:done], times[:done]
+            break
+        here, factors = path.y, path.factors
+        y[done], left[done] = part.back(here), path.left
+        done += 1
     y[:, n:] = known[:, 0]
     solved = with_rates(system, y, known, times, derivative, square_term, work, left)
     return replace(solved, status=status)
+
+
+@dataclass(frozen=True)
+class _Ahead:
+    """Poses that are proven to continue each other, as of `Solved`, and what all that were tried took."""
+
+    y: Array
+    left: Array
+    work: Work
+
+
+def _proven_ahead(
+    system: QuadraticMap, start: Array, factors: Factors, targets: Array, tolerance: float
+) -> _Ahead:
+    """Poses with known coordinates one after the other, as many as are proven to continue a pose.
+
+    Args:
+        start: the pose, (size,). factors: of C_u there. targets: (N, known coordinates).
+    """
+    n, none = system.unknowns, _Ahead(np.empty((0, len(start))), np.empty(0), Work())
+    if not n * EPS * factors.condition <= ROUNDED:
+        return none
+    inverse = factors.preconditioner
+    with np.errstate(all="ignore"):
+        guess = _guessed(system, inverse, start, targets)
+    # A guess that is not finite ends what is tried.
+    finite = np.asarray(np.isfinite(guess).all(axis=-1))
+    reached = newton_refine(system, guess[: _first_false(finite)], tolerance=tolerance)
+    poses = np.concatenate([start[None], reached.y])
+    here, following = poses[:-1], poses[1:]
+    with np.errstate(all="ignore"):
+        tangent = np.zeros_like(here)
+        tangent[:, n:] = following[:, n:] - here[:, n:]
+        tangent[:, :n] = -2.0 * system.polar(here, tangent) @ inverse.T
+        parts = (system.residual(here), 2.0 * system.polar(here, tangent), system.residual(tangent))
+        eta = sum(np.abs(rows @ inverse.T).max(axis=-1) for rows in parts)
+        turned = np.abs(np.eye(n) - inverse @ system.jacobian(here))
+        z = (turned + np.abs(inverse @ system.jacobian(tangent))).sum(axis=-1).max(axis=-1)
+        omega = float(system.lipschitz(inverse, np.ones(n)))
+        off = np.abs(following - here - tangent)[:, :n].max(axis=-1) + reached.left
+        good = reached.converged & (z <= FARTHEST) & (2.0 * omega * eta < (1.0 - z) ** 2)
+        good &= off * omega <= 1.0 - z
+    count = _first_false(np.asarray(good))
+    return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
+
+
+def _guessed(system: QuadraticMap, inverse: Array, start: Array, targets: Array) -> Array:
+    """Three terms of the straight way to known coordinates, shape (N, size)."""
+    n = system.unknowns
+    first, second, third = (np.zeros((len(targets), len(start))) for _ in range(3))
+    first[:, n:] = targets - start[n:]
+    first[:, :n] = -(2.0 * system.polar(start, first) + system.residual(start)) @ inverse.T
+    second[:, :n] = -system.residual(first) @ inverse.T
+    third[:, :n] = -2.0 * system.polar(first, second) @ inverse.T
+    guess = start + (first + (second + third))
+    guess[:, n:] = targets
+    return guess
+
+
+def _first_false(flags: NDArray[np.bool_]) -> int:
+    return len(flags) if flags.all() else int(np.argmin(flags))
 
 
 def solve_from_drawing(
@@ -183,7 +289,9 @@ def with_rates(
     if derivative >= 2:
         states.append(_rate(system, factors, y, 2.0 * known[:, 2], square_term(system, states[1])))
     rest = np.zeros(len(times)) if left is None else left
-    return Solved(times, tuple(states), rest, work + Work(rate_solves=derivative * len(times)))
+    solves = derivative * len(times)
+    work = work + Work(rate_solves=solves, unknowns_solved=solves * system.unknowns)
+    return Solved(times, tuple(states), rest, work)
 
 
 def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:

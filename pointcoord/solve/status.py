@@ -6,7 +6,13 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from pointcoord.data_classes import dataclass
-from pointcoord.errors import AssemblyError, MotionTooLong, MotionTooRough, PointcoordError
+from pointcoord.errors import (
+    AssemblyError,
+    MotionNotMapped,
+    MotionTooLong,
+    MotionTooRough,
+    PointcoordError,
+)
 
 
 class Status(ABC):
@@ -94,3 +100,16 @@ class TooRough(Status):
     def error(self, partial: Any = None) -> MotionTooRough:
         """Which input, and from when on."""
         return MotionTooRough(self.name, self.instant, partial, coarsest=self.coarsest)
+
+
+@dataclass(frozen=True)
+class NotMapped(Status):
+    """No patch of a map covers where the inputs go; see `MotionNotMapped` for the attributes."""
+
+    instant: float
+    inputs: dict[str, float]
+    reason: str
+
+    def error(self, partial: Any = None) -> MotionNotMapped:
+        """Where, and why not."""
+        return MotionNotMapped(self.instant, self.inputs, self.reason, partial)

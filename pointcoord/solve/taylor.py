@@ -17,6 +17,9 @@ the best where the cost of an order grows with it and a segment costs nothing be
 any order costs as much as some 25 orders: measured on two scenes at tolerances from 1e-2 to 1e-12 mm, a chain
 of their order, its segments cut as above, takes 2 to 9 times as long, and one of order 20 for all tolerances
 1.1 to 2 times.
+
+What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
+every series (see `partial_map`).
 """
 
 from __future__ import annotations
@@ -35,9 +38,11 @@ from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, newton_refine
+from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
+from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status, TooLong, TooRough
 from pointcoord.time_functions import TimeFunction
 
@@ -53,6 +58,8 @@ FINEST = 4.0 * EPS
 COARSEST = 1e-5
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
+# Segments after which it is told how many there will be.
+TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
 # Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
@@ -124,10 +131,12 @@ class Settings:
         tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
             the same fraction of that derivative's size.
         derivative: highest time derivative that will be evaluated.
+        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
     """
 
     tolerance: float
     derivative: int
+    hopeful: bool = True
 
     @property
     def kept(self) -> Settings:
@@ -153,10 +162,12 @@ def build_chain(
         no step follows an input though the mechanism could; its status says which.
     """
     settings = settings.kept
-    course = _Course(mechanism, functions, start, stop, settings)
-    joint = _Joint(start, pose.y, pose.factors, pose.left, _power_of_two(stop - start))
+    part = mechanism.moving_part(functions)
+    course = _Course(mechanism, functions, start, stop, settings, part)
+    here = starting_place(part, pose)
+    joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
     side, members = orientation(joint.factors), joint.members
-    work = Work()
+    work = here.work
     segments: list[Segment] = []
 
     def chain(status: Status) -> Chain:
@@ -165,20 +176,31 @@ def build_chain(
     while joint.instant < stop or not segments:
         if len(segments) == MOST_SEGMENTS:
             return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+        if len(segments) == TELLING and not settings.hopeful:
+            # Later ones would have to be four times as long on average to be enough.
+            likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
+            if stop - start > 4.0 * (likely - start):
+                return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
         segment = course.segment_from(joint)
         orders = segment.order
-        work += Work(segments=1, series_orders=orders, rate_solves=orders * members)
+        solves = orders * members
+        work += Work(
+            segments=1,
+            series_orders=orders,
+            rate_solves=solves,
+            unknowns_solved=solves * part.system.unknowns,
+        )
         finite = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
         if not finite.all():
             return chain(course.stops_at(joint, ~finite, coarsest=False))
         if start == stop:
-            segments.append(segment)
+            segments.append(course.whole(segment))
             break
         step = course.step_along(segment, joint, side)
         work += step.work
         if step.end is None:
             return chain(course.stops_at(joint, ~step.good, coarsest=settings.tolerance >= COARSEST))
-        segments.append(replace(segment, stop=step.end.instant))
+        segments.append(course.whole(replace(segment, stop=step.end.instant)))
         joint = step.end
     return chain(COMPLETE)
 
@@ -256,6 +278,7 @@ class _Course:
     """What a chain follows, a mechanism and its inputs over a time, and how finely.
 
     Attributes:
+        part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
         measured: the segment that was last measured, and its length.
     """
 
@@ -264,7 +287,12 @@ class _Course:
     start: float
     stop: float
     settings: Settings
+    part: PartialMap
     measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
+
+    def whole(self, segment: Segment) -> Segment:
+        """A segment with its coordinates in the mechanism's order."""
+        return replace(segment, coefficients=self.part.back(segment.coefficients))
 
     @property
     def shortest(self) -> float:
@@ -273,7 +301,7 @@ class _Course:
         return max(SHORTEST * (self.stop - self.start), 4.0 * EPS * largest)
 
     def known(self, instant: float, order: int) -> Array:
-        """Series of the known coordinates about an instant, shape (..., order + 1, known coordinates)."""
+        """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known)."""
         laws = {name: function.series(instant, order) for name, function in self.functions.items()}
         return self.mechanism.known_series(laws)
 
@@ -311,7 +339,7 @@ class _Course:
             order = needed
             # In a unit of about the radius of convergence: in a longer one the terms of many orders grow too
             # large, in a shorter one those of slow inputs are lost, and what is lost seems to have converged.
-            shorter = replace(joint, scale=min(joint.scale, _power_of_two(max(length, decay.radius))))
+            shorter = replace(joint, scale=min(joint.scale, power_of_two(max(length, decay.radius))))
             segment = self.series_about(shorter, order, segment)
         if order > SAFE and not (np.abs(segment.coefficients) < LARGEST).all():
             return self.series_about(joint, SAFE)
@@ -338,15 +366,15 @@ class _Course:
         if size.any():
             with np.errstate(over="ignore"):
                 fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-            scale = min(scale, _power_of_two(min(fastest, scale)))
+            scale = min(scale, power_of_two(min(fastest, scale)))
         first = None
         if begun is not None:
             count = begun.coefficients.shape[-2]
             first = begun.coefficients * ((scale / begun.scale) ** orders[:count])[:, None]
         # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
         with np.errstate(over="ignore", invalid="ignore"):
-            scaled = known * (scale**orders)[:, None]
-            series = expand(self.mechanism.map, joint.factors, joint.y, scaled, first)
+            scaled = self.part.known(joint.y, known * (scale**orders)[:, None])
+            series = expand(self.part.system, joint.factors, joint.y, scaled, first)
         return Segment(joint.instant, self.stop, scale, series, joint.left)
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
@@ -358,11 +386,11 @@ class _Course:
         return self.measured[0][1]
 
     def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
-        logs = _log_sizes(segment.coefficients[..., : self.mechanism.map.unknowns])
-        length = _length(logs, self.settings)
+        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        length = length_by_sizes(logs, self.settings)
         if not np.isfinite(length):
             return length, None
-        decay = _decay(logs, length)
+        decay = decay_by_sizes(logs, length)
         return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
 
     def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
@@ -371,7 +399,7 @@ class _Course:
         Args:
             side: orientation of the branch, which the end must have.
         """
-        system, limit, tolerance = self.mechanism.map, self.next_break(joint.instant), self.settings.tolerance
+        system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
         length, decay = self.length_of(segment)
         good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
         while length >= self.shortest or joint.instant + length >= limit:
@@ -389,7 +417,7 @@ class _Course:
                 s = (end - segment.start) / segment.scale
                 good = on_branch(system, side, segment.coefficients, s, reached, ahead)
             if good.all():
-                scale = _power_of_two(length if np.isfinite(length) else end - joint.instant)
+                scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
             length = 0.5 * (end - joint.instant)
         return _Step(None, good, work)
@@ -399,14 +427,14 @@ class _Course:
         s, series = (end - segment.start) / segment.scale, segment.coefficients
         guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
-        return newton_refine(self.mechanism.map, guess, tolerance=SOLVED * self.settings.tolerance)
+        return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
     def factors_at(self, reached: Converged) -> tuple[Factors, Work]:
         """Factors of C_u at a solved end; Newton's own, of the place before its last step, where these do.
 
         With z = omega |last step| their solutions are off by z^2 of themselves.
         """
-        system = self.mechanism.map
+        system = self.part.system
         matrix = system.jacobian(reached.y)
         z = system.lipschitz(reached.factors.preconditioner) * reached.last_step
         if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
@@ -419,8 +447,8 @@ class _Course:
         off = {name: function.rounding(np.array(end)) for name, function in self.functions.items()}
         if not any(doubt.any() for doubt in off.values()):
             return np.zeros(reached.y.shape[:-1])
-        _, data = self.mechanism.known_data(reached.y, off)
-        rows = self.mechanism.map.uncertainty(reached.y, data)
+        _, data = self.mechanism.known_data(self.part.back(reached.y), off)
+        rows = self.part.system.uncertainty(reached.y, self.part.taken(data))
         return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
 
     def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
@@ -438,20 +466,22 @@ class _Course:
         moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
-        status = blocked(self.mechanism, problem, joint, goal, unfinished, instant, change)
+        place = whole_place(self.part, joint.y, joint.factors)
+        status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 
 
-def _length(logs: Array, settings: Settings) -> float:
-    r"""Length of a segment in its own time unit; the shortest that a member of the batch needs.
+def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
+    r"""Length of a segment in its own time unit, from the logarithms of its coefficients, (members, orders).
 
     With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
     max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
 
     Args:
-        logs: of the largest coefficients (see `_log_sizes`).
+        smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
+            member's derivative is taken for larger than it is. The same unless given.
     """
     logs = logs.copy()
     logs[:, 0] = 0.0
@@ -465,11 +495,13 @@ def _length(logs: Array, settings: Settings) -> float:
     start = float(np.min(equal.max(axis=-1)))
     falling = _falling(len(orders), settings.derivative)
     terms = logs[:, None, None, :] + falling[:, None, :]  # members, derivatives, trials, orders
+    whole_terms = terms if smallest is None else smallest[:, None, None, :] + falling[:, None, :]
 
     def fits(trials: Array) -> Array:
         # In logarithms no power is too large or too small for the arithmetic, and a missing term stays one.
-        grown = terms + trials[:, None] * orders
-        whole = grown.max(axis=-1)
+        powers = trials[:, None] * orders
+        grown = terms + powers
+        whole = (grown if smallest is None else whole_terms + powers).max(axis=-1)
         whole[:, 0] = 0.0
         last = np.logaddexp(grown[..., -2], grown[..., -1])
         return np.asarray((last <= np.log(settings.tolerance) + whole).all(axis=(0, 1)))
@@ -501,8 +533,8 @@ def _log_sizes(series: Array) -> Array:
         return np.asarray(np.log(size))
 
 
-def _decay(logs: Array, length: float) -> Decay:
-    """How terms fall, and what that makes of the length that was found; in the series' unit of time.
+def decay_by_sizes(logs: Array, length: float) -> Decay:
+    """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
 
     From the larger of two neighbours halfway and at the end, because every other term may be missing; the
     member with the smallest radius counts.
@@ -522,6 +554,6 @@ def _decay(logs: Array, length: float) -> Decay:
     return Decay(length * float(np.exp(spread / orders)), float(spread))
 
 
-def _power_of_two(length: float) -> float:
+def power_of_two(length: float) -> float:
     """The power of two at or above a length, so that scaling by it rounds nothing; 1 for zero."""
     return float(np.ldexp(1.0, np.frexp(length)[1])) if length > 0.0 else 1.0

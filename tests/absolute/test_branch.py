@@ -144,6 +144,8 @@ def test_a_jump_to_another_branch_on_the_way_is_undone_or_refused(
             return pose._replace(q=wrong.q), spent
         return pose, spent
 
+    # Instant by instant: there are no runs as long as this.
+    monkeypatch.setattr(absolute.tracking, "SHORTEST_RUN", 1000)
     monkeypatch.setattr(absolute.tracking, "glide", jumping)
     monkeypatch.setattr(absolute.tracking, "continue_to", jumping_continue_to)
     if times == 1:

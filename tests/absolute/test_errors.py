@@ -146,7 +146,8 @@ def test_rows_close_to_what_they_are_rounded_from(kind: Kind) -> None:
         inputs = mechanism.drawn_inputs[None, None] * np.array([1.0, 0.0, 0.0])[:, None]
         targets = mechanism.target_series(inputs)
         # Corrections stop where they are expected to leave eps; refined, what is left is rounding.
-        refined = refine(mechanism, [Found(pose.q, 0)], targets, False)
+        found = Found(pose.q[None], np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.bool_), pose.sign)
+        refined = refine(mechanism, found, targets, False)
         poses, target = mechanism.stack.place(refined.rotation, refined.origin), targets[0]
         doubt = pose_doubt(mechanism, poses, target)
         assert (doubt.known == np.abs(target - poses.values)).all()

@@ -23,7 +23,8 @@ def test_the_residual_reported_is_how_far_a_row_is_off_its_target_on_either_side
     monkeypatch.setattr(absolute.refine, "MOST_CORRECTIONS", 0)
     angle, rack = mechanism.drawn_inputs.tolist()
     series = np.array([[[angle, rack], [0, 0], [0, 0]], [[angle, rack + off], [0, 0], [0, 0]]])
-    refined = refine(mechanism, [Found(pose.q, 0)] * 2, mechanism.target_series(series), False)
+    found = Found(np.array([pose.q] * 2), np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.bool_), pose.sign)
+    refined = refine(mechanism, found, mechanism.target_series(series), False)
     residual = refined.residual * mechanism.drawing.size
     # The rows themselves are closed to a few roundings of the size.
     assert 0 <= residual[0] <= 16 * EPS * mechanism.drawing.size

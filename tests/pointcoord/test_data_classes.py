@@ -64,6 +64,18 @@ def test_equal_ones_are_equal_and_hash_alike_and_show_their_fields() -> None:
     assert pickle.loads(pickle.dumps(product)) == product
 
 
+def test_those_that_are_compared_by_identity_are_equal_to_themselves_only() -> None:
+    @dataclass(frozen=True, eq=False)
+    class Kept:
+        """Told apart by which it is."""
+
+        value: int
+
+    one, other = Kept(1), Kept(1)
+    assert one != other
+    assert len({one, other}) == 2
+
+
 def test_none_of_them_changes() -> None:
     for thing in (OURS[0](1), OURS[1](1), Work()):
         name = dataclasses.fields(thing)[0].name

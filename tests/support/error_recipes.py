@@ -211,6 +211,11 @@ RECIPES: dict[str, Recipe] = {
         ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers, the lower first"),
         {"what": "ranges['arm_angle']", "problem": "is (1.0, 0.9)", "allowed": bool},
     ),
+    "pointcoord.errors.SweepError": Recipe(
+        lambda *_: pointcoord.sweep(BOUNCE, {"strut_top.x": [1.0, 2.0], "strut_top.y": [1.0, 2.0, 3.0]}),
+        ("strut_top.x has 2 values where strut_top.y has 3", "as many of each"),
+        {"what": "strut_top.x", "problem": bool, "allowed": "as many of each"},
+    ),
     "pointcoord.errors.NotCovered": Recipe(
         # One box of a range that reaches beyond what the links allow, and not to be cut.
         lambda *_: pointcoord.kinematic_map(

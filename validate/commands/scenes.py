@@ -12,7 +12,7 @@ from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.closing import ALLOWED
-from pointcoord.simulation import effort
+from pointcoord.simulation import Effort, effort
 from pointcoord.suspensions import SUSPENSIONS
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_scene, load_scene, name_of, told_as
@@ -53,12 +53,14 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     """
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
-    part, plan, name = scene.mechanism, plan_effects(scene.effects), name_of(options.scene)
+    plan = plan_effects(scene.effects, unreported=scene.unreported_points)
+    part, name = scene.mechanism, name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {part.type}, {part.side} side; inputs: {', '.join(scene.inputs)}",
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
         *(f"computed: {effect.gives}" for effect in ALWAYS),
+        *_reported(scene),
         *(f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects),
         *(
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
@@ -71,6 +73,16 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     return _say_where_it_stands(scene, name, console)
 
 
+def _reported(scene: Scene) -> list[str]:
+    """Of which points, if not of all."""
+    left_out = scene.unreported_points
+    if not left_out:
+        return []
+    return [
+        f"of the points: {', '.join(scene.reported_points)}; add {', '.join(left_out)} to points to have them"
+    ]
+
+
 def _work(plan: Plan, topology: Topology) -> list[str]:
     """To which time derivative points are solved and evaluated for that."""
     derivatives = plan.derivatives(topology)
@@ -79,7 +91,8 @@ def _work(plan: Plan, topology: Topology) -> list[str]:
         for order in sorted(set(derivatives.values()), reverse=True)
     ]
     each = (f"{words} of {', '.join(names)}" for words, names in groups)
-    evaluated = f"{groups[0][0]} of every point" if len(groups) == 1 else "; ".join(each)
+    every = len(derivatives) == len(topology.points) and len(groups) == 1
+    evaluated = f"{groups[0][0]} of every point" if every else "; ".join(each)
     return [f"solved for: {SOLVED[plan.derivative]}", f"evaluated: {evaluated}"]
 
 
@@ -95,6 +108,7 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
         few, many = min(found.orders), max(found.orders)
         order = f"order {few}" if few == many else f"orders {few} to {many}"
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
+        lines += _unknowns(found)
         lines.append(
             f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
             f"factorisations, {found.start.factorisations} of them to assemble the start"
@@ -102,6 +116,16 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
     if not found.status.complete:
         lines.append(f"up to t = {found.stop:.6g} s, where the motion stops")
     return lines
+
+
+def _unknowns(found: Effort) -> list[str]:
+    """How many coordinates are solved for, and what of the car is not, or only once."""
+    parts = [f"{found.moving} unknowns"]
+    if found.still:
+        parts.append(f"{found.still} more stand still and are solved once")
+    if found.not_needed:
+        parts.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
+    return [f"solved at each step: {'; '.join(parts)}"]
 
 
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:

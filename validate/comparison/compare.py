@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -151,7 +152,8 @@ def compare_solutions(
     for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
         parts = _parts(quantity, names, first, second)
         missing += _missing(quantity, parts, first, second)
-        rows += [_row(name, quantity, part, first, second, instants[both]) for part in parts]
+        sides = (_Side.of(first, quantity), _Side.of(second, quantity))
+        rows += [_row(name, quantity, part, sides, instants[both]) for part in parts]
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
 
 
@@ -175,32 +177,53 @@ def _missing(quantity: str, parts: Sequence[str], one: Given, two: Given) -> Ite
                 yield f"{side.formulation} gives {words} of {shown(name)}, which is left out{hint}"
 
 
-def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Array) -> Comparison:
+@dataclass(frozen=True)
+class _Side:
+    """What one formulation gives and claims of a quantity."""
+
+    formulation: str
+    numbers: Mapping[str, Array]
+    claims: Mapping[str, Array]
+    condition: Array
+
+    @classmethod
+    def of(cls, side: Given, quantity: str) -> _Side:
+        return cls(side.formulation, side.numbers[quantity], side.claims[quantity], side.condition)
+
+    @cached_property
+    def largest(self) -> float:
+        """Of the numbers."""
+        return largest_of(self.numbers.values())
+
+    @cached_property
+    def level(self) -> Array:
+        """See `tolerance.level`, (N,)."""
+        return level(self.claims.values(), self.numbers.values(), self.condition)
+
+
+def _row(scene: str, quantity: str, part: str, sides: tuple[_Side, _Side], times: Array) -> Comparison:
     unit, nan = QUANTITIES[quantity].unit, math.nan
-    known = [part in side.numbers[quantity] for side in (one, two)]
+    one, two = sides
+    known = [part in side.numbers for side in sides]
     if not all(known) or not len(times):
         ends = (scene, one.formulation, two.formulation, quantity, part, unit)
         return Comparison(*ends, nan, nan, nan, nan, "not given", "", nan)
-    mine, other = one.numbers[quantity][part], two.numbers[quantity][part]
+    mine, other = one.numbers[part], two.numbers[part]
     gap = np.abs(mine - other)
     if unit == "rad":
         # Whole turns apart is the same angle.
         gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
     # A NaN is a disagreement, and the worst one.
     gap = np.where(np.isfinite(gap), gap, np.inf)
-    claims = [side.claims[quantity].get(part) for side in (one, two)]
+    claims = [side.claims.get(part) for side in sides]
     held = [np.zeros_like(gap) if claim is None else claim for claim in claims]
     # The smaller of both, so that a wrong number does not widen its own tolerance.
-    largest = min(largest_of(side.numbers[quantity].values()) for side in (one, two))
+    largest = min(side.largest for side in sides)
     allowed = tolerance(held[0], held[1], largest)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
-    levels = [
-        level(side.claims[quantity].values(), side.numbers[quantity].values(), side.condition)
-        for side in (one, two)
-    ]
     apart = gap.reshape(len(gap), -1).max(axis=-1) > SMALLEST
-    loose = untested(*held, *levels) & apart
+    loose = untested(held[0], held[1], one.level, two.level) & apart
     verdict: Verdict = "agrees"
     if any(claim is None for claim in claims):
         verdict = "not tested"
@@ -223,6 +246,6 @@ def _row(scene: str, quantity: str, part: str, one: Given, two: Given, times: Ar
         share=float(np.max(shares)),
         instant=float(times[worst[0]]),
         verdict=verdict,
-        rests_on=(one, two)[larger].formulation,
+        rests_on=sides[larger].formulation,
         part=float(held[larger][widest] / (allowed[widest] + SMALLEST)),
     )

@@ -1,12 +1,14 @@
 """Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
 
-Polynomials and sines are taken in many digits and rounded once: their terms may cancel, and an angle may be
-many turns. A table means scipy's cubic spline, for every model and for the reference.
+Polynomials and sines are taken in as many digits as they need to be rounded once: their terms may cancel,
+and an angle may be many turns. A table means scipy's cubic spline, for every model and for the reference.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from math import perm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +23,14 @@ except ModuleNotFoundError as error:
     raise MissingPackage("validate.formulations.input_rates", error) from None
 
 Array = NDArray[np.float64]
+Long = NDArray[np.longdouble]
 
 DIGITS = 40  # of a sine, beside those that its angle has before the point; half of them of a polynomial
 MOST_DIGITS = 1000  # terms that cancel further than this cancel to zero
+# Rounding unit of the longer format that numbers are tried in first; without one nothing is sure.
+LONG = float(np.finfo(np.longdouble).eps) / 2.0
+# Of a sine or cosine of that format, in such units: twice what the C library's own tests allow it.
+SINE = 4.0
 
 
 def rates(part: InputPart, times: Array) -> Array:
@@ -37,13 +44,28 @@ def rates(part: InputPart, times: Array) -> Array:
             spline = CubicSpline(part.table.times, part.table.values)
             return np.stack([spline(instants), spline(instants, 1), spline(instants, 2)], axis=-1)
     if part.sine is not None:
-        return np.array([_of_sine(part.sine, t) for t in instants.tolist()])
+        return _of_sine(part.sine, instants)
     if part.polynomial is not None:
         return _of_polynomial(part.polynomial, instants)
     return np.outer(np.ones(len(instants)), [part.constant or 0.0, 0.0, 0.0])
 
 
-def _of_sine(wave: SinePart, t: float) -> list[float]:
+def _of_sine(wave: SinePart, instants: Array) -> Array:
+    """Offset + amplitude sin(angle) and its rates, each rounded once."""
+    amplitude, speed, t = (np.longdouble(x) for x in (wave.amplitude, wave.angular_frequency, instants))
+    with np.errstate(all="ignore"):
+        angle = speed * t + np.longdouble(wave.phase)
+        # The product and the sum are rounded once each.
+        doubt = LONG * (2.0 * np.abs(speed * t) + abs(wave.phase)) + SINE * LONG
+        cosine, sine = np.cos(angle), np.sin(angle)
+        sums = [wave.offset + amplitude * sine, amplitude * speed * cosine, -amplitude * speed * speed * sine]
+        # Three products at most, and a sum.
+        sizes = [np.abs(amplitude * speed**d) * (doubt + 4.0 * LONG) for d in range(3)]
+        sizes[0] += LONG * (abs(wave.offset) + np.abs(amplitude))
+        return _rounded_once(sums, sizes, lambda i, d: _exact_sine(wave, float(instants[i]))[d])
+
+
+def _exact_sine(wave: SinePart, t: float) -> list[float]:
     speed, instant, phase = (Fraction(x) for x in (wave.angular_frequency, t, wave.phase))
     angle = speed * instant + phase
     with mpmath.workdps(DIGITS + len(str(int(abs(angle))))):
@@ -57,11 +79,45 @@ def _of_sine(wave: SinePart, t: float) -> list[float]:
 
 
 def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
+    """A polynomial and its rates by Horner's rule, each rounded once."""
     derivatives = [[mpmath.mpf(c) for c in coefficients]]
     with mpmath.workdps(DIGITS):
         for _ in range(2):
             derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
-    return np.array([[_sum(law, t) for law in derivatives] for t in instants.tolist()])
+    t = instants.astype(np.longdouble)
+    sums: list[Long] = []
+    sizes: list[Long] = []
+    with np.errstate(all="ignore"):
+        for d in range(3):
+            total, size = (np.zeros(t.shape, np.longdouble) for _ in range(2))
+            for k in range(len(coefficients) - 1, d - 1, -1):
+                term = np.longdouble(coefficients[k]) * np.longdouble(perm(k, d))
+                total, size = total * t + term, size * np.abs(t) + np.abs(term)
+            sums.append(total)
+            # A product and a sum of each power, and a coefficient, are rounded once each.
+            sizes.append(2.0 * (len(coefficients) - d) * LONG * size)
+    return _rounded_once(sums, sizes, lambda i, d: _sum(derivatives[d], float(instants[i])))
+
+
+def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[[int, int], float]) -> Array:
+    """Numbers of a longer format as the doubles nearest to what they stand for, shape (N, 3).
+
+    Where a number and what it may be off by could round to two doubles, many digits decide (Ziv, ACM
+    Transactions on Mathematical Software 17, 1991).
+
+    Args:
+        sums: by derivative, (N,). doubts: how far they may be off. exact: one of them in many digits,
+            by instant and derivative.
+    """
+    total, doubt = np.stack(sums, axis=-1), np.stack(doubts, axis=-1)
+    with np.errstate(all="ignore"):
+        found = np.asarray(total, dtype=float)
+        # A little more makes up for the rounding of the doubt itself and of these two sums.
+        room = 1.001 * doubt + LONG * np.abs(total)
+        sure = ((total - room).astype(float) == found) & ((total + room).astype(float) == found)
+    for i, d in np.argwhere(~(sure & np.isfinite(found))).tolist():
+        found[i, d] = exact(i, d)
+    return found
 
 
 def _sum(coefficients: list[mpmath.mpf], t: float) -> float:

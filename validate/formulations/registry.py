@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pointcoord.method import CHORD, NEWTON, NEWTON_COLD, SERIES
+from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
@@ -27,21 +27,23 @@ class UnknownFormulation(Exception):
 _POINT_COORDINATES: dict[str, Formulation] = {
     f.name: f
     for f in (
-        PointCoordinates("pointcoord", SERIES),
+        PointCoordinates("pointcoord", AUTO),
+        PointCoordinates("pointcoord-map", MAP),
         PointCoordinates("pointcoord-newton", NEWTON),
         PointCoordinates("pointcoord-newton-cold", NEWTON_COLD),
         PointCoordinates("pointcoord-chord", CHORD),
-        PointCoordinates("pointcoord-as-asked", SERIES, as_asked=True),
+        PointCoordinates("pointcoord-as-asked", AUTO, as_asked=True),
         PointCoordinates("printed", PRINTED),
     )
 }
 
 WORDS = {
-    "pointcoord": "point coordinates, by a chain of power series in time",
+    "pointcoord": "point coordinates, by a chain of power series in time, or by a map where that is too long",
+    "pointcoord-map": "the same by a map: series in the inputs, proven in patches along their way",
     "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
     "pointcoord-newton-cold": "the same with each instant by itself, from the drawing",
     "pointcoord-chord": "the same with one factorisation kept for many instants",
-    "pointcoord-as-asked": "the series again, only as fine as the scene's tolerance asks",
+    "pointcoord-as-asked": "the first again, only as fine as the scene's tolerance asks",
     "printed": "the same with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",

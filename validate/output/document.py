@@ -71,7 +71,7 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, bounds or cost.
+        kind: which command's results follow: validate, hard, hard-list, bounds, cost or sweep.
         command: the command line, word by word.
         started: UTC.
     """

@@ -42,19 +42,24 @@ class Writable(Protocol):
 
 
 def columns(samples: Samples) -> Iterator[tuple[str, Array]]:
-    """Every computed number of samples as a named column with its unit."""
+    """The times of samples, and every computed number as a named column with its unit."""
     yield "time [s]", samples.times
+    yield from number_columns(samples)
+
+
+def number_columns(samples: Samples) -> Iterator[tuple[str, Array]]:
+    """Every computed number of samples as a named column with its unit, (..., N)."""
     for quantity, channel in samples.numbers.items():
         unit = QUANTITIES[quantity].unit
         for name, array in channel.items():
             if unit == "rad":
                 # Users read angles in degrees.
                 yield f"{quantity}.{name} [deg]", np.degrees(array)
-            elif array.ndim == 1:
+            elif QUANTITIES[quantity].of == "car":
                 yield f"{quantity}.{name} [{unit}]", array
             else:
                 for i, axis in enumerate("xyz"):
-                    yield f"{quantity}.{name}.{axis} [{unit}]", array[:, i]
+                    yield f"{quantity}.{name}.{axis} [{unit}]", array[..., i]
 
 
 def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> None:
@@ -69,10 +74,10 @@ def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> 
         if not named:
             stream.write(f"{','.join(each)}\r\n")
             named = True
-        stream.write(_text(np.stack(list(each.values()), axis=-1)))
+        stream.write(csv_lines(np.stack(list(each.values()), axis=-1)))
 
 
-def _text(rows: Array) -> str:
+def csv_lines(rows: Array) -> str:
     """Lines of numbers, each in as few digits as give its bits back."""
     # Python's own texts of numbers take four times as long.
     text = to_json(rows.tolist(), inf_nan_mode="constants")
@@ -82,7 +87,7 @@ def _text(rows: Array) -> str:
     return f"{text.decode('ascii')}\r\n"
 
 
-class _AsText:
+class AsText:
     """A binary stream that takes text of ASCII."""
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -93,7 +98,7 @@ class _AsText:
 
 
 def _csv_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
-    write_csv(_AsText(stream), motion, instants)
+    write_csv(AsText(stream), motion, instants)
 
 
 def _npz_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:

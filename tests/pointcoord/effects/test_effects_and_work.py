@@ -8,6 +8,7 @@ import pytest
 
 import pointcoord.solve.chord
 import pointcoord.solve.pointwise
+import pointcoord.solve.standing_still
 import pointcoord.solve.taylor
 from pointcoord import Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
@@ -99,7 +100,8 @@ def test_counts_are_what_was_done(
         return factorise(matrix)
 
     solving = pointcoord.solve
-    for module in (newton, assembly, solving.proven_path, solving.taylor, solving.pointwise, solving.chord):
+    ways = (solving.taylor, solving.pointwise, solving.chord)
+    for module in (newton, assembly, solving.standing_still, solving.proven_path, *ways):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0
@@ -110,7 +112,9 @@ def test_proof_is_not_computed_until_it_is_read(
 ) -> None:
     called = []
     motion = simulate(make_scene(samples=SAMPLES))
-    monkeypatch.setattr("pointcoord.bounds.proof.factorise", lambda m: called.append(len(m)) or factorise(m))
+    monkeypatch.setattr(
+        "pointcoord.bounds.certified_poses.factorise", lambda m: called.append(len(m)) or factorise(m)
+    )
     assert simulate(make_scene(samples=SAMPLES)).position["wheel_centre"].shape == (SAMPLES, 3)
     assert called == []
     motion.proof()

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
 from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, simulate, standing
-from pointcoord.mapping import flood as flooding
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.flood import FOLD, SEAM, UNREACHED, flood
+from pointcoord.patches import flood as flooding
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
 from pointcoord.solve.assembly import assemble, close_drawing, follow
 
 Array = NDArray[np.float64]
@@ -114,14 +114,14 @@ def test_a_patch_of_another_assembly_is_given_up_at_its_seam(monkeypatch: pytest
     domain = Domain(mechanism, {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}, 6)
     start = assemble(mechanism, {"arm_angle": np.array(1.0), "rack": np.array(0.0)})
     entry = (np.array([64, 64]), start.y)
-    sound = flood(domain, 8, 1e-9, entry, 4096)
+    sound = flood(domain, 8, Limits(1e-9), entry, 4096)
     assert sound.patches is not None
     assert sound.given_up == ()
     kept = sound.patches
     series = kept.series.copy()
     series[-1, 0] += 2.0 * kept.unique_within[-1]  # an assembly that is proven to be another one
     monkeypatch.setattr(flooding.Patches, "joined", lambda parts: replace(kept, series=series))
-    seamed = flood(domain, 8, 1e-9, entry, 4096)
+    seamed = flood(domain, 8, Limits(1e-9), entry, 4096)
     assert seamed.patches is not None
     assert len(seamed.patches.low) == len(kept.low) - 1
     assert [reason for _, reason in seamed.given_up] == [SEAM]

@@ -12,15 +12,15 @@ from sample_cars import PAPER_STRUT, SampleCar, by_car
 
 from pointcoord.linkage.drives import ArmAngle, Travel
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.evaluation import monomials
-from pointcoord.mapping.expansion import expand_in_inputs
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers, products
-from pointcoord.mapping.patch_proof import PatchProof, prove_patches
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.evaluation import monomials
+from pointcoord.patches.expansion import expand_in_inputs
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers, products
+from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.solve.assembly import assemble, close_drawing, follow
 
 Array = NDArray[np.float64]

@@ -287,3 +287,30 @@ def test_numbers_too_large_for_the_arithmetic_end_in_an_error_of_this_package(
 
 def test_effects_of_a_scene_file_are_those_that_exist(make_scene: Callable[..., Scene]) -> None:
     assert simulate(make_scene(effects=tuple(EFFECTS), samples=2)).velocity.computed
+
+
+@pytest.mark.parametrize(
+    ("points", "problem"),
+    [
+        (["strut_tob"], "no point of this car is called 'strut_tob' (did you mean 'strut_top'?); allowed: "),
+        (["wheel_axis_inner"], "no point of this car is called 'wheel_axis_inner'"),
+        ([], "none is named; allowed: one or more of lower_arm_front, "),
+        (["strut_top", "strut_lower", "strut_top"], "'strut_top' is named twice; allowed: each point once"),
+        ([3], "3"),
+        ("strut_top", "strut_top"),
+    ],
+)
+def test_points_to_report_are_points_of_the_car_each_once(points: object, problem: str) -> None:
+    content = Scene.load("bounce").model_dump(exclude_none=True) | {"points": points}
+    with pytest.raises(SceneError) as caught:
+        Scene.from_mapping(content)
+    assert caught.value.key.split(".")[0] == "points"
+    assert problem in str(caught.value)
+
+
+def test_points_are_reported_in_the_order_of_the_car() -> None:
+    scene = Scene.load("bounce").model_copy(update={"points": ["wheel_centre", "strut_top"]})
+    assert scene.reported_points == ("strut_top", "wheel_centre")
+    every = Scene.load("bounce")
+    assert every.reported_points == every.mechanism.topology.points
+    assert not every.unreported_points

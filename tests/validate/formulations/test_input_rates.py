@@ -3,8 +3,11 @@
 import math
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pointcoord.scene.scene_file import InputPart, SinePart
 from validate.formulations.input_rates import rates
@@ -39,3 +42,35 @@ def test_laws_too_large_for_the_arithmetic_come_out_infinite() -> None:
     (wave,) = rates(InputPart(sine=SinePart(amplitude=1.0, angular_frequency=1e200)), np.array([1.0]))
     assert math.isfinite(wave[1])
     assert math.isinf(wave[2])
+
+
+@given(
+    coefficients=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=9),
+    instants=st.lists(st.floats(-1e3, 1e3), min_size=40, max_size=40),
+)
+def test_polynomials_are_rounded_once(coefficients: list[float], instants: list[float]) -> None:
+    found = rates(InputPart(polynomial=tuple(coefficients)), np.array(instants))
+    for row, t in zip(found.tolist(), map(Fraction, instants), strict=True):
+        for d, value in enumerate(row):
+            terms = (math.perm(k, d) * Fraction(c) * t ** max(k - d, 0) for k, c in enumerate(coefficients))
+            assert value == float(sum(terms))
+
+
+@given(
+    wave=st.builds(
+        SinePart,
+        amplitude=st.floats(-1e3, 1e3),
+        angular_frequency=st.floats(1e-6, 1e6),
+        phase=st.floats(-1e3, 1e3),
+        offset=st.floats(-1e3, 1e3),
+    ),
+    instants=st.lists(st.floats(-1e3, 1e3), min_size=40, max_size=40),
+)
+def test_sines_are_rounded_once(wave: SinePart, instants: list[float]) -> None:
+    found = rates(InputPart(sine=wave), np.array(instants))
+    with mpmath.workdps(80):
+        a, w, p = (mpmath.mpf(x) for x in (wave.amplitude, wave.angular_frequency, wave.phase))
+        for row, t in zip(found.tolist(), instants, strict=True):
+            sine, cosine = mpmath.sin(w * t + p), mpmath.cos(w * t + p)
+            exact = [wave.offset + a * sine, a * w * cosine, -a * w * w * sine]
+            assert row == [float(x) for x in exact]

@@ -20,14 +20,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.domain import Domain
-from pointcoord.mapping.evaluation import monomials
-from pointcoord.mapping.expansion import expand_in_inputs
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers
-from pointcoord.mapping.patch_proof import PatchProof, prove_patches
-from pointcoord.mapping.reported_points import reported_points
+from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.patches.domain import Domain
+from pointcoord.patches.evaluation import monomials
+from pointcoord.patches.expansion import expand_in_inputs
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.lookup import Marked
+from pointcoord.patches.multi_index import powers
+from pointcoord.patches.patch_proof import PatchProof, prove_patches
+from pointcoord.patches.reported_points import reported_points
 from pointcoord.solve.assembly import follow
 
 Array = NDArray[np.float64]
@@ -37,7 +39,9 @@ Key = tuple[Corner, Corner]
 
 # Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
 BATCH = 32
-# A part whose bound is no smaller than this share of the whole's is as exact as rounding lets it be.
+# Steps of a path to the middle of a box; one that takes more leads through what no patch will cover at once.
+STEPS = 100
+# A part that uses no less than this share of what the whole did is as exact as rounding lets it be.
 NO_BETTER = 0.9
 # Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
 COARSE = 1e3
@@ -46,7 +50,7 @@ FOLD = "no patch can be proven here down to the smallest: a fold, where assembli
 ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
 UNREACHED = "not reached from the drawing without crossing what is not covered"
 SEAM = "two ways from the drawing around a place that is not covered lead to different assemblies here"
-TOO_MANY = "the most patches that are allowed were used before this place was reached"
+TOO_MANY = "the most patches that are allowed, or tries at them, were used before this place was reached"
 
 
 @dataclass(frozen=True)
@@ -56,12 +60,50 @@ class Entry:
     Attributes:
         twice: the place, in halves of the smallest box, (p,).
         y: the pose there, (size,).
-        bound: of the patch that this box is a part of, where that was proven but not near enough.
+        used: of what is allowed by the patch that this box is a part of, where that was proven but not near
+            enough.
     """
 
     twice: Whole
     y: Array
-    bound: float = np.inf
+    used: float = np.inf
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How near to the assembly a patch must be proven to be, to be kept.
+
+    With S_i = max |dY/ds_i| over all points in its middle, s the inputs from there in half widths, and L the
+    mechanism's size, a rate is a sum of S_i s_i' and an acceleration one of S_i s_i'' and of S_i S_j / L s_i'
+    s_j', as of what turns about an arm of that length. Errors of the derivatives by the inputs are held to
+    the same part of these as a position's is of L.
+
+    Attributes:
+        tolerance: largest bound of a reported point, mm.
+        derivative: highest time derivative that will be evaluated; 0 holds positions only.
+        keep_rounded: whether a patch is kept that rounding alone keeps from being nearer.
+    """
+
+    tolerance: float
+    derivative: int = 0
+    keep_rounded: bool = False
+
+    def used(self, coefficients: Array, off: Jet, size: float) -> Array:
+        """What patches take of what is allowed, (P,); up to 1 they are kept.
+
+        Args:
+            coefficients: of the reported points, shape (P, powers, 3 points), mm. off: errors of their sums.
+            size: L, mm.
+        """
+        found = off.value.max(axis=-1) / self.tolerance
+        inputs, part = off.first.shape[1], self.tolerance / size
+        rates = np.maximum(np.abs(coefficients[:, 1 : 1 + inputs]).max(axis=-1), np.finfo(float).tiny)
+        if self.derivative > 0:
+            found = np.maximum(found, (off.first.max(axis=-1) / (part * rates)).max(axis=-1))
+        if self.derivative > 1:
+            allowed = part * rates[:, :, None] * rates[:, None] / size
+            found = np.maximum(found, (off.second.max(axis=-1) / allowed).max(axis=(-1, -2)))
+        return np.asarray(found)
 
 
 @dataclass(frozen=True)
@@ -119,10 +161,15 @@ class Patches:
 
 @dataclass(frozen=True)
 class Cover:
-    """What was covered, and what not: boxes by their corners, with the reason."""
+    """What was covered, and what not: boxes by their corners, with the reason.
+
+    Attributes:
+        work: what it took.
+    """
 
     patches: Patches | None
     given_up: tuple[tuple[Key, str], ...]
+    work: Work
 
 
 @dataclass
@@ -132,12 +179,15 @@ class _Flood:
     Attributes:
         waiting: boxes that nothing has entered yet. entered: those that are to be tried.
         given_up: with reasons. kept: batches of proven patches, in the order in which they were reached.
+        wanted: which of the smallest boxes are wanted; all if not given.
     """
 
     domain: Domain
     order: int
-    tolerance: float
+    limits: Limits
     most: int
+    wanted: Marked | None = None
+    work: Work = field(default_factory=Work)
     waiting: dict[Key, None] = field(default_factory=dict)
     entered: dict[Key, Entry] = field(default_factory=dict)
     given_up: dict[Key, str] = field(default_factory=dict)
@@ -155,7 +205,8 @@ class _Flood:
         low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
         middle, half = domain.middle_and_half(low, high)
         known, lacking, data = domain.known_over(middle, half, self.order)
-        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0])
+        path = follow(system, np.array([entry.y for _, entry in boxes]), known[:, 0], steps=STEPS)
+        self.work += path.work
         arrived = np.flatnonzero(path.done >= 1.0)
         for place in np.flatnonzero(path.done < 1.0).tolist():
             self._halve(*boxes[place], None, None)
@@ -166,8 +217,12 @@ class _Flood:
         factors = factorise(system.jacobian(y))
         count = len(domain.free)
         series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
+        solves = len(arrived) * (powers(count, self.order).count - 1)
+        self.work += Work(
+            factorisations=len(arrived), rate_solves=solves, series_orders=len(arrived) * self.order
+        )
         last, along = last_terms(series[..., : system.unknowns], count, self.order)
-        coarse = last * float(mechanism.unit) > COARSE * self.tolerance
+        coarse = last * float(mechanism.unit) > COARSE * self.limits.tolerance
         for place in np.flatnonzero(coarse).tolist():
             self._halve(*boxes[int(arrived[place])], y[place], (along[place], np.inf))
         fine = np.flatnonzero(~coarse)
@@ -196,12 +251,15 @@ class _Flood:
         proven = np.flatnonzero(proof.proven)
         error = proof.error.each(lambda part: part[proven])
         points, off = reported_points(mechanism, series[proven], error, self.order)
-        bound = np.full(len(boxes), np.inf)
-        bound[proven] = off.value.max(axis=-1)
+        used = np.full(len(boxes), np.inf)
+        used[proven] = self.limits.used(points, off, float(mechanism.unit))
+        whole = np.array([entry.used for _, entry in boxes])
+        rounded = np.isfinite(used) & (used > NO_BETTER * whole) & self.limits.keep_rounded
+        keep = (used <= 1.0) | rounded
         for place, box in enumerate(boxes):
-            if bound[place] > self.tolerance:
-                self._halve(*box, y[place], self._failure(proof, place, float(bound[place])))
-        near = bound[proven] <= self.tolerance
+            if not keep[place]:
+                self._halve(*box, y[place], self._failure(proof, place, float(used[place])))
+        near = keep[proven]
         if near.any():
             good = proven[near]
             self.kept.append(
@@ -219,10 +277,10 @@ class _Flood:
             )
             self._enter_neighbours(self.kept[-1], list(self.waiting))
 
-    def _failure(self, proof: PatchProof, place: int, bound: float) -> tuple[Array, float]:
-        """How much each input takes part in a failure, and the bound that was reached."""
+    def _failure(self, proof: PatchProof, place: int, used: float) -> tuple[Array, float]:
+        """How much each input takes part in a failure, and what of the limits was reached."""
         weights = proof.left_out if proof.proven[place] else proof.change
-        return np.nan_to_num(weights[place], nan=0.0, posinf=1e300), bound
+        return np.nan_to_num(weights[place], nan=0.0, posinf=1e300), used
 
     def _halve(self, key: Key, entry: Entry, y: Array | None, failure: tuple[Array, float] | None) -> None:
         """Cut a box that failed in two.
@@ -232,8 +290,8 @@ class _Flood:
         """
         low, high = np.array(key)
         sizes = high - low
-        bound = np.inf if failure is None else failure[1]
-        if np.isfinite(bound) and bound > NO_BETTER * entry.bound:
+        used = np.inf if failure is None else failure[1]
+        if np.isfinite(used) and used > NO_BETTER * entry.used:
             self.given_up[key] = ROUNDING
             return
         if not (sizes > 1).any():
@@ -249,8 +307,10 @@ class _Flood:
             parts.append(corners)
         for first, last in parts:
             part: Key = (tuple(first.tolist()), tuple(last.tolist()))
+            if self.wanted is not None and not self.wanted.any_in(first[None], last[None])[0]:
+                continue
             if y is not None:
-                self.entered[part] = Entry(low + high, y, bound)
+                self.entered[part] = Entry(low + high, y, used)
             elif (2 * first <= entry.twice).all() and (entry.twice <= 2 * last).all():
                 self.entered[part] = entry
             else:
@@ -278,18 +338,28 @@ class _Flood:
             self.entered[keys[number]] = Entry(twice[place], y[place])
 
 
-def flood(domain: Domain, order: int, tolerance: float, start: tuple[Whole, Array], most: int) -> Cover:
+def flood(
+    domain: Domain,
+    order: int,
+    limits: Limits,
+    start: tuple[Whole, Array],
+    most: int,
+    wanted: Marked | None = None,
+    factorisations: int | None = None,
+) -> Cover:
     """Cover a domain from a pose on.
 
     Args:
-        tolerance: largest bound of a reported point, mm.
         start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
         most: patches.
+        wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
+        factorisations: after which nothing more is tried; as many as it takes if not given.
     """
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
-    state = _Flood(domain, order, tolerance, most)
+    state = _Flood(domain, order, limits, most, wanted)
     state.entered[whole] = Entry(*start)
-    while state.entered and state.count < most:
+    enough = np.inf if factorisations is None else factorisations
+    while state.entered and state.count < most and state.work.factorisations < enough:
         batch = list(state.entered.items())[:BATCH]
         for key, _ in batch:
             del state.entered[key]
@@ -299,13 +369,13 @@ def flood(domain: Domain, order: int, tolerance: float, start: tuple[Whole, Arra
     for key in state.waiting:
         state.given_up[key] = TOO_MANY if state.entered else UNREACHED
     if not state.kept:
-        return Cover(None, tuple(state.given_up.items()))
+        return Cover(None, tuple(state.given_up.items()), state.work)
     patches = Patches.joined(state.kept)
     dropped = _seams(domain, order, patches)
     for place in np.flatnonzero(dropped):
         key = (tuple(patches.low[place].tolist()), tuple(patches.high[place].tolist()))
         state.given_up[key] = SEAM
-    return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()))
+    return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()), state.work)
 
 
 def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:

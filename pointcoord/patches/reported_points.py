@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.mapping.expansion import multiplied
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers, products
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.patches.expansion import multiplied
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers, products
 
 Array = NDArray[np.float64]
 

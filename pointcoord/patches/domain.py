@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers
 from pointcoord.numerics.rounding import EPS
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

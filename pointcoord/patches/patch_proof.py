@@ -38,14 +38,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.expansion import multiplied
-from pointcoord.mapping.jet import Jet
-from pointcoord.mapping.multi_index import powers, products
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.patches.expansion import multiplied
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.multi_index import powers, products
 
 Array = NDArray[np.float64]
 

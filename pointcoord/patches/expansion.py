@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.multi_index import Products, powers, products
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.patches.multi_index import Products, powers, products
 
 Array = NDArray[np.float64]
 

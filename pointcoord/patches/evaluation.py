@@ -12,7 +12,7 @@ are three products with one and the same matrix of coefficients.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
@@ -20,7 +20,7 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.mapping.multi_index import powers
+from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -56,30 +56,36 @@ def steps(inputs: int, order: int) -> tuple[Step, ...]:
     return tuple(found)
 
 
-def monomials(states: Sequence[Array], order: int) -> list[Array]:
+def monomials(states: Sequence[Array], order: int, room: Array | None = None) -> list[Array]:
     """Powers of the variables, and their time derivatives.
 
     Args:
         states: the variables and as many of their derivatives as are wanted, each (p, N).
+        room: where they go, of at least so many derivatives and instants, (derivatives + 2, powers, N); a
+            new array has to be mapped by the system, which takes longer than filling it.
     Returns:
         As many arrays of shape (powers, N).
     """
     inputs, count = states[0].shape
     every = comb(order + inputs, inputs)
-    found = [np.empty((every, count)) for _ in states]
+    if room is None:
+        room = np.empty((len(states) + 1, every, count))
+    *found, spare = (part[:, :count] for part in room[: len(states) + 1])
     found[0][0] = 1.0
     for rates in found[1:]:
         rates[0] = 0.0
+    twice = 2.0 * states[1] if len(states) > 2 else states[0]
     for step in steps(inputs, order):
         here, before, i = slice(step.low, step.high), slice(step.first, step.last), step.variable
         np.multiply(states[0][i], found[0][before], out=found[0][here])
         if len(states) > 1:
+            product = spare[here]
             np.multiply(states[0][i], found[1][before], out=found[1][here])
-            found[1][here] += states[1][i] * found[0][before]
-        if len(states) > 2:
-            np.multiply(states[0][i], found[2][before], out=found[2][here])
-            found[2][here] += 2.0 * states[1][i] * found[1][before]
-            found[2][here] += states[2][i] * found[0][before]
+            found[1][here] += np.multiply(states[1][i], found[0][before], out=product)
+            if len(states) > 2:
+                np.multiply(states[0][i], found[2][before], out=found[2][here])
+                found[2][here] += np.multiply(twice[i], found[1][before], out=product)
+                found[2][here] += np.multiply(states[2][i], found[0][before], out=product)
     return found
 
 
@@ -100,47 +106,83 @@ def sum_series(
     Returns:
         Shape (derivatives + 1, N, m), per s^d.
     """
-    count = len(patch)
-    result = np.empty((len(states), count, coefficients.shape[-1]))
-    if count and (patch == patch[0]).all():
-        _sum_on(coefficients, middle, half, order, int(patch[0]), states, result, None)
-        return result
-    # Whole numbers of 16 bits are sorted in one pass over their digits.
-    small = patch.astype(np.int16) if len(coefficients) < 2**15 else patch
-    by_patch = np.argsort(small, kind="stable")
-    counts = np.bincount(patch, minlength=len(coefficients))
-    last = np.cumsum(counts)
-    for number in np.flatnonzero(counts):
-        members = by_patch[last[number] - counts[number] : last[number]]
-        _sum_on(coefficients, middle, half, order, int(number), states, result, members)
+    result = np.empty((len(states), len(patch), coefficients.shape[-1]))
+    summing = _Summing.of(coefficients, middle, half, order, states)
+    for number, members in _by_patch(patch, len(coefficients)):
+        for here, d, block in summing.blocks(number, members):
+            summed = block[1:].T @ coefficients[number, 1:]
+            if d == 0:
+                summed += coefficients[number, 0]
+            result[d, here] = summed
     return result
 
 
-def _sum_on(
+def sum_rows(
     coefficients: Array,
     middle: Array,
     half: Array,
     order: int,
-    number: int,
+    patch: Whole,
     states: Sequence[Array],
-    result: Array,
-    members: NDArray[np.intp] | None,
+    out: Array,
 ) -> None:
-    """Sum on one patch, for some of the poses or for all."""
-    table, centre = coefficients[number, 1:], middle[number]
-    scale = 1.0 / half[number]
-    count = result.shape[1] if members is None else len(members)
-    for low in range(0, count, BLOCK):
-        here = slice(low, low + BLOCK) if members is None else members[low : low + BLOCK]
-        local = [np.array(state[here].T, order="C") for state in states]
-        local[0] -= centre[:, None]
-        for state in local:
-            state *= scale[:, None]
-        for d, block in enumerate(monomials(local, order)):
-            summed = block[1:].T @ table
+    """The same into an array of shape (derivatives + 1, m, N), with the poses side by side in memory."""
+    summing = _Summing.of(coefficients, middle, half, order, states)
+    for number, members in _by_patch(patch, len(coefficients)):
+        for here, d, block in summing.blocks(number, members):
+            summed = coefficients[number, 1:].T @ block[1:]
             if d == 0:
-                summed += coefficients[number, 0]
-            result[d, here] = summed
+                summed += coefficients[number, 0, :, None]
+            out[d][:, here] = summed
+
+
+def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp] | None]]:
+    """Each patch that poses lie on with the places of these; None for all of them."""
+    if not len(patch):
+        return
+    if (patch == patch[0]).all():
+        yield int(patch[0]), None
+        return
+    # Whole numbers of 16 bits are sorted in one pass over their digits.
+    small = patch.astype(np.int16) if patches < 2**15 else patch
+    by_patch = np.argsort(small, kind="stable")
+    counts = np.bincount(patch, minlength=patches)
+    last = np.cumsum(counts)
+    for number in np.flatnonzero(counts):
+        yield int(number), by_patch[last[number] - counts[number] : last[number]]
+
+
+@dataclass(frozen=True)
+class _Summing:
+    """Powers of the poses on a patch, in blocks that share their memory."""
+
+    middle: Array
+    half: Array
+    order: int
+    states: Sequence[Array]
+    room: Array
+
+    @classmethod
+    def of(
+        cls, coefficients: Array, middle: Array, half: Array, order: int, states: Sequence[Array]
+    ) -> _Summing:
+        count = min(len(states[0]), BLOCK)
+        return cls(middle, half, order, states, np.empty((len(states) + 1, coefficients.shape[1], count)))
+
+    def blocks(
+        self, number: int, members: NDArray[np.intp] | None
+    ) -> Iterator[tuple[slice | NDArray[np.intp], int, Array]]:
+        """Places of some poses, a derivative, and the powers' derivatives there, (powers, poses)."""
+        scale = 1.0 / self.half[number]
+        count = len(self.states[0]) if members is None else len(members)
+        for low in range(0, count, BLOCK):
+            here = slice(low, min(low + BLOCK, count)) if members is None else members[low : low + BLOCK]
+            local = [np.array(state[here].T, order="C") for state in self.states]
+            local[0] -= self.middle[number][:, None]
+            for state in local:
+                state *= scale[:, None]
+            for d, block in enumerate(monomials(local, self.order, self.room)):
+                yield here, d, block
 
 
 @lru_cache(maxsize=32)

@@ -1,0 +1,176 @@
+"""Which rows of a square system determine which unknowns, block after block.
+
+A row reads some coordinates. A perfect matching gives each unknown a row of its own (Duff's MC21: depth
+first with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). With an arrow from each row to the rows of
+the unknowns that it reads, rows in a circle belong together: the strong components (Tarjan, SIAM J. Comput.
+1 (1972) 146) are the blocks, and they come out in an order in which they can be solved. In this order the
+Jacobian is block triangular, so it has full rank where each block has. Whichever perfect matching is found,
+the blocks are the same (Dulmage and Mendelsohn).
+
+Both searches keep their own stacks, so that a chain of any length is no recursion. The components take one
+pass over the entries; so does the matching of a linkage, where few rows have to give way to another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+FREE = -1
+
+
+class System(Protocol):
+    """Rows in coordinates, of which the first `unknowns` are unknown."""
+
+    @property
+    def reads(self) -> Sequence[Collection[int]]:
+        """The coordinates that each row reads."""
+
+    @property
+    def unknowns(self) -> int:
+        """How many are unknown."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Rows that determine unknowns, given the known coordinates and the unknowns of earlier blocks.
+
+    Attributes:
+        rows: their numbers, ascending.
+        unknowns: what they determine, as many, ascending.
+        reads: every other coordinate that the rows read, ascending.
+    """
+
+    rows: tuple[int, ...]
+    unknowns: tuple[int, ...]
+    reads: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Structure:
+    """The blocks of a system, in an order in which they can be solved."""
+
+    blocks: tuple[Block, ...]
+
+    def needed(self, unknowns: Collection[int]) -> tuple[int, ...]:
+        """Numbers of the blocks that these unknowns hang on, their own among them, in order."""
+        wanted, found = set(unknowns), []
+        for number in range(len(self.blocks) - 1, -1, -1):
+            block = self.blocks[number]
+            if not wanted.isdisjoint(block.unknowns):
+                found.append(number)
+                wanted.update(block.reads)
+        return tuple(reversed(found))
+
+    def moving(self, known: Collection[int]) -> tuple[int, ...]:
+        """Numbers of the blocks that move when these known coordinates do, in order."""
+        moved, found = set(known), []
+        for number, block in enumerate(self.blocks):
+            if not moved.isdisjoint(block.reads):
+                found.append(number)
+                moved.update(block.unknowns)
+        return tuple(found)
+
+
+def structure_of(system: System) -> Structure:
+    """The blocks of a system; one block of everything where rows and unknowns cannot be paired.
+
+    `QuadraticMap.structure` remembers it.
+    """
+    patterns = [sorted(coordinates) for coordinates in system.reads]
+    entries = [[i for i in pattern if i < system.unknowns] for pattern in patterns]
+    row_of = _matching(entries, system.unknowns)
+    if row_of is None:
+        return Structure((_block(patterns, range(len(patterns)), range(system.unknowns)),))
+    unknown_of = [FREE] * len(entries)
+    for unknown, row in enumerate(row_of):
+        unknown_of[row] = unknown
+    components = _strong_components([[row_of[i] for i in row] for row in entries])
+    return Structure(
+        tuple(_block(patterns, sorted(rows), sorted(unknown_of[row] for row in rows)) for rows in components)
+    )
+
+
+def _block(patterns: Sequence[Collection[int]], rows: Collection[int], unknowns: Collection[int]) -> Block:
+    read = {coordinate for row in rows for coordinate in patterns[row]}
+    return Block(tuple(rows), tuple(unknowns), tuple(sorted(read.difference(unknowns))))
+
+
+def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> list[int] | None:
+    """The row of each unknown, each row once; None if rows and unknowns cannot be paired.
+
+    A row takes a free unknown if it reads one; else it looks for a row that may give way, and so on.
+    """
+    if len(entries) != unknowns:
+        return None
+    row_of = [FREE] * unknowns
+    looked = [0] * unknowns  # how far each row has looked for a free unknown; a taken one is never free again
+    visited = [FREE] * unknowns  # by the search of which row
+    for start in range(unknowns):
+        path, wanted, places = [start], [FREE], [0]
+        while path:
+            row = path[-1]
+            while looked[row] < len(entries[row]) and row_of[entries[row][looked[row]]] != FREE:
+                looked[row] += 1
+            if looked[row] < len(entries[row]):
+                # Everyone on the path takes the unknown that the next one gives up.
+                wanted[-1] = entries[row][looked[row]]
+                for one, unknown in zip(path, wanted, strict=True):
+                    row_of[unknown] = one
+                break
+            while places[-1] < len(entries[row]) and visited[entries[row][places[-1]]] == start:
+                places[-1] += 1
+            if places[-1] == len(entries[row]):
+                for stack in (path, wanted, places):
+                    stack.pop()
+                continue
+            unknown = wanted[-1] = entries[row][places[-1]]
+            visited[unknown] = start
+            for stack, first in ((path, row_of[unknown]), (wanted, FREE), (places, 0)):
+                stack.append(first)
+        if not path:
+            return None
+    return row_of
+
+
+def _strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Nodes on a common circle, as components; a component comes after all that it has arrows to."""
+    count = len(successors)
+    number, low = [FREE] * count, [FREE] * count  # order of discovery, and the lowest that is reached
+    open_nodes: list[int] = []
+    is_open = [False] * count
+    found: list[list[int]] = []
+    discovered = 0
+    for root in range(count):
+        if number[root] != FREE:
+            continue
+        path, places = [root], [0]
+        while path:
+            node = path[-1]
+            if places[-1] == 0:
+                number[node] = low[node] = discovered
+                discovered += 1
+                open_nodes.append(node)
+                is_open[node] = True
+            if places[-1] < len(successors[node]):
+                other = successors[node][places[-1]]
+                places[-1] += 1
+                if number[other] == FREE:
+                    path.append(other)
+                    places.append(0)
+                elif is_open[other]:
+                    low[node] = min(low[node], number[other])
+                continue
+            path.pop()
+            places.pop()
+            if path:
+                low[path[-1]] = min(low[path[-1]], low[node])
+            if low[node] == number[node]:
+                component = [open_nodes.pop()]
+                while component[-1] != node:
+                    component.append(open_nodes.pop())
+                for one in component:
+                    is_open[one] = False
+                found.append(component)
+    return found

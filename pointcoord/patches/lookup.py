@@ -1,0 +1,125 @@
+"""Which patch values of the inputs lie on, and whether a whole box of values lies on patches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.patches.domain import Domain
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+# A value this near to the edge of a smallest box, in boxes, is taken to touch both.
+TOUCHING = 1e-3
+
+
+@dataclass(frozen=True)
+class Lookup:
+    """The smallest boxes of a domain, each with the number of what it lies in.
+
+    Attributes:
+        table: of each of the smallest boxes a number, negative where there is no patch, (parts, ..., parts).
+    """
+
+    domain: Domain
+    table: Whole
+
+    @classmethod
+    def of(cls, domain: Domain, low: Whole, high: Whole) -> Lookup:
+        """Of patches by their corners, (P, p); -1 where there is none."""
+        table = np.full((domain.parts,) * len(domain.free), -1, dtype=np.int64)
+        for number, (first, last) in enumerate(zip(low, high, strict=True)):
+            table[part_of(first, last)] = number
+        return cls(domain, table)
+
+    @cached_property
+    def corner(self) -> tuple[list[float], list[float], list[float]]:
+        """The lower and upper ends of the inputs, and how many of the smallest boxes lie along a unit."""
+        low, high = self.domain.ends
+        return low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist()
+
+    @cached_property
+    def single(self) -> bool:
+        """Whether one patch is all."""
+        return bool((self.table == 0).all())
+
+    def at(self, values: Array) -> Whole:
+        """The number at values inside the domain, shape (..., p) to (...)."""
+        low, _, along = self.corner
+        last = self.domain.parts - 1
+        places = (((values[..., i] - low[i]) * along[i]).astype(np.int64) for i in range(len(low)))
+        return np.asarray(self.table[tuple(np.minimum(place, last) for place in places)])
+
+    def everywhere(self, low: Array, high: Array) -> NDArray[np.bool_]:
+        """Whether boxes of values, (N, p), touch nothing that no patch covers, (N,)."""
+        return ~self._gaps.any_in(*touched(self.domain, low, high))
+
+    @cached_property
+    def _gaps(self) -> Marked:
+        return Marked.of(self.table < 0)
+
+
+@dataclass(frozen=True)
+class Marked:
+    """Some of the smallest boxes of a domain.
+
+    Attributes:
+        sums: how many lie before each corner in all inputs, (parts + 1, ..., parts + 1).
+    """
+
+    sums: Whole
+
+    @classmethod
+    def of(cls, marks: NDArray[np.bool_]) -> Marked:
+        """By whether each of the smallest boxes is one."""
+        sums = np.zeros(tuple(count + 1 for count in marks.shape), dtype=np.int64)
+        inner = marks.astype(np.int64)
+        for axis in range(marks.ndim):
+            inner = np.cumsum(inner, axis=axis)
+        sums[(slice(1, None),) * marks.ndim] = inner
+        return cls(sums)
+
+    @classmethod
+    def touched_by(cls, domain: Domain, low: Array, high: Array) -> Marked:
+        """Those that boxes of values touch, (N, p)."""
+        first, last = touched(domain, low, high)
+        inputs = first.shape[1]
+        steps = np.zeros((domain.parts + 1,) * inputs, dtype=np.int64)
+        for corner in np.ndindex(*(2,) * inputs):
+            place = tuple(last[:, i] if corner[i] else first[:, i] for i in range(inputs))
+            np.add.at(steps, place, -1 if sum(corner) % 2 else 1)
+        for axis in range(inputs):
+            steps = np.cumsum(steps, axis=axis)
+        return cls.of(steps[(slice(0, -1),) * inputs] > 0)
+
+    def any_in(self, low: Whole, high: Whole) -> NDArray[np.bool_]:
+        """Whether there are any between corners, in smallest boxes, (N, p) each, to (N,)."""
+        inputs = low.shape[1]
+        found = np.zeros(len(low), dtype=np.int64)
+        for corner in np.ndindex(*(2,) * inputs):
+            place = tuple(high[:, i] if corner[i] else low[:, i] for i in range(inputs))
+            found += (-1 if (inputs - sum(corner)) % 2 else 1) * self.sums[place]
+        return np.asarray(found > 0)
+
+
+def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
+    """Corners of the smallest boxes that boxes of values touch, in these, each (N, p)."""
+    start, stop = domain.ends
+    along, last = domain.parts / (stop - start), domain.parts
+
+    def rounded(values: Array, shift: float, way: Callable[[Array], Array]) -> Array:
+        return np.asarray(way((values - start) * along + shift))
+
+    first = np.clip(rounded(low, -TOUCHING, np.floor), 0, last - 1).astype(np.int64)
+    final = np.clip(rounded(high, TOUCHING, np.ceil), 1, last).astype(np.int64)
+    return first, np.maximum(final, first + 1)
+
+
+def part_of(low: Whole, high: Whole) -> tuple[slice, ...]:
+    """A box's part of a table of the smallest ones."""
+    return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))

@@ -1,0 +1,357 @@
+r"""Many instants close together: the rows of a table as polynomials in cells, by one matrix product.
+
+A cell is a stretch of consecutive instants inside one series, so short that every number is a polynomial of
+degree `DEGREE` there, to rounding. Its numbers are computed by the plain formulas (series, effects) at that
+many and one more Chebyshev points, and all instants of the cell take
+
+    rows = [coefficients, directions, origin] [s^n .. s^0, laws of the chassis, 1],
+
+a product whose result is written where it belongs. What is made of states, an angle or a turn, costs there
+what a coordinate costs. Whether a cell is short enough is not guessed:
+
+- of a state, by its series. About the middle c of a cell of half the length h, sum_j c_j s^j has terms of
+  order m of at most sum_j binomial(j, m) |c_j| c^(j - m) h^m, and what of those is beyond the degree bounds
+  the difference (see `chebyshev`): below an eighth of a rounding of the terms' magnitudes, by which the sum
+  of the series is rounded itself, whatever the terms are.
+- of a number that is computed of states, analytic as these are: where the second half of its coefficients is
+  below `HALFWAY`, what lies beyond them is below the square of that and more.
+- a law of the chassis is taken at the instants themselves, unless the same holds of it, no break lies in the
+  cell, and it nowhere comes close to zero there if its own rounding does.
+
+A cell that is too long is halved; where one of few instants still is, as where a motion begins from rest and
+each number counts relative to itself, the plain formulas are left to do. How far a number is off is proven
+from the number (see `bounds`), however it was found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import InputOutOfRange, SingularConfiguration
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.results.readout import BLOCK, Readout
+from pointcoord.results.states import StatesOfChain
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.intp]
+Stretch = tuple[int, int]
+"""Instants from a number to before another."""
+
+DEGREE = 8
+# Instants of a cell: at most what keeps its powers in a second-level cache, at least what pays its points.
+MOST, FEWEST = 4096, 128
+# Instants of one series from which on looking for cells pays.
+ENOUGH = 1024
+# Of the terms' magnitudes, what may be left out; and what of the largest number of its kind is none at all:
+# rates that are solved for together share that much of each other's rounding.
+LEFT_OUT, SHARED = UNIT_ROUNDOFF / 8.0, 8.0 * EPS
+# Half the length of a cell by its distance from the start of the series: its numbers are of one size there.
+NARROW = 1.0 / 16.0
+# By how much of half a cell an instant may be rounded (see `Interpolation.chebyshev`).
+ROUNDED = 2.0**-24
+# Largest coefficient of the second half, of a number's size.
+HALFWAY = 2.0**-30
+# Instants whose cells are worked out together: their tables take some 15 MB at most.
+TOGETHER = 2**18
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """Cells of instants, a number each.
+
+    Attributes:
+        low, high: their instants. middle, half: s.
+    """
+
+    low: Whole
+    high: Whole
+    middle: Array
+    half: Array
+
+    @classmethod
+    def of(cls, low: Whole, high: Whole, times: Array) -> _Cells:
+        """Of consecutive instants from numbers `low` to before `high`."""
+        first, last = times[low], times[high - 1]
+        middle = first + 0.5 * (last - first)
+        return cls(low, high, middle, np.maximum(middle - first, last - middle))
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+    def chosen(self, which: NDArray[np.bool_] | Whole) -> _Cells:
+        """Some of them."""
+        return _Cells(self.low[which], self.high[which], self.middle[which], self.half[which])
+
+    @staticmethod
+    def joined(parts: Sequence[_Cells]) -> _Cells:
+        """All of some."""
+        columns = ((each.low, each.high, each.middle, each.half) for each in parts)
+        low, high, middle, half = (np.concatenate(column) for column in zip(*columns, strict=True))
+        return _Cells(low, high, middle, half)
+
+    def points(self, times: Array) -> tuple[Array, Array]:
+        """Instants of each cell near the points, and by how much of half a cell; (cells, DEGREE + 1)."""
+        own = interpolation(DEGREE).points
+        first, last = times[self.low][:, None], times[self.high - 1][:, None]
+        points = np.clip(self.middle[:, None] + self.half[:, None] * own, first, last)
+        return points, (points - self.middle[:, None]) / self.half[:, None] - own
+
+    def stretches(self) -> list[Stretch]:
+        """The instants of cells in order, neighbours taken together."""
+        begins = np.flatnonzero(np.append(True, self.low[1:] != self.high[:-1]))
+        ends = np.append(begins[1:], len(self)) - 1
+        return (
+            list(zip(self.low[begins].tolist(), self.high[ends].tolist(), strict=True)) if len(self) else []
+        )
+
+
+@dataclass(frozen=True)
+class _Laws:
+    """The laws of the chassis in cells.
+
+    Attributes:
+        derivatives: of them, that are reported.
+        coefficients: by law, of the powers, highest first, (cells, derivatives, DEGREE + 1).
+        smooth: by law, in which cells it is taken from these.
+    """
+
+    chassis: ChassisMotion
+    derivatives: tuple[int, ...]
+    coefficients: Mapping[str, Array]
+    smooth: Mapping[str, NDArray[np.bool_]]
+
+    @classmethod
+    def of(cls, chassis: ChassisMotion, derivatives: tuple[int, ...], cells: _Cells, times: Array) -> _Laws:
+        """Work them out.
+
+        Raises:
+            InputOutOfRange: as `ChassisMotion.law`.
+        """
+        points, moved = cells.points(times)
+        coefficients, smooth = {}, {}
+        for name, function in chassis.functions.items():
+            law = chassis.law(name, points.ravel(), derivatives[-1])[list(derivatives)]
+            values = law.reshape(-1, *points.shape)
+            found = interpolation(DEGREE).chebyshev(values, moved)
+            size = np.abs(values)
+            rounding = np.stack([function.rounding(points.ravel(), d) for d in derivatives])
+            own = rounding.reshape(values.shape).min(axis=-1)
+            kept = UNIT_ROUNDOFF * size.max(axis=-1) <= 2.0 * np.maximum(
+                UNIT_ROUNDOFF * size.min(axis=-1), own
+            )
+            falling = np.abs(found[..., DEGREE // 2 + 1 :]).max(axis=-1) <= HALFWAY * size.max(axis=-1)
+            breaks = np.searchsorted(function.breaks, points[:, [0, -1]].T)
+            smooth[name] = (kept & falling).all(axis=0) & (breaks[0] == breaks[1])
+            coefficients[name] = _of_powers(found)
+        return cls(chassis, derivatives, coefficients, smooth)
+
+    def put(self, cell: int, times: Array, powers: Array, out: Array) -> None:
+        """The laws at the instants of a cell, a row for each derivative of each.
+
+        Args:
+            powers: of the instants' places in the cell, highest first, (DEGREE + 1, N).
+        """
+        for i, name in enumerate(self.chassis.functions):
+            rows = out[i * len(self.derivatives) : (i + 1) * len(self.derivatives)]
+            if self.smooth[name][cell]:
+                np.matmul(self.coefficients[name][cell], powers, out=rows)
+            else:
+                rows[...] = self.chassis.law(name, times, self.derivatives[-1])[list(self.derivatives)]
+
+
+def _of_powers(chebyshev: Array) -> Array:
+    """Coefficients of powers, highest first, of each cell, from those of Chebyshev's polynomials.
+
+    The largest comes last, so that a sum is rounded by the smaller ones' size until then.
+
+    Args:
+        chebyshev: shape (rows, cells, DEGREE + 1).
+    Returns:
+        Shape (cells, rows, DEGREE + 1).
+    """
+    return np.ascontiguousarray(np.moveaxis(chebyshev @ interpolation(DEGREE).powers, 1, 0)[..., ::-1])
+
+
+@dataclass(frozen=True)
+class CloseInstants:
+    """A way to fill a table where many instants lie close together.
+
+    Attributes:
+        states: of one mechanism, as series.
+    """
+
+    readout: Readout
+    states: StatesOfChain
+
+    def fill(self, times: Array, rows: Array) -> list[Stretch]:
+        """Fill the columns of a table where it pays.
+
+        Args:
+            times: instants that do not decrease, (N,), s.
+            rows: shape (height, N).
+        Returns:
+            The columns that are left, in order.
+        """
+        left: list[Stretch] = []
+        for low in range(0, len(times), TOGETHER):
+            here = slice(low, low + TOGETHER)
+            left += [(low + a, low + b) for a, b in self._fill(times[here], rows[:, here])]
+        return left
+
+    def _fill(self, times: Array, rows: Array) -> list[Stretch]:
+        whole = [(0, len(times))]
+        chain = self.states.chain
+        if len(times) < ENOUGH or not (times[0] >= self.states.start and times[-1] <= chain.stop):
+            return whole
+        cells = self._cells(times)
+        if not len(cells):
+            return whole
+        try:
+            filled = self._fill_cells(cells, times, rows).stretches()
+        except (InputOutOfRange, SingularConfiguration):
+            # At a point of a cell that may be no instant that was asked for.
+            return whole
+        ends = [0, *(end for stretch in filled for end in stretch), len(times)]
+        return [(ends[i], ends[i + 1]) for i in range(0, len(ends), 2) if ends[i] < ends[i + 1]]
+
+    def _cells(self, times: Array) -> _Cells:
+        """As few cells as are short enough for every state."""
+        edges = self.states.series[0].edges(times)
+        found = [_Cells.of(np.zeros(0, np.intp), np.zeros(0, np.intp), times)]
+        for segment, (first, last) in enumerate(pairwise(edges)):
+            if last - first < ENOUGH:
+                continue
+            low = np.arange(first, last, MOST)
+            high = np.minimum(low + MOST, last)
+            while len(low):
+                cells = _Cells.of(low, high, times)
+                short = self._short_enough(segment, cells)
+                found.append(cells.chosen(short))
+                long = ~short & (high - low >= 2 * FEWEST)
+                low, high = low[long], high[long]
+                half = (low + high) // 2
+                low, high = np.concatenate([low, half]), np.concatenate([half, high])
+        every = _Cells.joined(found)
+        return every.chosen(np.argsort(every.low))
+
+    def _short_enough(self, segment: int, cells: _Cells) -> NDArray[np.bool_]:
+        """Whether every state is a polynomial of the degree in each cell."""
+        series = self.states.series[0]
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            middle = (cells.middle - series.starts[segment]) / series.scales[segment]
+            half = cells.half / series.scales[segment]
+            ratio = half / middle
+            rounded = EPS * np.abs(cells.middle) <= ROUNDED * cells.half
+            good = rounded & (half > 0.0) & (middle > 0.0) & (ratio <= NARROW)
+        if not good.any():
+            return good
+        sizes = self._sizes[segment]
+        orders = np.arange(sizes.shape[-1])[:, None]
+        counts = binomials(len(orders))[:, DEGREE + 1 :]
+        beyond = 2.0 * shares_beyond(DEGREE, len(orders))[DEGREE + 1 :]
+        middle, half, ratio = middle[good], half[good], ratio[good]
+        left = sizes @ (middle**orders * (counts @ (beyond[:, None] * ratio ** orders[DEGREE + 1 :])))
+        terms = sizes @ (middle - half) ** orders
+        allowed = LEFT_OUT * (terms + SHARED * self._largest_of_a_kind(terms))
+        good[good] = (left <= allowed).all(axis=0)
+        return good
+
+    def _largest_of_a_kind(self, terms: Array) -> Array:
+        """Of all rows that are the same derivative, in each row."""
+        largest = np.empty_like(terms)
+        for derivative in self.readout.table.reported:
+            rows = self.readout.table.states_of(derivative)[0]
+            largest[rows] = terms[rows].max(axis=0, initial=0.0)
+        return largest
+
+    @cached_property
+    def _sizes(self) -> tuple[Array, ...]:
+        """The magnitudes of each segment's coefficients."""
+        return tuple(np.abs(table) for table in self.states.series[0].tables)
+
+    def _fill_cells(self, cells: _Cells, times: Array, rows: Array) -> _Cells:
+        """Fill the columns of those cells in which computed numbers are polynomials too, and give these."""
+        table, still, added = self.readout.table, self.readout.table.first_still, self._added
+        coefficients, good = self._coefficients(cells, times)
+        cells, coefficients = cells.chosen(good), coefficients[good]
+        laws = _Laws.of(self.readout.chassis, table.reported, cells, times)
+        if added.shape[-1] > 1:
+            still = table.height
+        else:
+            for low, high in cells.stretches():
+                rows[still:, low:high] = added[still:]
+        matrix = np.zeros((still, DEGREE + 1 + added.shape[-1]))
+        matrix[:, DEGREE + 1 :] = added[:still]
+        room = np.ones((matrix.shape[-1], MOST))
+        for cell, (low, high) in enumerate(zip(cells.low.tolist(), cells.high.tolist(), strict=True)):
+            basis = room[:, : high - low]
+            power = basis[DEGREE::-1]
+            np.subtract(times[low:high], cells.middle[cell], out=power[1])
+            power[1] /= cells.half[cell]
+            for known in (1, 2, 4):
+                np.multiply(power[1 : known + 1], power[known], out=power[known + 1 : 2 * known + 1])
+            laws.put(cell, times[low:high], basis[: DEGREE + 1], basis[DEGREE + 1 : -1])
+            matrix[: table.first_still, : DEGREE + 1] = coefficients[cell]
+            np.matmul(matrix, basis, out=rows[:still, low:high])
+        return cells
+
+    def _coefficients(self, cells: _Cells, times: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Of the rows that are solved for or computed; and in which cells computed ones are polynomials."""
+        points, moved = cells.points(times)
+        values = self._at_points(points.ravel()).reshape(-1, *points.shape)
+        found = interpolation(DEGREE).chebyshev(values, moved)
+        good = np.ones(len(cells), dtype=bool)
+        for part, size in self._computed:
+            largest = np.maximum(np.abs(values[part]).max(axis=(0, -1)), size)
+            good &= np.abs(found[part][..., DEGREE // 2 + 1 :]).max(axis=(0, -1)) <= HALFWAY * largest
+        return _of_powers(found), good
+
+    def _at_points(self, points: Array) -> Array:
+        """The rows that are solved for or computed, by the plain formulas, without what reporting adds."""
+        readout = self.readout
+        values = np.empty((readout.table.height, len(points)))
+        for low in range(0, len(points), BLOCK):
+            here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
+            readout.compute(self.states.states(here, block), readout.added(here), block)
+        return values[: readout.table.first_still]
+
+    @cached_property
+    def _computed(self) -> list[tuple[slice, float]]:
+        """The rows of each number that is computed of states, and a size below which it is small.
+
+        A vector is large or small as a whole, and an angle by the side of a radian.
+        """
+        table = self.readout.table
+        return [
+            (table.places[quantity.name][name], 1.0 if quantity.unit == "rad" else 0.0)
+            for effect in table.computed
+            for quantity in effect.quantities
+            for name in table.places[quantity.name]
+        ]
+
+    @cached_property
+    def _added(self) -> Array:
+        """What reporting adds to each row along each derivative of each law, and what stands.
+
+        Shape (height, laws x derivatives + 1); zero in the rows that are computed.
+        """
+        readout, table = self.readout, self.readout.table
+        count = len(table.reported)
+        added = np.zeros((table.height, len(readout.chassis.functions) * count + 1))
+        added[table.first_still :, -1:] = self.states.still
+        for place, derivative in enumerate(table.reported):
+            for part in table.states_of(derivative):
+                points = added[part].reshape(-1, 3, added.shape[-1])
+                for i, name in enumerate(readout.chassis.functions):
+                    points[..., i * count + place] = readout.chassis.directions[name]
+                if derivative == 0:
+                    points[..., -1] += readout.mechanism.origin
+        return added

@@ -1,0 +1,331 @@
+r"""A chain of series that many members share, a member a column: what `taylor.build_chain` does with the batch last.
+
+Segments are cut where the coarsest of their members' last terms say, each end is solved by Newton's method and
+checked as there: the first step must be no more than the tolerance and rounding, the end on its branch, and what is
+left proven to be small, block by block (see `block_proof`). The order is the one that costs least here, where a
+segment beside its orders costs less than one by one, and the products of a high order more.
+
+A member that asks for much shorter segments than the others, or whose end is not confirmed, is reported: whoever
+asked solves it by itself, and either takes it out or says that it is to stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.batch_last.elimination import Eliminated
+from pointcoord.numerics.batch_last.series import ColumnSeries
+from pointcoord.numerics.branch import NEAR
+from pointcoord.numerics.counters import Work
+from pointcoord.solve.paths_together import Columns, Off
+from pointcoord.solve.taylor import (
+    MOST,
+    MOST_SEGMENTS,
+    SHORTEST,
+    SOLVED,
+    Decay,
+    Segment,
+    Settings,
+    decay_by_sizes,
+    length_by_sizes,
+    power_of_two,
+)
+from pointcoord.time_functions import TimeFunction
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+# Orders of the first segment, by which the order of the others is chosen, and at least of any.
+BEGUN = 8
+# What a segment costs beside its orders, in orders, and what the products of an order cost for each order below.
+SEGMENT, PRODUCTS = 12.0, 0.015
+# A member whose last terms alone would make the segments this much shorter than the middle one's stands out.
+STANDS_OUT = 0.5
+# Steps of Newton's method at an end, at most.
+NEWTON = 4
+
+
+class NotTogether(Exception):
+    """The members cannot be followed together by quick means; the plain form must say what there is to say."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """What members follow: their mechanisms, the laws of the inputs, and how finely.
+
+    Attributes:
+        judge: whether a member, by its number among those that began, goes on by itself.
+    """
+
+    columns: Columns
+    functions: Mapping[str, TimeFunction]
+    start: float
+    stop: float
+    settings: Settings
+    judge: Callable[[int], bool]
+
+    def build(self, mechanism: Mechanism, y: Array, left: Array) -> tuple[Numbers, tuple[Segment, ...], Work]:
+        """The chain of all members that go on, with their numbers.
+
+        Args:
+            y: start, shape (size, members). left: proven distance to the exact assembly there, (members,).
+        Raises:
+            NotTogether: it takes the plain form.
+        """
+        columns, alive = self.columns, np.arange(y.shape[-1])
+        joint = _Joint(self.start, y, left, self.stop - self.start)
+        segments: list[Segment] = []
+        stays: set[int] = set()
+        work = Work()
+        mechanism_now = mechanism
+        while joint.instant < self.stop or not segments:
+            if len(segments) == MOST_SEGMENTS or not len(alive):
+                raise NotTogether
+            step = _Step(self, mechanism_now, joint, stays, alive)
+            ended = step.take()
+            work += step.work
+            if isinstance(ended, _Joint):
+                segments.append(step.segment(ended.instant))
+                joint = ended
+                continue
+            # Some members stand out: each goes by itself or not at all.
+            kept = np.ones(len(alive), dtype=bool)
+            for place in np.flatnonzero(ended).tolist():
+                if self.judge(int(alive[place])):
+                    stays.add(int(alive[place]))
+                else:
+                    kept[place] = False
+            if not kept.any():
+                raise NotTogether
+            if kept.all() and step.failed:
+                raise NotTogether
+            alive = alive[kept]
+            numbers = np.flatnonzero(kept)
+            mechanism_now = mechanism_now.taken(numbers)
+            joint = joint.part(numbers)
+            segments = [
+                Segment(s.start, s.stop, s.scale, s.coefficients[numbers], np.asarray(s.left)[numbers])
+                for s in segments
+            ]
+        del columns
+        return alive, tuple(segments), work
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Where a segment starts; length: of the one before it, or of the whole motion. decay: see `Decay`."""
+
+    instant: float
+    y: Array
+    left: Array
+    length: float
+    decay: Decay | None = None
+
+    def part(self, numbers: Numbers) -> _Joint:
+        return _Joint(
+            self.instant,
+            np.ascontiguousarray(self.y[:, numbers]),
+            self.left[numbers],
+            self.length,
+            self.decay,
+        )
+
+
+class _Step:
+    """One segment from a joint, as far as it goes.
+
+    Attributes:
+        failed: whether members could not be confirmed, however short the segment.
+    """
+
+    def __init__(
+        self, course: Course, mechanism: Mechanism, joint: _Joint, stays: set[int], alive: Numbers
+    ) -> None:
+        self.course, self.mechanism, self.joint = course, mechanism, joint
+        self.stays = np.array([int(number) in stays for number in alive])
+        self.failed = False
+        self.work = Work()
+        self.scale = power_of_two(joint.length)
+        columns = course.columns
+        with np.errstate(all="ignore"):
+            self.factors: Eliminated = columns.factorise(columns.map.differences(joint.y))
+        members = joint.y.shape[-1]
+        self.work += Work(segments=1, factorisations=members)
+
+    def take(self) -> _Joint | NDArray[np.bool_]:
+        """The end of the segment, or who is not confirmed there."""
+        course, joint = self.course, self.joint
+        if not self.factors.sound.all():
+            return self._unsound(~self.factors.sound)
+        limit = self._next_break()
+        time = limit - joint.instant
+        if course.start == course.stop:
+            self._expand(max(course.settings.derivative, 1))
+            return _Joint(course.stop, joint.y, joint.left, joint.length)
+        order = BEGUN if joint.decay is None else _order(joint.decay, time)
+        self._begin(MOST)
+        self._expand(order)
+        length = self._length()
+        if np.isfinite(length):
+            decay = self._decay(length)
+            wanted = _order(decay, time)
+            if joint.decay is None and wanted > order:
+                self._expand(wanted)
+                length = self._length()
+        if not np.isfinite(self.sizes).all():
+            raise NotTogether
+        if (out := self._standing_out()).any():
+            return out
+        fallen = self._decay(length) if np.isfinite(length) else None
+        shortest = SHORTEST * (course.stop - course.start)
+        good = np.ones(joint.y.shape[-1], dtype=bool)
+        for _ in range(8):
+            if length < shortest and joint.instant + length < limit:
+                break
+            end = limit if joint.instant + length >= limit else joint.instant + length
+            good, y, left = self._end(end)
+            if good.all():
+                return _Joint(end, y, left, min(length, end - joint.instant), fallen)
+            if np.count_nonzero(~good) <= len(good) // 4 and not self.stays[~good].all():
+                return self._unsound(~good)
+            length = 0.5 * (end - joint.instant)
+        return self._unsound(~good)
+
+    def segment(self, stop: float) -> Segment:
+        """The segment up to an instant, its members first."""
+        series = self.series.y[: self.series.count]
+        return Segment(self.joint.instant, stop, self.scale, series.transpose(2, 0, 1), self.joint.left)
+
+    def _unsound(self, members: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        self.failed = bool((members & self.stays).any())
+        if self.failed:
+            raise NotTogether
+        return members
+
+    def _next_break(self) -> float:
+        breaks = {b for function in self.course.functions.values() for b in function.breaks}
+        return min((b for b in breaks if self.joint.instant < b < self.course.stop), default=self.course.stop)
+
+    def _known(self, instant: float, order: int) -> Array:
+        """Coefficients of the driven coordinates, shape (order + 1, driven, members), per s^k."""
+        topology, drawing = self.mechanism.topology, self.mechanism.drawing
+        found = []
+        for drive in topology.drives:
+            series = drive.series(self.course.functions[drive.input].series(instant, order), drawing)
+            found.append(np.broadcast_to(series, (self.joint.y.shape[-1], order + 1)).T)
+        return np.stack(found, axis=1)
+
+    def _begin(self, most: int) -> None:
+        joint, columns = self.joint, self.course.columns
+        self.law = self._known(joint.instant, most) * (self.scale ** np.arange(most + 1.0))[:, None, None]
+        if not np.isfinite(self.law).all():
+            raise NotTogether
+        moving = [place for i, place in enumerate(columns.driven) if self.law[1:, i].any()]
+        self.moving = [columns.driven.index(place) for place in moving]
+        self.series = ColumnSeries.begin(columns.map, self.factors, joint.y, moving, most)
+        self.sizes = np.zeros((1, joint.y.shape[-1]))
+
+    def _expand(self, order: int) -> None:
+        if not hasattr(self, "series"):
+            self._begin(order)
+        n, members = self.course.columns.map.unknowns, self.joint.y.shape[-1]
+        self.work += Work(series_orders=order, rate_solves=order * members)
+        with np.errstate(all="ignore"):
+            while self.series.count <= order:
+                self.series.carry_on(self.law[self.series.count, self.moving])
+            first = len(self.sizes) if len(self.sizes) > 1 else 0
+            new = np.abs(self.series.y[first : self.series.count, :n]).max(axis=1)
+            self.sizes = new if first == 0 else np.concatenate([self.sizes, new])
+
+    def _logs(self) -> tuple[Array, Array]:
+        with np.errstate(divide="ignore"):
+            return np.log(self.sizes.max(axis=-1))[None], np.log(self.sizes.min(axis=-1))[None]
+
+    def _length(self) -> float:
+        """How long the segment may be, s."""
+        largest, smallest = self._logs()
+        return length_by_sizes(largest, self.course.settings, smallest) * self.scale
+
+    def _decay(self, length: float) -> Decay:
+        decay = decay_by_sizes(self._logs()[0], length / self.scale)
+        return Decay(decay.radius * self.scale, decay.spread)
+
+    def _standing_out(self) -> NDArray[np.bool_]:
+        """Members whose last terms are so large that they alone shorten the segment."""
+        last = np.maximum(self.sizes[-1], self.sizes[-2])
+        middle = float(np.median(last))
+        factor = STANDS_OUT ** -(len(self.sizes) - 1.0)
+        return np.asarray((last > max(middle, 1e-300) * factor) & ~self.stays)
+
+    def _end(self, end: float) -> tuple[NDArray[np.bool_], Array, Array]:
+        """Whether members are confirmed at an instant; their coordinates there, and what is left of them."""
+        course, joint, columns = self.course, self.joint, self.course.columns
+        rows, proof, n, tolerance = (
+            columns.map,
+            columns.proof,
+            columns.map.unknowns,
+            course.settings.tolerance,
+        )
+        members = joint.y.shape[-1]
+        s = (end - joint.instant) / self.scale
+        y = self.series.at(s)
+        y[n:] = joint.y[n:]
+        y[columns.driven] = self._known(end, 0)[0]
+        largest = self.sizes[-2:] * np.array([[s ** (len(self.sizes) - 2)], [s ** (len(self.sizes) - 1)]])
+        left_out = largest.sum(axis=0)
+        good = np.ones(members, dtype=bool)
+        left, first_step = np.full(members, np.inf), np.zeros(members)
+        with np.errstate(all="ignore"):
+            for number in range(NEWTON):
+                d = rows.differences(y)
+                factors = columns.factorise(d)
+                step = columns.step(factors, d)
+                size = np.abs(step).max(axis=0)
+                y[:n] += step
+                good &= factors.sound & (factors.orientation == self.factors.orientation)
+                inverse = factors.inverse()
+                np.abs(inverse, out=inverse)
+                omega = proof.lipschitz(inverse)
+                if number == 0:
+                    first_step = size
+                    alone = (omega * (first_step + left_out)).max(axis=0) / columns.least
+                    good &= alone <= 2.0 * NEAR
+                off = Off(columns, proof.turning_of_all(inverse), size)
+                radius = proof.radii(inverse, omega, off.missed(0.0), off.turns, np.abs(factors.entries))
+                left = radius.max(axis=0)
+                self.work += Work(residuals=members, factorisations=members)
+                if (left <= SOLVED * tolerance).all() or not good.any():
+                    break
+        good &= left <= SOLVED * tolerance
+        doubtful = good & ~(first_step <= tolerance)
+        if doubtful.any():
+            good[doubtful] = first_step[doubtful] <= tolerance + 2.0 * self._noise(y, end, doubtful)
+        return good, y, left
+
+    def _noise(self, y: Array, end: float, members: NDArray[np.bool_]) -> Array:
+        """Rounding of Newton's step of some members, the rounding of the laws included, shape (members,)."""
+        numbers = np.flatnonzero(members)
+        mechanism, system = self.mechanism.taken(numbers), self.course.columns.map.system
+        here = np.ascontiguousarray(y[:, numbers].T)
+        off = {name: function.rounding(np.array(end)) for name, function in self.course.functions.items()}
+        data = np.zeros(here.shape[-1])
+        if any(doubt.any() for doubt in off.values()):
+            _, data = mechanism.known_data(here, off)
+        rows = system.uncertainty(here, data)
+        inverse = np.linalg.inv(system.jacobian(here))
+        return np.asarray((np.abs(inverse) @ rows[..., None])[..., 0].max(axis=-1))
+
+
+def _order(decay: Decay, time: float) -> int:
+    """The order that costs least over a time, s; two to spare because the law of lengths is not exact."""
+    orders = np.arange(BEGUN, MOST + 1)
+    reach = decay.radius * np.exp(-decay.spread / np.maximum(orders - 1, 1))
+    with np.errstate(divide="ignore", over="ignore"):
+        count = np.maximum(np.ceil(time / np.maximum(reach, 1e-300)), 1.0)
+    cost = count * (SEGMENT + orders + PRODUCTS * orders**2)
+    return int(orders[int(np.argmin(cost))])

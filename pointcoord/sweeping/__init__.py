@@ -1,0 +1,1 @@
+"""Many designs of one suspension in one call: what varies, what becomes of each, and how they are solved."""

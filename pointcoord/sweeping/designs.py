@@ -1,0 +1,260 @@
+"""Designs of one suspension: a scene, and what varies from design to design.
+
+A coordinate is called by its point and its axis, such as lower_ball_joint.z, and varies by a column of
+values. A column of a grid is kept as the values of its axis, so that a grid takes no memory however many
+designs it has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.errors import SceneError, SweepError, UnknownName
+from pointcoord.linkage.topology import Topology
+from pointcoord.scene.messages import shown
+from pointcoord.scene.scene_file import Scene
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+AXES = "xyz"
+# Grids of more designs are a slip: at a microsecond each of 100 instants they would take a day.
+MOST = 10**9
+
+
+@dataclass(frozen=True)
+class Column:
+    """Values of one coordinate: design number k has values[(k // repeat) % len(values)], mm."""
+
+    values: Array
+    repeat: int = 1
+
+    def of(self, numbers: Numbers) -> Array:
+        """The values of some designs."""
+        return np.asarray(self.values[(numbers // self.repeat) % len(self.values)])
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Designs of one suspension; make them with `designs_of`, `grid_of` or `designs_of_scenes`.
+
+    Attributes:
+        scene: what is not varied.
+        count: how many designs there are; they are numbered from 0.
+        columns: by coordinate, what varies: where it is drawn, mm.
+        scenes: the designs as scenes of their own, where they were given so; empty elsewhere.
+    """
+
+    scene: Scene
+    count: int
+    columns: Mapping[str, Column]
+    scenes: tuple[Scene, ...] = field(default=(), repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "columns", MappingProxyType(dict(self.columns)))
+        for column in self.columns.values():
+            column.values.setflags(write=False)
+
+    def __reduce__(self) -> tuple[type[Designs], tuple[object, ...]]:
+        # A read-only view of a dictionary does not pickle.
+        return type(self), (self.scene, self.count, dict(self.columns), self.scenes)
+
+    @cached_property
+    def following(self) -> Mapping[str, str]:
+        """Points of the chassis that go where others go: by name, the point that each goes along with.
+
+        A rack that is drawn where the end of the tie rod is drawn belongs to it.
+        """
+        drawn, topology = self.scene.mechanism.points, self.scene.mechanism.topology
+        varied = {coordinate.rpartition(".")[0] for coordinate in self.columns}
+        return {
+            name: other
+            for name, other in topology.stand_ins.items()
+            if name in topology.chassis and drawn[name] == drawn[other] and name not in varied
+        }
+
+    def varied(self, numbers: Numbers) -> dict[str, Array]:
+        """By coordinate its values in some designs, each (n,), mm."""
+        return {coordinate: column.of(numbers) for coordinate, column in self.columns.items()}
+
+    def points(self, numbers: Numbers) -> dict[str, Array]:
+        """The hardpoints of some designs, each (n, 3), mm."""
+        found = {
+            name: np.tile(np.array(place, dtype=float), (len(numbers), 1))
+            for name, place in self.scene.mechanism.points.items()
+        }
+        for coordinate, values in self.varied(numbers).items():
+            point, _, axis = coordinate.rpartition(".")
+            found[point][:, AXES.index(axis)] = values
+        if not self.scenes:
+            found |= {name: found[other].copy() for name, other in self.following.items()}
+        return found
+
+    def design(self, number: int) -> Scene:
+        """The scene of one design, checked.
+
+        Raises:
+            SweepError: there is no such design.
+            SceneError: it is no scene that could be solved.
+        """
+        if not 0 <= number < self.count:
+            raise SweepError(f"design {number}", "is none of these", f"0 to {self.count - 1}")
+        if self.scenes:
+            return Scene.checked(self.scenes[number], f"design {number}")
+        points = {name: tuple(place[0].tolist()) for name, place in self.points(np.array([number])).items()}
+        part = self.scene.mechanism
+        content = {name: getattr(self.scene, name) for name in self.scene.model_fields_set}
+        content["mechanism"] = {name: getattr(part, name) for name in part.model_fields_set} | {
+            "points": points
+        }
+        return Scene.checked(content, f"design {number}")
+
+
+def designs_of(
+    scene: Scene,
+    points: Mapping[str, ArrayLike] | None = None,
+    offsets: Mapping[str, ArrayLike] | None = None,
+) -> Designs:
+    """Designs from a list of values for whatever varies.
+
+    Args:
+        points: by point, where each design draws it, (D, 3), mm; or by coordinate, such as
+            lower_ball_joint.z, (D,). What is given once, (3,) or a number, holds for all designs.
+        offsets: the same, measured from where the scene draws it.
+    Raises:
+        UnknownName: no point or axis is called so.
+        SweepError: numbers of another shape, of another count than the others, or of a coordinate twice.
+    """
+    values = _coordinates(scene, points or {}, offsets or {})
+    counts = {name: len(column) for name, column in values.items() if column.ndim}
+    count = max(counts.values(), default=1)
+    for name, own in counts.items():
+        if own != count:
+            longest = max(counts, key=lambda name: counts[name])
+            raise SweepError(name, f"has {own} values where {longest} has {count}", "as many of each")
+    if not count:
+        raise SweepError(next(iter(counts)), "has no values", "one or more designs")
+    return Designs(scene, count, {name: Column(np.atleast_1d(column)) for name, column in values.items()})
+
+
+def grid_of(
+    scene: Scene,
+    points: Mapping[str, ArrayLike] | None = None,
+    offsets: Mapping[str, ArrayLike] | None = None,
+) -> Designs:
+    """Every combination of values of some coordinates; the last coordinate changes from design to design.
+
+    Args:
+        points: by coordinate, such as lower_ball_joint.z, the values that it takes, (n,), mm.
+        offsets: the same, measured from where the scene draws it.
+    Raises:
+        UnknownName: no point or axis is called so.
+        SweepError: something else than a list of numbers, an empty one, a coordinate twice, or too many
+            designs.
+    """
+    for name in (*(points or {}), *(offsets or {})):
+        if "." not in name:
+            raise SweepError(name, "is no axis of a grid", f"{name}.x, {name}.y or {name}.z with its values")
+    values = _coordinates(scene, points or {}, offsets or {})
+    lengths = {name: int(column.size) for name, column in values.items()}
+    for name, length in lengths.items():
+        if not length:
+            raise SweepError(name, "has no values", "one or more")
+    columns, repeat = {}, 1
+    for name in reversed(values):
+        columns[name] = Column(np.atleast_1d(values[name]), repeat)
+        repeat *= lengths[name]
+    if repeat > MOST:
+        sizes = " x ".join(str(length) for length in lengths.values())
+        raise SweepError("the grid", f"has {sizes} = {repeat:.3g} designs", f"at most {MOST:.0e}")
+    return Designs(scene, repeat, {name: columns[name] for name in values})
+
+
+def designs_of_scenes(scenes: Sequence[Scene]) -> Designs:
+    """Designs as scenes of one suspension, which may differ in their points and in the laws of their inputs.
+
+    Raises:
+        SweepError: there is none, or they are not of one suspension, one time and one list of effects.
+        SceneError: one of them is none.
+    """
+    if not len(scenes):
+        raise SweepError("the list of scenes", "is empty", "one or more scenes")
+    for number, scene in enumerate(scenes):
+        if not isinstance(scene, Scene):
+            raise SceneError(f"design {number}", "", f"is a {type(scene).__name__}, and no scene", "a Scene")
+    first = scenes[0]
+    shared = _shared(first)
+    for number, scene in enumerate(scenes):
+        for key, value in _shared(scene).items():
+            if value != shared[key]:
+                said = f"{shown(value)} where the first scene has {shown(shared[key])}"
+                raise SweepError(f"design {number}: {key}", f"is {said}", "one for all designs of a sweep")
+    places = {
+        name: np.array([scene.mechanism.points[name] for scene in scenes]) for name in first.mechanism.points
+    }
+    columns = {
+        f"{name}.{axis}": Column(np.ascontiguousarray(place[:, i]))
+        for name, place in places.items()
+        for i, axis in enumerate(AXES)
+        if (place[:, i] != place[0, i]).any()
+    }
+    return Designs(first, len(scenes), columns, tuple(scenes))
+
+
+def _shared(scene: Scene) -> dict[str, object]:
+    """What scenes of one sweep have in common."""
+    part = scene.mechanism
+    return {
+        "mechanism.type": part.type,
+        "mechanism.closure": part.closure,
+        "mechanism.side": part.side,
+        "mechanism.up": part.up,
+        "mechanism.right": part.right,
+        "mechanism.points": tuple(sorted(part.points)),
+        "inputs": tuple(sorted(scene.inputs)),
+        "effects": scene.effects,
+        "tolerance": scene.tolerance,
+        "time": (scene.time.start, scene.time.stop, scene.time.samples),
+    }
+
+
+def _coordinates(
+    scene: Scene, points: Mapping[str, ArrayLike], offsets: Mapping[str, ArrayLike]
+) -> dict[str, Array]:
+    """What varies by coordinate, each (D,) or (), mm."""
+    found: dict[str, Array] = {}
+    drawn, topology = scene.mechanism.points, scene.mechanism.topology
+    for given, relative in ((points, False), (offsets, True)):
+        for name, numbers in given.items():
+            for coordinate, values in _split(name, numbers, topology).items():
+                if coordinate in found:
+                    raise SweepError(coordinate, "is varied twice", "once")
+                point, _, axis = coordinate.rpartition(".")
+                found[coordinate] = values + drawn[point][AXES.index(axis)] if relative else values
+    return found
+
+
+def _split(name: str, numbers: ArrayLike, topology: Topology) -> dict[str, Array]:
+    """Values of a point or of a coordinate by coordinate."""
+    point, dot, axis = name.partition(".")
+    if point not in topology.points:
+        raise UnknownName("point", point, topology.points)
+    if dot and (len(axis) != 1 or axis not in AXES):
+        raise UnknownName(f"axis of {point}", axis, AXES)
+    try:
+        values = np.array(numbers, dtype=float)
+    except (TypeError, ValueError):
+        raise SweepError(name, f"is {shown(numbers)}", "numbers") from None
+    if dot:
+        if values.ndim > 1:
+            raise SweepError(name, f"has the shape {values.shape}", "a number for each design, (D,)")
+        return {name: values}
+    if values.shape[-1:] != (3,) or values.ndim > 2:
+        raise SweepError(name, f"has the shape {values.shape}", "three numbers for each design, (D, 3)")
+    return {f"{name}.{axis}": values[..., i] for i, axis in enumerate(AXES)}

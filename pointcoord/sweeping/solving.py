@@ -1,0 +1,456 @@
+"""From designs to what becomes of them, many at a time.
+
+Everything that `simulate` looks at in one scene is looked at in each design, in arrays: what is found in
+order in a whole batch is not looked at again, and what may be at fault in one design is told by the rules of
+a scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.effect import Doubt, Poses
+from pointcoord.effects.plan import Plan, plan_effects
+from pointcoord.errors import (
+    AssemblyError,
+    MechanismError,
+    MotionTooLong,
+    MotionTooRough,
+    PointcoordError,
+    SceneError,
+    SweepError,
+)
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.method import SERIES
+from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
+from pointcoord.results.readout import BLOCK as INSTANTS
+from pointcoord.results.readout import Readout
+from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.results.states import StatesOfChain
+from pointcoord.results.table import Table
+from pointcoord.scene.drawing_doubts import doubts_of_drawings
+from pointcoord.scene.scene_file import Scene
+from pointcoord.simulation import (
+    chain_settings,
+    check_range,
+    pose_tolerance,
+    require_the_drawn_car,
+    scene_mechanism,
+    simulate,
+    tolerance_notes,
+)
+from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.status import Status, TooLong, TooRough
+from pointcoord.sweeping.designs import Designs
+from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
+from pointcoord.time_functions import TimeFunction
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+Points = Mapping[str, Array]
+
+# Designs that are solved together at most: of 64 to 2048 tried, the quickest or near it.
+TOGETHER = 256
+# Bytes that solving takes on the way: of a design for its matrices, series and their products, and of a
+# number of the results at an instant for what the effects are made of.
+OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
+# Two orders of summing the same three products differ by less than this part of the largest.
+SLACK = 1e-12
+
+
+@dataclass(frozen=True)
+class Course:
+    """Designs ready to be solved: what they share is checked.
+
+    Attributes:
+        laws: scenes with the laws of some designs each. which: by design, the number of its laws; None where
+            all designs share them.
+    """
+
+    designs: Designs
+    plan: Plan
+    axes: CarAxes
+    laws: tuple[Scene, ...]
+    which: Numbers | None
+
+    @classmethod
+    def of(cls, designs: Designs) -> Course:
+        """Check what designs share.
+
+        Raises:
+            SceneError: the scene was made wrong after it was read.
+        """
+        if designs.scenes:
+            checked = [Scene.checked(scene, f"design {i}") for i, scene in enumerate(designs.scenes)]
+            by_text: dict[str, int] = {}
+            own = [by_text.setdefault(str(sorted(scene.inputs.items())), len(by_text)) for scene in checked]
+            laws = tuple(checked[own.index(i)] for i in range(len(by_text)))
+            which = np.array(own) if len(laws) > 1 else None
+        else:
+            laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
+        part = laws[0].mechanism
+        axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+        return cls(designs, plan_effects(laws[0].effects), axes, laws, which)
+
+    @property
+    def scene(self) -> Scene:
+        """What the designs share."""
+        return self.laws[0]
+
+    @cached_property
+    def table(self) -> Table:
+        """Where the numbers of a design are."""
+        topology = self.scene.mechanism.topology
+        return Table.of(self.plan, topology, self.plan.derivatives(topology))
+
+    @property
+    def bytes_of_a_design(self) -> int:
+        """What the numbers of one design take."""
+        return 8 * self.table.height * len(self.scene.instants)
+
+    @property
+    def bytes_on_the_way(self) -> int:
+        """What solving one design takes beside its numbers."""
+        return OF_A_DESIGN + OF_A_NUMBER * self.table.height * min(len(self.scene.instants), INSTANTS)
+
+    def solve(self, first: int, last: int, together: int) -> Sweep:
+        """What becomes of the designs from number `first` to before `last`.
+
+        Args:
+            together: how many are solved at a time.
+        Raises:
+            InputOutOfRange, InputNotKnown: a law that all designs share.
+        """
+        block = _Block.empty(self, first, last)
+        for low in range(first, last, together):
+            numbers = np.arange(low, min(low + together, last))
+            for scene, members in self._by_laws(numbers):
+                try:
+                    block.solve(scene, members)
+                except PointcoordError as error:
+                    if self.which is None:
+                        raise
+                    block.fail(members, error)
+        return block.sweep()
+
+    def _by_laws(self, numbers: Numbers) -> Iterator[tuple[Scene, Numbers]]:
+        if self.which is None:
+            yield self.scene, numbers
+            return
+        which = self.which[numbers]
+        for one in np.unique(which).tolist():
+            yield self.laws[one], numbers[which == one]
+
+
+@dataclass(frozen=True)
+class _Block:
+    """What is known so far of a block of designs.
+
+    Attributes:
+        rows: the table of each design, (D, height, N).
+        failures, notes: as far as they are found.
+        readouts: the last one that was used, if any.
+    """
+
+    course: Course
+    first: int
+    rows: Array
+    closing: Array
+    drawn: dict[str, Array]
+    failures: dict[int, Failure]
+    notes: list[Noted]
+    readouts: list[Readout]
+
+    @classmethod
+    def empty(cls, course: Course, first: int, last: int) -> _Block:
+        count = last - first
+        rows = np.full((count, course.table.height, len(course.scene.instants)), np.nan)
+        names = [
+            name
+            for effect in course.plan.computed
+            if effect.derivative == 0 and not effect.reports_states
+            for name in effect.names or ()
+        ]
+        drawn = {name: np.full(count, np.nan) for name in names}
+        return cls(course, first, rows, np.full(count, np.nan), drawn, {}, [], [])
+
+    def sweep(self) -> Sweep:
+        """The block as a result."""
+        course, scene = self.course, self.course.scene
+        numbers = np.arange(self.first, self.first + len(self.rows))
+        solved = np.array([number not in self.failures for number in numbers.tolist()])
+        # Where no design has a mechanism, the scene's own must do to name what would have been computed.
+        readouts = self.readouts or [_readout(course, scene, scene_mechanism(scene))]
+        samples = readouts[0].named(scene.instants, self.rows)
+        return Sweep(
+            times=samples.times,
+            numbers=samples.numbers,
+            designs=course.designs,
+            first=self.first,
+            varied=course.designs.varied(numbers),
+            solved=solved,
+            closing=self.closing,
+            drawn=self.drawn,
+            failures=dict(sorted(self.failures.items())),
+            notes=merged(self.notes),
+        )
+
+    def fail(self, members: Iterable[int], error: PointcoordError) -> None:
+        """Mark designs as ones that cannot be solved."""
+        for number in members:
+            self.failures[int(number)] = Failure(int(number), reason_of(error), error)
+            self.rows[int(number) - self.first] = np.nan
+
+    def solve(self, scene: Scene, members: Numbers) -> None:
+        """Solve designs that share their laws."""
+        course = self.course
+        points = course.designs.points(members)
+        sound = np.ones(len(members), dtype=bool)
+        for place in np.flatnonzero(_suspicious(course.designs, points)).tolist():
+            try:
+                course.designs.design(int(members[place]))
+            except SceneError as error:
+                sound[place] = False
+                self.fail([members[place]], error)
+        for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
+            places = np.searchsorted(members, own)
+            self._look_at(own, {name: place[places] for name, place in points.items()})
+            self._move(scene, own, mechanism)
+
+    def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
+        """The mechanism of all that have one, found in halves where some have none."""
+        part = self.course.scene.mechanism
+        if not len(members):
+            return
+        try:
+            directions = {"up": part.up, "right": part.right}
+            yield members, build_mechanism(part.topology, points, directions)
+        except MechanismError as error:
+            if len(members) == 1:
+                self.fail(members, SceneError(f"design {members[0]}", "mechanism.points", error.problem))
+                return
+            half = len(members) // 2
+            for some in (slice(None, half), slice(half, None)):
+                yield from self._mechanisms(members[some], {n: p[some] for n, p in points.items()})
+
+    def _look_at(self, members: Numbers, points: Points) -> None:
+        """Note what looks wrong with drawings that can be solved."""
+        topology = self.course.scene.mechanism.topology
+        for i, doubt in enumerate(doubts_of_drawings(topology, points, self.course.axes)):
+            self._note(f"doubt {i}", members, doubt.where, _of_a_drawing(doubt))
+
+    def _note(
+        self,
+        kind: str,
+        members: Numbers,
+        where: NDArray[np.bool_],
+        words: Callable[[int], str],
+        weights: Array | None = None,
+        warns: bool = True,
+    ) -> None:
+        count = int(np.count_nonzero(where))
+        if count:
+            place = int(np.argmax(where if weights is None else np.where(where, weights, -np.inf)))
+            weight = 0.0 if weights is None else float(weights[place])
+            self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
+
+    def _move(self, scene: Scene, members: Numbers, mechanism: Mechanism) -> None:
+        """Close, assemble and move designs, and read their numbers."""
+        course, time = self.course, scene.time
+        functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+        # Which values have a meaning is the same for every design.
+        check_range(mechanism.taken(0), functions, scene.instants)
+        settings = chain_settings(scene, mechanism, course.plan.derivative)
+        allowed = pose_tolerance(scene, SERIES, mechanism)
+
+        def solved_together(some: Mechanism) -> SolvedDesigns:
+            return solve_designs(some, functions, time.start, time.stop, settings, allowed)
+
+        solved = solved_together(mechanism)
+        self._look_at_closing(scene, members, mechanism, solved.closed)
+        self._read(scene, members, mechanism, functions, solved)
+        for place, status in solved.failures.items():
+            if members[place] in self.failures:
+                continue
+            if isinstance(status, TooLong | TooRough) and len(members) > 1:
+                # What is too long or too rough for all together may not be so for one.
+                own = np.array([place])
+                alone = solved_together(mechanism.taken(own))
+                if not alone.failures:
+                    self._read(scene, members[own], mechanism.taken(own), functions, alone)
+                    continue
+                status = alone.failures[0]
+            self.fail([members[place]], _error(status))
+
+    def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
+        """Refuse drawings whose closing makes another car of them, and note how far the others move."""
+        moved = np.max(list(movements(mechanism, closed).values()), axis=0)
+        size, places = car_size(mechanism), members - self.first
+        self.closing[places] = moved
+        for name, angle in self._angles(mechanism, closed).items():
+            self.drawn[name][places] = angle
+        refused = np.zeros(len(members), dtype=bool)
+        for place in np.flatnonzero(moved > (1.0 - SLACK) * ALLOWED * size).tolist():
+            try:
+                require_the_drawn_car(scene, closing(mechanism.taken(place), closed[place]))
+            except SceneError as error:
+                refused[place] = True
+                said = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
+                self.fail([members[place]], said)
+        with np.errstate(invalid="ignore"):
+            noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & ~refused
+        self._note(
+            "closing",
+            members,
+            noticed,
+            lambda place: closing(mechanism.taken(place), closed[place]).words,
+            moved,
+        )
+
+    def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
+        unit = mechanism.unit[:, None]
+        states = {name: place * unit for name, place in mechanism.places(closed).items()}
+        poses = Poses(mechanism, self.course.axes, (states,), (None,))
+        found: dict[str, Array] = {}
+        for effect in self.course.plan.computed:
+            if effect.derivative == 0 and not effect.reports_states:
+                for numbers in effect.evaluate(poses).values():
+                    found |= numbers
+        return found
+
+    def _read(
+        self,
+        scene: Scene,
+        members: Numbers,
+        mechanism: Mechanism,
+        functions: Mapping[str, TimeFunction],
+        solved: SolvedDesigns,
+    ) -> None:
+        """Put the numbers of designs that were solved into their tables."""
+        if solved.chain is None or not len(solved.alive):
+            return
+        alive, instants = members[solved.alive], scene.instants
+        part = mechanism.taken(solved.alive)
+        readout = _readout(self.course, scene, part)
+        self.readouts[:] = [readout]
+        states = StatesOfChain(readout, functions, solved.chain, scene.time.start)
+        whole = SolvedScene(readout, functions, states)
+        places = alive - self.first
+        kept = np.array([number not in self.failures for number in alive.tolist()])
+        if kept.all() and places[-1] - places[0] == len(places) - 1:
+            whole.samples(instants, self.rows[places[0] : places[-1] + 1])
+        else:
+            rows = np.empty((len(alive), *self.rows.shape[1:]))
+            whole.samples(instants, rows)
+            self.rows[places[kept]] = rows[kept]
+        for words in tolerance_notes(scene, part.taken(0)):
+            self._note("tolerance", alive, kept, _the_same(words), warns=False)
+        self._require_known(scene, alive[kept], functions)
+        self._note_missing(alive, kept)
+
+    def _require_known(self, scene: Scene, members: Numbers, functions: Mapping[str, TimeFunction]) -> None:
+        """Where a law is less certain than the tolerance, hold each design to what it would be alone."""
+        instants = scene.instants
+        if all((law.rounding(instants) <= scene.tolerance).all() for law in functions.values()):
+            return
+        for number in members.tolist():
+            try:
+                simulate(self.course.designs.design(number))
+            except PointcoordError as error:
+                self.fail([number], error)
+
+    def _note_missing(self, members: Numbers, kept: NDArray[np.bool_]) -> None:
+        """Note which numbers are none, and why."""
+        places = self.course.table.places
+        for effect in self.course.plan.computed:
+            why = f": {effect.no_number}" if effect.no_number else ""
+            for quantity in effect.quantities:
+                for name, rows in places[quantity.name].items():
+                    if effect.names is not None and name not in effect.names:
+                        continue
+                    numbers = self.rows[members - self.first][:, rows]
+                    missing = ~np.isfinite(numbers).all(axis=(-2, -1)) & kept
+                    words = f"{quantity.words} of {name} is not a number at some instants{why}"
+                    self._note(f"{quantity.name} {name}", members, missing, _the_same(words), warns=False)
+
+
+def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:
+    return lambda place: doubt.words((place,))
+
+
+def _the_same(words: str) -> Callable[[int], str]:
+    return lambda place: words
+
+
+def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:
+    chassis = ChassisMotion.of(mechanism, scene.functions)
+    return Readout(mechanism=mechanism, plan=course.plan, chassis=chassis, axes=course.axes)
+
+
+def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
+    """Designs that may be no scene: all that are none, and hardly any others.
+
+    A scene can be at fault in numbers that are not finite, in a wheel that lies inboard, and in two points at
+    one place that the scene itself draws apart.
+    """
+    part = designs.scene.mechanism
+    inner, wheel = points[part.topology.inboard], points[part.topology.wheel_centre]
+    with np.errstate(invalid="ignore", over="ignore"):
+        slack = SLACK * (np.abs(inner).max(axis=-1) + np.abs(wheel).max(axis=-1))
+        found = np.asarray(~((inner - wheel) @ part.outboard < -slack))
+    for place in points.values():
+        found |= ~np.isfinite(place).all(axis=-1)
+    for one, other in combinations(points, 2):
+        if part.points[one] != part.points[other]:
+            found |= (points[one] == points[other]).all(axis=-1)
+    return found
+
+
+def _error(status: Status) -> PointcoordError:
+    error = status.error()
+    assert error is not None  # a design that was solved to its end is alive
+    return error
+
+
+REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
+    (MotionTooLong, "the motion takes too many series"),
+    (MotionTooRough, "no series follows an input"),
+    (SceneError, "the drawing is refused"),
+)
+
+
+def reason_of(error: PointcoordError) -> str:
+    """The reason of a failure in words without numbers."""
+    if isinstance(error, AssemblyError):
+        return error.problem
+    if isinstance(error, SceneError) and "that is another car" in error.problem:
+        return "closing the drawing makes another car of it"
+    for kind, words in REASONS:
+        if isinstance(error, kind):
+            return words
+    return f"an input is refused ({type(error).__name__})"
+
+
+def require_room(course: Course, memory: float) -> None:
+    """Refuse designs of which not one fits.
+
+    Raises:
+        SweepError: it does not.
+    """
+    needed = course.bytes_of_a_design + course.bytes_on_the_way
+    if needed > memory:
+        raise SweepError(
+            "memory",
+            f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
+            f"{needed / 1e6:.4g} MB",
+            "more memory, or fewer instants",
+        )

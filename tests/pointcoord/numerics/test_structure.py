@@ -1,0 +1,187 @@
+"""The blocks of a system, held to scipy's graph algorithms and to the definition of a block triangle."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sample_cars import SampleCar, by_car
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.structure import Structure, structure_of
+from validate.cost.growth.chain import FourBarChain
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Rows of which only is known what they read."""
+
+    reads: Sequence[Collection[int]]
+    unknowns: int
+
+
+@st.composite
+def patterns(draw: st.DrawFn) -> Pattern:
+    """Square patterns, most with a perfect matching: some entries on a hidden permutation, some not."""
+    n = draw(st.integers(1, 12))
+    seed = draw(st.integers(0, 2**32 - 1))
+    rng = np.random.default_rng(seed)
+    density = draw(st.sampled_from((0.03, 0.1, 0.2, 0.4)))
+    entries = rng.random((n, n + 3)) < density
+    if draw(st.booleans()):
+        entries[np.arange(n), rng.permutation(n)] = True
+    return Pattern([set(np.flatnonzero(row).tolist()) for row in entries], n)
+
+
+def by_scipy(pattern: Pattern) -> set[tuple[frozenset[int], frozenset[int]]] | None:
+    """Rows and unknowns of each block by scipy; None if there is no perfect matching."""
+    n = pattern.unknowns
+    matrix = np.zeros((n, n), dtype=int)
+    for row, read in enumerate(pattern.reads):
+        matrix[row, [i for i in read if i < n]] = 1
+    row_of = maximum_bipartite_matching(csr_array(matrix), perm_type="row")
+    if (row_of < 0).any():
+        return None
+    # Column j of the reordered matrix belongs to row j of it: the unknown that row determines.
+    unknown_of = np.argsort(row_of)
+    count, labels = connected_components(csr_array(matrix[:, unknown_of]), connection="strong")
+    return {
+        (
+            frozenset(np.flatnonzero(labels == c).tolist()),
+            frozenset(unknown_of[np.flatnonzero(labels == c)].tolist()),
+        )
+        for c in range(count)
+    }
+
+
+def require_blocks(structure: Structure, pattern: Pattern) -> None:
+    """Each row and unknown in one block, and no row reads an unknown of a later block."""
+    n = pattern.unknowns
+    assert sorted(r for b in structure.blocks for r in b.rows) == list(range(n))
+    assert sorted(u for b in structure.blocks for u in b.unknowns) == list(range(n))
+    solved: set[int] = set()
+    for block in structure.blocks:
+        assert len(block.rows) == len(block.unknowns)
+        read = set().union(*(pattern.reads[row] for row in block.rows))
+        assert set(block.reads) == read - set(block.unknowns)
+        assert {i for i in block.reads if i < n} <= solved
+        solved |= set(block.unknowns)
+
+
+@given(patterns())
+def test_blocks_of_a_random_pattern_are_those_of_scipy(pattern: Pattern) -> None:
+    found, wanted = structure_of(pattern), by_scipy(pattern)
+    if wanted is None:
+        assert [(b.rows, b.unknowns) for b in found.blocks] == [(tuple(range(pattern.unknowns)),) * 2]
+        return
+    require_blocks(found, pattern)
+    assert {(frozenset(b.rows), frozenset(b.unknowns)) for b in found.blocks} == wanted
+
+
+@given(patterns(), st.data())
+def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
+    pattern: Pattern, data: st.DataObject
+) -> None:
+    structure = structure_of(pattern)
+    n, blocks = pattern.unknowns, structure.blocks
+    home = {u: number for number, block in enumerate(blocks) for u in block.unknowns}
+    reached = np.eye(len(blocks), dtype=bool)
+    for number, block in enumerate(blocks):
+        for i in block.reads:
+            if i in home:
+                reached[number] |= reached[home[i]]
+    asked = data.draw(st.sets(st.integers(0, n - 1)))
+    wanted = np.zeros(len(blocks), dtype=bool)
+    for i in asked:
+        wanted |= reached[home[i]]
+    assert structure.needed(asked) == tuple(np.flatnonzero(wanted).tolist())
+    known = data.draw(st.sets(st.integers(n, n + 2)))
+    driven = [not known.isdisjoint(block.reads) for block in blocks]
+    assert structure.moving(known) == tuple(np.flatnonzero(reached @ np.array(driven)).tolist())
+
+
+@by_car
+def test_blocks_of_a_suspension_are_those_of_scipy_and_make_its_jacobian_a_block_triangle(
+    car: SampleCar,
+) -> None:
+    mechanism = car.mechanism()
+    system = mechanism.map
+    structure = system.structure
+    require_blocks(structure, Pattern(system.reads, system.unknowns))
+    assert {(frozenset(b.rows), frozenset(b.unknowns)) for b in structure.blocks} == by_scipy(
+        Pattern(system.reads, system.unknowns)
+    )
+    assert len(structure.blocks) > 1
+    jacobian = system.jacobian(mechanism.drawn)
+    solved: list[int] = []
+    for block in structure.blocks:
+        solved += block.unknowns
+        later = np.setdiff1d(np.arange(system.unknowns), solved)
+        assert not jacobian[np.ix_(block.rows, later)].any()
+    sign, size = np.linalg.slogdet(jacobian)
+    parts = [np.linalg.slogdet(jacobian[np.ix_(b.rows, b.unknowns)]) for b in structure.blocks]
+    assert sign != 0.0
+    assert sum(part[1] for part in parts) == pytest.approx(size, abs=1e-9)
+
+
+@pytest.mark.parametrize("rockers", [1, 2, 30])
+def test_a_chain_of_rockers_is_solved_rocker_after_rocker(rockers: int) -> None:
+    system = FourBarChain(rockers).mechanism().map
+    assert [b.unknowns for b in system.structure.blocks] == [
+        (3 * j, 3 * j + 1, 3 * j + 2) for j in range(rockers)
+    ]
+
+
+def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:
+    n = 30_000
+    chain = [{i, i + 1} for i in range(n - 1)]
+    assert len(structure_of(Pattern([*chain, {n - 1}], n)).blocks) == n
+    assert len(structure_of(Pattern([*chain, {n - 1, 0}], n)).blocks) == 1
+    # The last row finds its unknown taken, and so does each that gives way to it.
+    assert len(structure_of(Pattern([*chain, {0}], n)).blocks) == n
+
+
+def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() -> None:
+    for reads, unknowns in (
+        ([{0}, {0, 5}, {1, 2}], 3),  # two rows for one unknown
+        ([{0, 5}, {1, 6}], 3),  # too few rows
+        ([{0}, {1}, {0, 1}], 2),  # too many
+        ([{7}], 1),  # nothing reads the unknown
+    ):
+        (block,) = structure_of(Pattern(reads, unknowns)).blocks
+        assert block.rows == tuple(range(len(reads)))
+        assert block.unknowns == tuple(range(unknowns))
+        assert set(block.reads) == set().union(*reads) - set(range(unknowns))
+
+
+@pytest.mark.parametrize(
+    ("product", "read"),
+    [
+        (Product(1.0, (0, 1), (1, 2)), {0, 1, 2}),
+        (Product(0.0, (0, 1), (1, 2)), set()),
+        (Product(2.0, (0, 0), (1, 2)), set()),
+        (Product(2.0, (0, 1), (2, 2)), set()),
+    ],
+)
+def test_a_row_reads_the_coordinates_of_its_differences(product: Product, read: set[int]) -> None:
+    system: QuadraticMap = quadratic_map([(product,)], 1, 3)
+    assert system.reads == (read,)
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 2**32 - 1))
+def test_block_order_does_not_depend_on_how_rows_are_numbered(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    n = 10
+    entries = rng.random((n, n)) < 0.15
+    entries[np.arange(n), rng.permutation(n)] = True
+    turned = rng.permutation(n)
+    plain, other = (
+        structure_of(Pattern([set(np.flatnonzero(row).tolist()) for row in m], n))
+        for m in (entries, entries[turned])
+    )
+    assert {b.unknowns for b in plain.blocks} == {b.unknowns for b in other.blocks}

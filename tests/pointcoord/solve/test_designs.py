@@ -1,0 +1,96 @@
+"""Designs solved together are the designs solved one by one."""
+
+import numpy as np
+import pytest
+
+from pointcoord import AssemblyError, Scene
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.method import SERIES
+from pointcoord.simulation import chain_settings, pose_tolerance, prepare_task
+from pointcoord.solve.dense_output import evaluate
+from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.taylor import Chain, build_chain
+
+WISHBONE = Scene.load("double-wishbone")
+# Of these heights of the lower ball joint, mm, the last two cannot be steered as far as the scene does.
+HEIGHTS = (-20.0, 0.0, 130.0, 20.0, 150.0)
+
+
+def moved(scene: Scene, height: float) -> Scene:
+    x, y, z = scene.mechanism.points["lower_ball_joint"]
+    points = {**scene.mechanism.points, "lower_ball_joint": (x, y, z + height)}
+    return scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+
+
+def together(scene: Scene, heights: tuple[float, ...]) -> tuple[Mechanism, SolvedDesigns]:
+    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    points["lower_ball_joint"] = points["lower_ball_joint"] + np.outer(heights, (0.0, 0.0, 1.0))
+    part = scene.mechanism
+    mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
+    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+    start, stop = scene.time.start, scene.time.stop
+    settings, allowed = chain_settings(scene, mechanism, 0), pose_tolerance(scene, SERIES, mechanism)
+    return mechanism, solve_designs(mechanism, functions, start, stop, settings, allowed)
+
+
+def alone(scene: Scene) -> tuple[Mechanism, Chain]:
+    task = prepare_task(scene, SERIES)
+    mechanism = task.readout.mechanism
+    settings = chain_settings(scene, mechanism, 0)
+    start, stop = scene.time.start, scene.time.stop
+    return mechanism, build_chain(mechanism, task.functions, task.start, start, stop, settings)
+
+
+def unknowns(mechanism: Mechanism, chain: Chain, instants: np.ndarray) -> np.ndarray:
+    pieces = [segment.coefficients[..., : mechanism.map.unknowns] for segment in chain.segments]
+    return evaluate(chain, pieces, instants, 0)[0]
+
+
+def test_designs_that_stop_drop_out_and_the_others_are_solved_as_alone() -> None:
+    mechanism, solved = together(WISHBONE, HEIGHTS)
+    assert solved.chain is not None
+    assert set(solved.failures) | set(solved.alive.tolist()) == set(range(len(HEIGHTS)))
+    assert 4 in solved.failures
+    assert {0, 1, 3} <= set(solved.alive.tolist())
+    found = unknowns(mechanism, solved.chain, WISHBONE.instants)
+    for place, number in enumerate(solved.alive.tolist()):
+        scene = moved(WISHBONE, HEIGHTS[number])
+        own, chain = alone(scene)
+        # Each of the two is cut to a tenth of the scene's tolerance at most, the last two terms of a series
+        # standing for what it leaves out.
+        difference = float(mechanism.unit[number]) * np.abs(
+            found[place] - unknowns(own, chain, scene.instants)
+        )
+        assert difference.max() <= 2.0 * 0.1 * scene.tolerance
+
+
+def test_a_design_that_stops_says_what_it_says_alone() -> None:
+    _, solved = together(WISHBONE, HEIGHTS)
+    error = solved.failures[4].error()
+    with pytest.raises(AssemblyError) as own:
+        prepare_task(moved(WISHBONE, HEIGHTS[4]), SERIES)
+    assert isinstance(error, AssemblyError)
+    assert (error.problem, error.limits, error.reduce) == (
+        own.value.problem,
+        own.value.limits,
+        own.value.reduce,
+    )
+    for name, value in own.value.reached.items():
+        # Near a fold the steps end 1e-13 of the path before it; the fold is found from either side of that.
+        assert error.reached[name] == pytest.approx(value, rel=1e-9, abs=1e-9)
+
+
+def test_a_closed_drawing_is_kept_of_a_design_that_cannot_move() -> None:
+    mechanism, solved = together(WISHBONE, HEIGHTS)
+    assert np.isfinite(solved.closed).all()
+    residual = np.abs(mechanism.map.residual(solved.closed)).max()
+    assert residual < 1e-12
+
+
+def test_no_designs_are_no_error_and_none_that_moves_leaves_no_chain() -> None:
+    _, solved = together(WISHBONE, (150.0, 150.0))
+    assert solved.chain is None
+    assert solved.start is None
+    assert not len(solved.alive)
+    assert set(solved.failures) == {0, 1}

@@ -1,0 +1,323 @@
+"""A sweep is what its designs are one by one: numbers, reasons, warnings; whichever are beside them."""
+
+import pickle
+import tracemalloc
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pointcoord import (
+    InputOutOfRange,
+    Motion,
+    PointcoordError,
+    Samples,
+    Scene,
+    SceneError,
+    Sweep,
+    SweepError,
+    UnknownName,
+    designs_of,
+    grid_of,
+    simulate,
+    sweep,
+    sweep_blocks,
+)
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.simulation import effort
+from pointcoord.sweeping import solving
+
+WISHBONE = Scene.load("double-wishbone")
+STRUT = Scene.load("off-axis-strut")
+PAPER = Scene.load("steer")
+# Offsets of lower_ball_joint.z, mm, of which the last three cannot be steered and bounced as the scene does.
+HEIGHTS = (-20.0, 0.0, 7.5, 20.0, 150.0, 140.0, 145.0)
+
+
+def few_instants(scene: Scene, samples: int = 7) -> Scene:
+    return scene.model_copy(update={"time": scene.time.model_copy(update={"samples": samples})})
+
+
+WISHBONE, STRUT, PAPER = (few_instants(scene) for scene in (WISHBONE, STRUT, PAPER))
+
+
+# No two points of a knuckle here, and no two ends of an axis, are nearer to each other, mm.
+LEVER = 50.0
+
+
+def allowed(motion: Motion, part: float, quantity: str, name: str) -> np.ndarray:
+    """How far two solutions of one design may differ.
+
+    Both may be off by what a method is expected to make of a number in doubles, and each is cut to a part of
+    the car's size, its velocities and accelerations to the same part of the largest of these. Two ends of a
+    line that are each off by d turn it by 2 d / length; a body's rates are off by what its points' rates are
+    and by what their places make of these, over the length of its shortest edge.
+    """
+    size = part * motion.unit
+    fastest, quickest = (
+        part * max(float(np.linalg.norm(array, axis=-1).max()) for array in channel.values())
+        for channel in (motion.velocity, motion.acceleration)
+    )
+    turn, spin = (
+        float(np.linalg.norm(channel["knuckle"], axis=-1).max())
+        for channel in (motion.angular_velocity, motion.angular_acceleration)
+    )
+    cut = {
+        "position": size,
+        "velocity": fastest,
+        "acceleration": quickest,
+        "wheel": 2.0 * size / LEVER,
+        "angular_velocity": 2.0 * (fastest + turn * size) / LEVER,
+        "angular_acceleration": 2.0 * (quickest + (spin + turn * turn) * size + turn * fastest) / LEVER,
+    }
+    return 2.0 * (motion.proof(rates=True).expected[quantity][name] + cut[quantity])
+
+
+def assert_same_as_alone(found: Samples, scene: Scene) -> None:
+    motion = simulate(scene)
+    part = effort(scene).part
+    for quantity, channel in motion.numbers.items():
+        assert set(channel) == set(found.numbers[quantity])
+        for name, array in channel.items():
+            difference = np.abs(found.numbers[quantity][name] - array)
+            assert (difference <= allowed(motion, part, quantity, name)).all(), (
+                quantity,
+                name,
+                difference.max(),
+            )
+
+
+@pytest.mark.parametrize(
+    ("scene", "varied"),
+    [
+        (WISHBONE, "lower_ball_joint.z"),
+        (STRUT, "strut_top.y"),
+        (STRUT, "tie_rod_outer.z"),
+        (PAPER, "lower_ball_joint.x"),
+    ],
+)
+def test_a_design_of_a_sweep_is_the_design_alone(scene: Scene, varied: str) -> None:
+    found = sweep(scene, offsets={varied: [-4.0, 0.0, 3.0]})
+    assert found.solved.all()
+    for number in range(3):
+        assert_same_as_alone(found.of(number), found.scene(number))
+        alone = simulate(found.scene(number))
+        assert found.closing[number] == pytest.approx(alone.closing.largest, rel=1e-9, abs=1e-12)
+        point, _, axis = varied.partition(".")
+        drawn = found.scene(number).mechanism.points[point]["xyz".index(axis)]
+        assert found.varied[varied][number] == drawn
+
+
+def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other() -> None:
+    together = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS})
+    assert set(together.failures) == {4, 5, 6}
+    assert together.solved.tolist() == [True] * 4 + [False] * 3
+    sound = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS[:4]})
+    for number in range(4):
+        assert_same_as_alone(together.of(number), together.scene(number))
+        assert_same_as_alone(sound.of(number), together.scene(number))
+    for number, failure in together.failures.items():
+        with pytest.raises(PointcoordError) as alone_raised:
+            simulate(together.scene(number))
+        own = alone_raised.value
+        assert type(failure.error) is type(own)
+        # The last digits of where a fold is found hang on the steps that led there.
+        assert str(failure.error).partition(" at t = ")[0] == str(own).partition(" at t = ")[0]
+        assert str(failure.error).partition("limited by")[2] == str(own).partition("limited by")[2]
+        assert failure.instant == pytest.approx(own.instant, abs=1e-6)
+        with pytest.raises(type(own)):
+            together.of(number)
+
+
+def test_the_numbers_of_a_failed_design_are_none_and_of_no_other() -> None:
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS})
+    for channel in found.numbers.values():
+        for array in channel.values():
+            assert np.isfinite(array[found.solved]).all()
+            assert np.isnan(array[~found.solved]).all()
+
+
+@given(order=st.permutations(range(len(HEIGHTS))))
+@settings(max_examples=5, deadline=None)
+def test_the_order_of_designs_does_not_matter(order: list[int]) -> None:
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": np.array(HEIGHTS)[order]})
+    for place, number in enumerate(order):
+        assert (place in found.failures) == (number >= 4)
+        if number < 4:
+            assert_same_as_alone(found.of(place), found.scene(place))
+
+
+@pytest.mark.parametrize(
+    ("point", "place"),
+    [
+        ("wheel_centre", (100.0, -3000.0, 0.0)),
+        ("wheel_axis_inner", WISHBONE.mechanism.points["wheel_centre"]),
+        ("tie_rod_outer", (np.nan, 0.0, 0.0)),
+        ("tie_rod_inner", (0.0, 0.0, 0.0)),
+        ("lower_arm_rear", WISHBONE.mechanism.points["lower_arm_front"]),
+        ("upper_ball_joint", (1e120, 0.0, 0.0)),
+        ("upper_ball_joint", WISHBONE.mechanism.points["lower_ball_joint"]),
+    ],
+)
+def test_a_drawing_that_is_refused_alone_is_refused_among_others(
+    point: str, place: tuple[float, float, float]
+) -> None:
+    drawn = WISHBONE.mechanism.points[point]
+    found = sweep(
+        WISHBONE, {point: [drawn, place, drawn], "rack_centre": WISHBONE.mechanism.points["rack_centre"]}
+    )
+    assert set(found.failures) == {1}
+    with pytest.raises(PointcoordError) as alone:
+        simulate(found.scene(1))
+    said, own = str(found.failures[1].error), str(alone.value)
+    title = WISHBONE.title
+    assert said.replace("design 1", title) == own.replace("design 1", title)
+
+
+def test_closing_that_makes_another_car_is_refused_and_less_is_warned_of() -> None:
+    rack = STRUT.mechanism.points["rack_centre"]
+    found = sweep(STRUT, {"rack_centre": rack}, offsets={"tie_rod_inner.z": [0.0, 0.5, 30.0]})
+    assert set(found.failures) == {2}
+    assert "that is another car" in str(found.failures[2].error)
+    assert found.failures[2].reason == "closing the drawing makes another car of it"
+    (note,) = [note for note in found.notes if note.kind == "closing"]
+    assert (note.count, note.design) == (1, 1)
+    alone = simulate(found.scene(1))
+    assert note.words == alone.closing.words
+    assert note.words in alone.notes
+
+
+def test_a_rack_drawn_at_the_end_of_the_tie_rod_goes_along_with_it() -> None:
+    assert PAPER.mechanism.points["rack_centre"] == PAPER.mechanism.points["tie_rod_inner"]
+    found = sweep(PAPER, offsets={"tie_rod_inner.z": [0.0, 5.0]})
+    points = found.scene(1).mechanism.points
+    assert points["rack_centre"] == points["tie_rod_inner"]
+    held = sweep(PAPER, {"rack_centre.x": 570.0}, offsets={"tie_rod_inner.z": [0.0, 5.0]})
+    assert held.scene(1).mechanism.points["rack_centre"] == PAPER.mechanism.points["rack_centre"]
+
+
+def test_doubts_are_gathered_and_told_of_a_design_that_has_them() -> None:
+    offsets = np.zeros(6)
+    offsets[[2, 4]] = 800.0
+    found = sweep(WISHBONE, offsets={"lower_arm_front.x": offsets})
+    doubts = {note.words: note for note in found.notes if "is drawn" in note.words}
+    assert len(doubts) == 1
+    (note,) = doubts.values()
+    assert note.count == 2
+    assert note.words in found.scene(note.design).mechanism.doubts
+    assert note.design in {2, 4}
+
+
+def test_a_grid_has_every_combination_once() -> None:
+    designs = grid_of(PAPER, offsets={"strut_top.y": [-1.0, 1.0], "tie_rod_outer.z": [0.0, 1.0, 2.0]})
+    pairs = designs.varied(np.arange(designs.count))
+    x, z = PAPER.mechanism.points["strut_top"][1], PAPER.mechanism.points["tie_rod_outer"][2]
+    wanted = [(x + a, z + b) for a in (-1.0, 1.0) for b in (0.0, 1.0, 2.0)]
+    assert list(zip(pairs["strut_top.y"], pairs["tie_rod_outer.z"], strict=True)) == wanted
+
+
+def test_blocks_are_the_sweep_in_parts() -> None:
+    heights = np.linspace(-10.0, 10.0, 12)
+    whole = sweep(WISHBONE, offsets={"lower_ball_joint.z": heights})
+    memory = 1.5 * solving.OF_A_DESIGN
+    blocks = list(sweep_blocks(WISHBONE, offsets={"lower_ball_joint.z": heights}, memory=memory))
+    assert len(blocks) > 1
+    assert [number for block in blocks for number in block.numbers_of_designs] == list(range(12))
+    for block in blocks:
+        for number in block.numbers_of_designs.tolist():
+            assert_same_as_alone(block.of(number), whole.scene(number))
+            assert (
+                block.varied["lower_ball_joint.z"][number - block.first]
+                == whole.varied["lower_ball_joint.z"][number]
+            )
+
+
+@pytest.mark.parametrize("samples", [11, 2001])
+def test_blocks_take_no_more_memory_than_is_stated(samples: int) -> None:
+    memory = 60e6
+    scene = few_instants(WISHBONE, samples)
+    designs = designs_of(
+        scene, offsets={"lower_ball_joint.z": np.linspace(-3.0, 3.0, 600 if samples < 100 else 60)}
+    )
+    next(sweep_blocks(designs_of(scene)))  # what is made once stays
+    tracemalloc.start()
+    try:
+        count = sum(1 for _ in sweep_blocks(designs, memory=memory))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert count > 1
+    # A block is let go when the next one is there.
+    assert peak <= 2.0 * memory
+
+
+def test_scenes_with_laws_of_their_own_are_one_sweep() -> None:
+    laws = ({"constant": 1.5}, {"polynomial": (1.5, 0.05)}, {"constant": 9.0}, {"constant": 1.5})
+    scenes = [STRUT.model_copy(update={"inputs": {**STRUT.inputs, "arm_angle": law}}) for law in laws]
+    found = sweep(scenes)
+    assert set(found.failures) == {2}
+    assert isinstance(found.failures[2].error, InputOutOfRange)
+    for number in (0, 1, 3):
+        assert_same_as_alone(found.of(number), scenes[number])
+    with pytest.raises(SweepError, match="design 1: tolerance is 1e-06"):
+        sweep([STRUT, STRUT.model_copy(update={"tolerance": 1e-6})])
+
+
+def test_a_law_that_all_share_is_refused_as_alone() -> None:
+    scene = STRUT.model_copy(update={"inputs": {**STRUT.inputs, "arm_angle": {"constant": 9.0}}})
+    with pytest.raises(InputOutOfRange, match="arm_angle"):
+        sweep(scene, offsets={"strut_top.y": [0.0, 1.0]})
+
+
+def test_what_makes_no_designs_is_said() -> None:
+    with pytest.raises(UnknownName, match=r"did you mean 'lower_ball_joint'"):
+        sweep(STRUT, {"lower_bal_joint.z": [1.0]})
+    with pytest.raises(UnknownName, match=r"no axis of strut_top named 'w'"):
+        sweep(STRUT, {"strut_top.w": [1.0]})
+    for points, offsets, problem in (
+        ({"strut_top.x": []}, {}, "has no values"),
+        ({"strut_top.x": [1.0]}, {"strut_top.x": [1.0]}, "is varied twice"),
+        ({"strut_top": [1.0, 2.0]}, {}, r"has the shape \(2,\)"),
+        ({"strut_top.x": ["a"]}, {}, "allowed: numbers"),
+    ):
+        with pytest.raises(SweepError, match=problem):
+            sweep(STRUT, points, offsets=offsets)
+    with pytest.raises(SweepError, match="the list of scenes is empty"):
+        sweep([])
+    with pytest.raises(SweepError, match="is no axis of a grid"):
+        sweep(STRUT, {"strut_top": [[1.0, 2.0, 3.0]]}, grid=True)
+    with pytest.raises(SweepError, match="use sweep_blocks"):
+        sweep(STRUT, offsets={f"strut_top.{axis}": np.linspace(-1, 1, 1000) for axis in "xyz"}, grid=True)
+    with pytest.raises(SweepError, match="more memory, or fewer instants"):
+        sweep_blocks(STRUT, offsets={"strut_top.x": [0.0]}, memory=1e3)
+    with pytest.raises(SceneError, match="and no scene"):
+        sweep("steer")
+    with pytest.raises(SweepError, match="design 7 is none of these; allowed: 0 to 0"):
+        sweep(STRUT).of(7)
+
+
+def test_a_sweep_proves_its_own_numbers() -> None:
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": [0.0, 2.0]})
+    bound = found.proof(1).bound.max()
+    assert bound <= WISHBONE.tolerance
+    # Numbers that are not this design's are not proven.
+    numbers = {
+        name: channel.with_arrays({part: array[::-1] for part, array in channel.items()})
+        for name, channel in found.numbers.items()
+    }
+    swapped = pickle.loads(pickle.dumps(found))
+    object.__setattr__(swapped, "numbers", numbers)
+    assert swapped.proof(1).bound.max() >= 1.0
+
+
+def test_a_sweep_comes_back_from_another_process() -> None:
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": [0.0, 150.0]})
+    again: Sweep = pickle.loads(pickle.dumps(found))
+    assert repr(again) == repr(found)
+    assert again.failures.keys() == found.failures.keys()
+    assert isinstance(again.varied, Mapping)
+    for quantity in QUANTITIES:
+        for name, array in found.numbers[quantity].items():
+            np.testing.assert_array_equal(array, again.numbers[quantity][name])
