@@ -16,6 +16,7 @@ FORBIDDEN = {
 ROOMS = {
     "pointcoord": (
         "errors",
+        "data_classes",
         "numerics",
         "time_functions",
         "linkage",

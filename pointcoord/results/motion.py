@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.bounds.proof import Proof
 from pointcoord.errors import NotComputed
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
@@ -17,6 +17,9 @@ from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.status import Status
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.proof import Proof
 
 Array = NDArray[np.float64]
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
@@ -21,10 +20,13 @@ from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
 from pointcoord.results.table import State, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
-from pointcoord.solve.pointwise import Solved
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_rates import Summed
+    from pointcoord.solve.pointwise import Solved
 
 Array = NDArray[np.float64]
 
@@ -247,6 +249,8 @@ class StatesOfChain:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
+        from pointcoord.bounds.enclosed_rates import Summed
+
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         derivative = self.readout.plan.derivative
 

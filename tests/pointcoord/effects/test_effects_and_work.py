@@ -102,7 +102,8 @@ def test_counts_are_what_was_done(
 
     solving = pointcoord.solve
     ways = (solving.taylor, solving.pointwise, solving.chord)
-    for module in (newton, assembly, solving.standing_still, flood, *ways):
+    own = (newton, assembly, solving.standing_still, solving.proven_path, flood)
+    for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0

@@ -10,6 +10,7 @@ all at each instant. They are solved in blocks: what lies between a block's oper
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -246,7 +247,7 @@ class BatchRun:
 
 @lru_cache(maxsize=2)
 def _of_text(text: str, count: int) -> dict[str, Array]:
-    return designs_of(Scene.model_validate_json(text), count)
+    return designs_of(Scene.from_mapping(json.loads(text)), count)
 
 
 def _kept_designs(scene: Scene, count: int) -> dict[str, Array]:
