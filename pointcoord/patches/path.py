@@ -25,6 +25,10 @@ SPANS = 1024
 # Spans are cut until they are no wider than the values that they are made of by more than this share of all.
 LOOSE = 1e-3
 ROUNDS = 16
+# What rounding makes of a value, at most, in parts of the largest: no cut takes it away.
+ROUNDED = 1e-12
+# Of more spans that are too wide it is not the length that makes them so; wider boxes cover no less.
+MOST_WIDE = 2**16
 # Spans looked at once, and parts that one is cut into.
 AT_ONCE, PARTS = 2**16, 4
 # A span's box this small, in parts of the smallest box of a domain, tells all that can be told.
@@ -87,9 +91,9 @@ def way_of(functions: Mapping[str, TimeFunction], start: float, stop: float) -> 
     for _ in range(ROUNDS):
         # What lies beyond all values at hand is either there, or comes from a span that is too long.
         least, most = values.min(axis=0), values.max(axis=0)
-        room = LOOSE * (most - least)
+        room = LOOSE * (most - least) + ROUNDED * np.maximum(np.abs(least), np.abs(most))
         wide = ((spans.low < least - room) | (spans.high > most + room)).any(axis=-1) & spans.divisible
-        if not wide.any():
+        if not wide.any() or np.count_nonzero(wide) > MOST_WIDE:
             break
         parts = spans.taken(wide).cut(laws, PARTS)
         more = np.stack([law.series(parts.first, 0)[..., 0] for law in laws], axis=-1)

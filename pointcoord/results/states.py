@@ -21,7 +21,7 @@ from pointcoord.results.readout import Readout
 from pointcoord.results.table import State, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.status import Status
-from pointcoord.solve.taylor import Chain
+from pointcoord.solve.taylor import Chain, last_magnitudes
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
@@ -252,16 +252,18 @@ class StatesOfChain:
         from pointcoord.bounds.enclosed_rates import Summed
 
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
+        # Terms that are missing by chance tell nothing of what is left out.
+        lasts = [last_magnitudes(segment.coefficients) for segment in self.chain.segments]
         derivative = self.readout.plan.derivative
 
-        def sums(first: int, last: int | None) -> Array:
+        def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:
             """Of the terms from one to another, counted from the end."""
             kept = [np.zeros_like(t) for t in terms]
-            for part, whole in zip(kept, terms, strict=True):
+            for part, whole in zip(kept, sizes, strict=True):
                 part[first:last] = whole[first:last]
             return evaluate(self.chain, kept, instants, derivative)
 
-        parts = (sums(-2, None), sums(-4, -2), sums(0, None))
+        parts = (sums(-2, None, lasts), sums(-4, -2, terms), sums(0, None, terms))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
     def unsolved(self, instants: Array) -> Array:

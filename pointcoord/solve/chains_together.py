@@ -32,6 +32,7 @@ from pointcoord.solve.taylor import (
     Segment,
     Settings,
     decay_by_sizes,
+    least_order,
     length_by_sizes,
     power_of_two,
 )
@@ -178,11 +179,12 @@ class _Step:
             self._expand(max(course.settings.derivative, 1))
             return _Joint(course.stop, joint.y, joint.left, joint.length)
         order = BEGUN if joint.decay is None else _order(joint.decay, time)
+        order = min(max(order, least_order(course.functions)), MOST)
         self._expand(order)
         length = self._length()
         if np.isfinite(length):
             decay = self._decay(length)
-            wanted = _order(decay, time)
+            wanted = max(_order(decay, time), order)
             if joint.decay is None and wanted > order:
                 self._expand(wanted)
                 length = self._length()

@@ -75,6 +75,11 @@ SPARE, CARRIED_ON = 1, 3
 # What a segment costs beside its orders, in orders: fitted to the times of thirty chains of 3 to 100 segments
 # and of orders from 8 to 40.
 SEGMENT = 25.0
+# Where an input begins as t^n only every n-th term of the motion exists, or others hardly: a polynomial of more
+# than the third degree is followed to its own third power at least.
+POWERS, CUBIC = 3, 3
+# Last terms that are looked at for what follows, at least.
+WINDOW = 5
 # Segments up to which a motion is divided evenly; of more the last one hardly counts.
 FEW = 8
 # Share of the tolerance up to which Newton's method may stop short of a pose.
@@ -240,6 +245,12 @@ class Decay:
         )
 
 
+def least_order(functions: Mapping[str, TimeFunction]) -> int:
+    """The order that shows more than the first term of what a law of high degree does."""
+    degree = max((function.degree for function in functions.values()), default=0)
+    return POWERS * degree if degree > CUBIC else FEWEST
+
+
 @dataclass(frozen=True)
 class _Joint:
     """An assembled pose from which a segment starts.
@@ -322,7 +333,7 @@ class _Course:
         # The rates of very slow or fast inputs, per second to a power, are numbers up to some order only.
         most = max(SAFE, min(MOST, int(SMALLEST / max(abs(np.log2(joint.scale)), 1.0))))
         order, goal = (FEWEST, 0.0) if joint.decay is None else joint.decay.order(time)
-        order = min(order, most)
+        order = min(max(order, least_order(self.functions)), most)
         segment = self.series_about(joint, order)
         for _ in range(CARRIED_ON):
             if not np.isfinite(segment.coefficients).all():
@@ -480,7 +491,8 @@ def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = No
 
     With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
-    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1).
+    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). Last terms that are missing or small by
+    chance are taken for what the ones before them come to (see `_gone_on`).
 
     Args:
         smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
@@ -488,6 +500,7 @@ def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = No
     """
     logs = logs.copy()
     logs[:, 0] = 0.0
+    logs[:, -2:] = _gone_on(logs)
     if not np.isfinite(logs[:, -2:]).any():
         return np.inf
     known = np.maximum(logs, np.log(np.finfo(float).tiny))
@@ -516,6 +529,51 @@ def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = No
         longest = trials[np.argmax(fits(trials))]
     with np.errstate(over="ignore"):
         return float(np.exp(longest))
+
+
+def _gone_on(logs: Array) -> Array:
+    """Logarithms of the last two coefficients, at least what the ones before them come to, (members, 2).
+
+    Every other term is missing where an input is at rest, two of three where it begins as t^3, and close to
+    such a place they are small: the last two then tell nothing of those that follow. So the largest of the last
+    WINDOW terms, or of more where more were missing at once, goes on as terms fell since the window before.
+    Terms that end for good, of which the last window has none, stay missing.
+    """
+    window, fall = _fall(logs)
+    later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
+    last = (later - fall * ahead).max(axis=-1)
+    before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
+    return np.stack([before, last], axis=-1)
+
+
+def _fall(logs: Array) -> tuple[int, Array]:
+    """How many terms are looked at, and how much their logarithms fall from one to the next, (members, 1)."""
+    count = logs.shape[-1]
+    window = WINDOW
+    for member in np.isfinite(logs[:, 1:]):
+        # A gap that was there once may come again.
+        window = max(window, int(np.diff(np.flatnonzero(member) + 1, prepend=0).max(initial=1)))
+    window = min(window, count - 2)
+    middle, members = count - window, np.arange(len(logs))
+    first = max(1, middle - window)
+    a, b = first + logs[:, first:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
+    with np.errstate(invalid="ignore"):
+        fall = (logs[members, a] - logs[members, b]) / (b - a)
+    # Of terms that do not fall, or that begin here, the length that they allow says more.
+    return window, np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)[:, None]
+
+
+def last_magnitudes(series: Array) -> Array:
+    """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `_gone_on`).
+
+    Args:
+        series: coefficients, (order + 1, size).
+    """
+    sizes = np.abs(series)
+    window, fall = _fall(_log_sizes(series))
+    later = sizes[-window:]
+    ahead = np.exp(-fall[0] * np.arange(window - 1.0, -1.0, -1.0))[:, None]
+    return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])
 
 
 @cache

@@ -293,9 +293,9 @@ def test_a_segment_that_is_cut_too_late_is_caught_by_newton_and_halved(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     scene = asking(Scene.load("bounce"), 1e-6)
-    right = taylor._length
+    right = taylor.length_by_sizes
     exact = simulate(asking(scene, FINEST))
-    monkeypatch.setattr(taylor, "_length", lambda *arguments: 1.7 * right(*arguments))
+    monkeypatch.setattr(taylor, "length_by_sizes", lambda *arguments: 1.7 * right(*arguments))
     assert off(simulate(scene), exact, "position") <= 1e-6
 
 
