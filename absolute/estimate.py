@@ -14,10 +14,10 @@ import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.solution import Array
-from absolute.stack import Placed
+from absolute.stack import WHEEL, Placed
 from absolute.vectors import cross
 
 # A turned arm has 13 roundings; each product with an angular velocity adds three.
@@ -61,23 +61,30 @@ class Answers(NamedTuple):
     """What the doubts of each row do to the moving bodies, [o, turn] and its rates.
 
     Attributes:
-        direct: K, (N, rows, bodies, 2, 3): pose to p, velocity to t, acceleration to s.
-        speed, second: -K H K: velocity to p; acceleration to p. bent: acceleration to t.
-        pose, rate, rest: the doubts p, t, s themselves.
-        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs.
+        every: (4, N, rows, 6 * bodies) of them, four kinds:
+            K, pose to p, velocity to t, acceleration to s;
+            -K H K, velocity to p; the same of acceleration to p; and that of acceleration to t.
+        known, squared: (N, 3, rows) the doubts p, t, s: what is left, and the squares of what is rounded.
+        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs;
+            None where inputs are exact.
         grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
     """
+
+    every: Array
+    known: Array
+    squared: Array
+    slopes: Array
+    inputs: Array | None
+    grown: tuple[Array, Array, Array]
+
+
+class Lengths(NamedTuple):
+    """Numbers of points or bodies, (N, rows, 3 * of these), per doubt of each row: as `Answers.every`."""
 
     direct: Array
     speed: Array
     second: Array
     bent: Array
-    pose: Doubt
-    rate: Doubt
-    rest: Doubt
-    slopes: Array
-    inputs: Array
-    grown: tuple[Array, Array, Array]
 
 
 def estimate(
@@ -91,25 +98,29 @@ def estimate(
         chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
     """
     answers = _answers(mechanism, motion, series, doubts)
-    model = mechanism.model
+    model, size = mechanism.model, mechanism.drawing.size
     errors = Errors({}, {}, {}, {}, {}, {})
     for body, index in mechanism.drawing.bodies.items():
-        for point in model.bodies[body]:
-            if point in errors.position:
-                continue
-            if index:
-                found = _point(mechanism, motion, answers, chassis, index, mechanism.drawing.arm(body, point))
-            else:
+        points = [point for point in model.bodies[body] if point not in errors.position]
+        if not index:
+            for point in points:
                 # The drawn place and the motion of the chassis: one sum.
                 place = np.abs(np.array(model.points[point]) + chassis[:, 0])
-                found = 0.5 * EPS * place, np.zeros_like(place), np.zeros_like(place)
+                errors.position[point] = 0.5 * EPS * place
+                errors.velocity[point], errors.acceleration[point] = np.zeros((2, *place.shape))
+            continue
+        local = np.array([mechanism.drawing.arm(body, point) for point in points]).reshape(-1, 3)
+        arms = local @ motion.rotation[:, index].swapaxes(-1, -2)
+        totals = _totals(answers, _lengths(answers, motion, index, arms))
+        errors.rotation[body] = totals[0][:, 0]
+        errors.angular_velocity[body], errors.angular_acceleration[body] = totals[1][:, 0], totals[2][:, 0]
+        rounded = _sums(mechanism, motion, index, arms, chassis)
+        for number, point in enumerate(points):
+            found = (
+                total[:, 1 + number] * size + more[:, number]
+                for total, more in zip(totals, rounded, strict=True)
+            )
             errors.position[point], errors.velocity[point], errors.acceleration[point] = found
-        if index:
-            part = (slice(None), slice(None), index - 1, 1)
-            direct, speed, second, bent = (answer[part] for answer in answers[:4])
-            turn, spin, spin1 = _totals(answers, direct, speed, second, bent)
-            errors.rotation[body] = turn
-            errors.angular_velocity[body], errors.angular_acceleration[body] = spin, spin1
     return errors
 
 
@@ -154,103 +165,127 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
     everything = pose.known + pose.rounded
     everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
     by_velocity = drift_by_velocity(stack, moving)
-    by_pose = rate_by_pose(stack, bending) + drift_by_pose(stack, moving)
-    speed = -inverse @ rate_by_pose(stack, moving) @ inverse
-    second = -inverse @ (by_pose @ inverse + by_velocity @ speed)
-    bent = -inverse @ by_velocity @ inverse
+    changes = (rate_by_pose(stack, moving), rate_by_pose(stack, bending) + drift_by_pose(stack, moving))
+    count = stack.count
+    # Both changes with the pose, and that of the drift with the velocities, times K, as one matrix.
+    turned = np.concatenate((*changes, by_velocity), axis=1) @ inverse
+    speed = -inverse @ turned[:, :count]
+    turned[:, count : 2 * count] += by_velocity @ speed
+    second, bent = -inverse @ turned[:, count : 2 * count], -inverse @ turned[:, 2 * count :]
     rate = rate_doubt(moving, jacobian, speeds, targets[1])
     grown = fold(mechanism, placed, inverse, everything)
     # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
     off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
     fastest = np.abs(speeds).max(axis=1)
     share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
+    rest = second_doubt(moving, bending, jacobian, seconds, drift, targets[2])
+    three = (pose, rate, rest)
+    rounded = np.stack([doubt.rounded for doubt in three], axis=1)
     return Answers(
-        _by_row(inverse),
-        _by_row(speed),
-        _by_row(second),
-        _by_row(bent),
-        pose,
-        rate,
-        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
+        np.stack((inverse, speed, second, bent)).swapaxes(-1, -2),
+        np.stack([doubt.known for doubt in three], axis=1),
+        rounded * rounded,
         slopes,
-        doubts,
+        doubts if doubts.any() else None,
         (grown[0], grown[1], grown[2] * (1.0 + share)),
     )
 
 
-def _by_row(matrix: Array) -> Array:
-    return matrix.swapaxes(-1, -2).reshape(len(matrix), matrix.shape[-1], -1, 2, 3)
+def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> Lengths:
+    """The turn of a body and its rates, and its points at arms (N, points, 3) from its origin.
+
+    p = o + r,  p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r), where r turns by turn x r. Each vector
+    product is a matrix here: answers are rows, and so are vectors.
+    """
+    spin, spin1 = (wheel(rates[:, index, 1])[:, None] for rates in (motion.velocity, motion.acceleration))
+    r = -wheel(arms)
+    turning = cross(motion.velocity[:, index, None, 1], arms)
+    # Of points: turned is x r, moved is w x turned.
+    moved = r @ spin
+    bent = moved - wheel(turning)
+    moved1 = r @ spin1 + moved @ spin
+    first = 6 * (index - 1)
+    origin, turn = answers.every[..., first : first + 3], answers.every[..., first + 3 : first + 6]
+    turned = turn @ side_by_side(r)
+    further = turn[0] @ side_by_side(np.concatenate((moved, bent, moved1), axis=1))
+    width = turned.shape[-1]
+    turned[1] += further[..., :width]
+    turned[3] += further[..., width : 2 * width]
+    turned[2] += further[..., 2 * width :]
+    turned[2] += turn[1] @ side_by_side(bent)
+    found = np.empty((*turned.shape[:-1], 3 + width))
+    found[..., :3] = turn
+    np.add(turned, np.tile(origin, len(arms[0])), out=found[..., 3:])
+    return Lengths(*found)
 
 
-def _point(
-    mechanism: Mechanism, motion: BodyMotion, answers: Answers, chassis: Array, index: int, local: Array
+def wheel(vectors: Array) -> Array:
+    """(..., 3, 3) matrices with  x @ wheel(v) = v x x  for a row x."""
+    return np.asarray((vectors @ WHEEL).reshape(*vectors.shape, 3))
+
+
+def side_by_side(matrices: Array) -> Array:
+    """(N, 3, 3 * M) of (N, M, 3, 3)."""
+    count, many = matrices.shape[:2]
+    return matrices.swapaxes(1, 2).reshape(count, 3, 3 * many)
+
+
+def _sums(
+    mechanism: Mechanism, motion: BodyMotion, index: int, arms: Array, chassis: Array
 ) -> tuple[Array, Array, Array]:
-    # p = o + r,  p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r), where r turns by turn x r.
-    arm = motion.rotation[:, index] @ local
-    rates = motion.velocity[:, index], motion.acceleration[:, index]
-    r, w, w1 = arm[:, None], rates[0][:, None, 1], rates[1][:, None, 1]
-    direct, speed, second, bent = (answer[:, :, index - 1] for answer in answers[:4])
-    turned, sped, turning = cross(direct[:, :, 1], r), cross(speed[:, :, 1], r), cross(w, r)
-    moved = cross(w, turned)
-    found = _totals(
-        answers,
-        direct[:, :, 0] + turned,
-        speed[:, :, 0] + sped + moved,
-        second[:, :, 0]
-        + cross(second[:, :, 1], r)
-        + cross(w1, turned)
-        + cross(w, moved)
-        + cross(speed[:, :, 1], turning)
-        + cross(w, sped),
-        bent[:, :, 0] + cross(bent[:, :, 1], r) + cross(direct[:, :, 1], turning) + moved,
+    """What the sums that make points of their arms are rounded from, (N, points, 3) each, mm and s."""
+    drawing = mechanism.drawing
+    size = drawing.size
+    rates = motion.velocity[:, index, None], motion.acceleration[:, index, None]
+    reach, fast, faster = (
+        length(vector)[..., None] for vector in (arms, rates[0][..., 1, :], rates[1][..., 1, :])
     )
-    # What the sums themselves are rounded from.
-    size = mechanism.drawing.size
-    reach, fast, faster = (length(vector)[:, None] for vector in (arm, rates[0][:, 1], rates[1][:, 1]))
-    place = motion.origin[:, index] + arm
-    given = place * size + mechanism.drawing.middle
-    position = (found[0] + ARM * reach + SUMMED * np.abs(place)) * size
-    position += 0.5 * EPS * (np.abs(given) + np.abs(given + chassis[:, 0]))
-    velocity = (found[1] + TURNED * fast * reach + SUMMED * np.abs(rates[0][:, 0])) * size
+    place = motion.origin[:, index, None] + arms
+    given = place * size + drawing.middle
+    position = (ARM * reach + SUMMED * np.abs(place)) * size
+    position += 0.5 * EPS * (np.abs(given) + np.abs(given + chassis[:, None, 0]))
+    velocity = (TURNED * fast * reach + SUMMED * np.abs(rates[0][..., 0, :])) * size
+    velocity += 0.5 * EPS * np.abs(chassis[:, None, 1])
     turning_twice = (fast * fast + faster) * reach
-    acceleration = (found[2] + TURNED_TWICE * turning_twice + SUMMED * np.abs(rates[1][:, 0])) * size
-    velocity += 0.5 * EPS * np.abs(chassis[:, 1])
-    acceleration += 0.5 * EPS * np.abs(chassis[:, 2])
+    acceleration = (TURNED_TWICE * turning_twice + SUMMED * np.abs(rates[1][..., 0, :])) * size
+    acceleration += 0.5 * EPS * np.abs(chassis[:, None, 2])
     return position, velocity, acceleration
 
 
-def _totals(
-    answers: Answers, direct: Array, speed: Array, second: Array, bent: Array
-) -> tuple[Array, Array, Array]:
-    """Sums over the rows of magnitudes times doubts, for a quantity (N, rows, 3) and its rates."""
-    p, t, s = answers.pose, answers.rate, answers.rest
+def _totals(answers: Answers, lengths: Lengths) -> tuple[Array, Array, Array]:
+    """Sums over the rows of magnitudes times doubts, (N, of these, 3), of quantities and their rates."""
+    p, t = slice(0, 1), slice(1, 2)
+    direct = _summed(lengths.direct, answers, slice(0, 3))
     totals = (
-        _summed(direct, p),
-        _summed(speed, p) + _summed(direct, t),
-        _summed(second, p) + _summed(bent, t) + _summed(direct, s),
+        direct[:, 0],
+        _summed(lengths.speed, answers, p)[:, 0] + direct[:, 1],
+        _summed(lengths.second, answers, p)[:, 0] + _summed(lengths.bent, answers, t)[:, 0] + direct[:, 2],
     )
-    # An input's row answers to all three equations at once where its value is off.
-    driven = slice(direct.shape[1] - answers.inputs.shape[-1], None)
-    d, v, a, b = (answer[:, driven] for answer in (direct, speed, second, bent))
-    for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
-        to_pose, to_rate, to_rest = slopes[..., None]
-        changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
-        for total, change in zip(totals, changes, strict=True):
-            total += np.einsum("nic,ni->nc", np.abs(change), off)
+    if answers.inputs is not None:
+        # An input's row answers to all three equations at once where its value is off.
+        driven = slice(lengths.direct.shape[1] - answers.inputs.shape[-1], None)
+        d, v, a, b = (answer[:, driven] for answer in lengths)
+        for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
+            to_pose, to_rate, to_rest = slopes[..., None]
+            changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
+            for total, change in zip(totals, changes, strict=True):
+                total += np.einsum("nic,ni->nc", np.abs(change), off)
     position, velocity, acceleration = (
-        total + _further(total, grown) for total, grown in zip(totals, answers.grown, strict=True)
+        _further(total.reshape(len(total), -1, 3), grown)
+        for total, grown in zip(totals, answers.grown, strict=True)
     )
     return position, velocity, acceleration
 
 
 def _further(total: Array, grown: Array) -> Array:
     # Higher orders lead anywhere, not where the first leads. Nothing stays nothing, however near the fold.
-    largest = total.max(axis=1, keepdims=True)
-    further: Array = np.multiply(largest, grown[:, None] - 1.0, out=np.zeros_like(largest), where=largest > 0)
-    return further
+    largest = total.max(axis=-1, keepdims=True)
+    further = np.multiply(largest, grown[:, None, None] - 1.0, out=np.zeros_like(largest), where=largest > 0)
+    return np.asarray(total + further)
 
 
-def _summed(answer: Array, doubt: Doubt) -> Array:
-    known = np.einsum("nrc,nr->nc", np.abs(answer), doubt.known)
-    total: Array = known + np.sqrt(np.einsum("nrc,nr->nc", answer * answer, doubt.rounded * doubt.rounded))
-    return total
+def _summed(lengths: Array, answers: Answers, doubts: slice) -> Array:
+    """(N, doubts, 3 * of these) for some of p, t, s."""
+    known = answers.known[:, doubts] @ np.abs(lengths)
+    known += np.sqrt(answers.squared[:, doubts] @ (lengths * lengths))
+    return np.asarray(known)

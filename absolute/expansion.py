@@ -109,11 +109,16 @@ class Line(NamedTuple):
     share: Array
     beside: Array
 
+    def part(self, of: NDArray[np.intp]) -> "Line":
+        """Some of the instants."""
+        return Line(self.way, self.share[of], self.beside[of])
 
-def line_between(start: Expansion, end: Expansion, places: Array) -> Line:
-    """Where targets (N, inputs) are on the line between the places of two expansions, which differ."""
-    way, off = end.place - start.place, places - start.place
-    share = (off @ (way / (way @ way)))[:, None]
+
+def line_between(start: Array, end: Array, places: Array) -> Line:
+    """Where targets (N, inputs) are on the line between two; beside the first if those are the same."""
+    way, off = end - start, places - start
+    square = float(way @ way)
+    share = (off @ (way / square if square > 0.0 else way))[:, None]
     return Line(way, share, off - share * way)
 
 

@@ -13,7 +13,7 @@ from absolute.solution import Array, Counts
 from absolute.tracking import SMALL, Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
-BATCH = 32
+BATCH = 64
 
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 32 * EPS
@@ -68,6 +68,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     first = previous = lengths(steps)
     factors: list[eigenpy.PartialPivLU] = [None] * len(q)
     pending = np.arange(len(q))
+    velocity = np.empty((len(q) if rates else 0, stack.count))
     for _ in range(MOST_CORRECTIONS):
         order = pending.tolist()
         q[pending] = mechanism.moved_all(q[pending], rotation[pending], steps)
@@ -82,7 +83,13 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
                 whole[pending] = part
         for instant, jacobian in zip(order, stack.jacobian(fresh), strict=True):
             factors[instant] = eigenpy.PartialPivLU(jacobian)
-        steps = solved([factors[instant] for instant in order], targets[0, pending] - fresh.values)
+        those, left = [factors[instant] for instant in order], targets[0, pending] - fresh.values
+        if rates:
+            # Both at once: with factors that small, calls cost more than numbers.
+            both = solved(those, np.stack((left, targets[1, pending]), axis=-1))
+            steps, velocity[pending] = both[..., 0], both[..., 1]
+        else:
+            steps = solved(those, left)
         size = lengths(steps)
         # Negated, so that what is not a number counts as more to do.
         more = ~(size <= ROUNDING)
@@ -99,9 +106,8 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
             break
     closed = np.ones(len(q), dtype=np.bool_)
     closed[pending] = False
-    velocity = acceleration = np.empty((0, stack.count))
+    acceleration = np.empty((0, stack.count))
     if rates:
-        velocity = solved(factors, targets[1])
         moving = np.zeros((*origin.shape[:2], 2, 3))
         moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
@@ -133,7 +139,7 @@ def lengths(steps: Array) -> Array:
 
 
 def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
-    """Solutions (N, rows) of N factorised systems for their right-hand sides (N, rows)."""
+    """Solutions (N, rows), or (N, rows, some), of N factorised systems for such right-hand sides."""
     return np.array([lu.solve(column) for lu, column in zip(factors, right_hand, strict=True)])
 
 

@@ -13,9 +13,8 @@ from absolute.refine import Refined
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
-# Jacobians at once when condition numbers or errors are asked for: a few megabytes.
-BATCH = 256
-ERROR_BATCH = 32
+# Jacobians at once when condition numbers or errors are asked for: what stays in fast memory.
+BATCH = 32
 
 
 class Asked(NamedTuple):
@@ -140,8 +139,8 @@ class Record:
                 {name: np.zeros((0, 3)) for name in names} for names in (model.points, model.moving)
             )
             return Errors(points, points, points, bodies, bodies, bodies)
-        for start in range(0, max(count, 1), ERROR_BATCH):
-            part = slice(start, min(start + ERROR_BATCH, count))
+        for start in range(0, max(count, 1), BATCH):
+            part = slice(start, min(start + BATCH, count))
             origin = self._origin[part]
             still = np.zeros((*origin.shape[:2], 2, 3))
             rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)

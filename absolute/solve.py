@@ -152,8 +152,11 @@ def _store(
         instant before if that was found as well.
     """
     before: Array | None = None
-    for start in range(0, len(found.q), BATCH):
-        part = slice(start, min(start + BATCH, len(found.q)))
+    # Even parts: a small one at the end would cost as many calls as a full one.
+    whole = len(found.q)
+    parts = max(1, round(whole / BATCH))
+    for number in range(parts if whole else 0):
+        part = slice(whole * number // parts, whole * (number + 1) // parts)
         refined = refine(mechanism, found.part(part), targets[:, part], rates)
         good = refined.closed & refined.kept & refined.sure
         if rates:

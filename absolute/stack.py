@@ -21,8 +21,8 @@ from absolute.rows import Angle, Offset, Rows
 from absolute.solution import Array
 from absolute.vectors import LAST, NEXT
 
-# w @ _WHEEL is the transposed matrix of "w x", row by row: features are kept as rows.
-_WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
+# w @ WHEEL is the transposed matrix of "w x", row by row: features are kept as rows.
+WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 
 # A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the
@@ -151,7 +151,7 @@ class RowStack:
         Args:
             velocity: (..., bodies, 3) of the body origins. spin: (..., bodies, 3) angular.
         """
-        turning = (spin @ _WHEEL).reshape(*spin.shape, 3)
+        turning = (spin @ WHEEL).reshape(*spin.shape, 3)
         rate = placed.turned @ turning
         first = self._parts(rate + self._is_point * velocity[..., None, :])
         second = self._parts(rate @ turning)

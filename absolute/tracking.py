@@ -197,29 +197,37 @@ class Tracking:
             here = self._expansion = expanded(mechanism, self._here, self._target[driven])
         ahead = Ahead.of(here, places - here.place)
         count = ahead.length()
-        while count >= SHORTEST_RUN and not straight_enough(here, places[:count]):
-            count = 3 * count // 4
-        if count < SHORTEST_RUN:
+        while count >= SHORTEST_RUN:
+            line = line_between(here.place, places[count - 1], places[:count])
+            third = float(Ahead.of(here, line.beside).third.max())
+            if third <= BESIDE:
+                break
+            # A smooth way is beside its chord by the square of its length: this falls as the sixth power.
+            count = min(count - 1, int(count * (BESIDE / third) ** (1.0 / 6.0)))
+        else:
             return self._too_short()
         last, target = count - 1, targets[done + count - 1]
         start = ahead.q[last]
         if self._before is not None and ahead.third[last] > FLAT:
             # The way behind tells more of the way ahead than this place alone, if it leads on or back.
-            line = line_between(self._before, here, places[last:count])
-            if 0.0 < line.share[0, 0] < FURTHEST:
-                start = between(self._before, here, line)[0]
+            onward = line_between(self._before.place, here.place, places[last:count])
+            if 0.0 < onward.share[0, 0] < FURTHEST:
+                start = between(self._before, here, onward)[0]
         there, spent = corrected(mechanism, mechanism.normalized(start), target), 1
         allowed = LARGEST_CORRECTION * float(ahead.size[last]) + SMALL
         if not there.correction <= allowed or not safe(there, self._here.sign):
             return self._too_short()
         if there.correction > CLOSE:
-            there, spent = corrected(mechanism, there.q, target), 2
+            first, spent = there.correction, 2
+            there = corrected(mechanism, there.q, target)
+            if not there.correction <= LARGEST_CORRECTION * first or not safe(there, self._here.sign):
+                return self._too_short()
         end = expanded(mechanism, there, target[driven])
-        bent = ahead.third[:last] > FLAT
+        bent = np.flatnonzero(ahead.third[:last] > FLAT)
         q = every.q[done : done + last]
         q[:] = ahead.q[:last]
-        if bent.any():
-            q[bent] = between(here, end, line_between(here, end, places[:last][bent]))
+        if bent.size:
+            q[bent] = between(here, end, line.part(bent))
         for number in range(last):
             q[number] = mechanism.normalized(q[number])
         every.q[done + last] = there.q
@@ -281,17 +289,6 @@ class Ahead(NamedTuple):
         count = len(good) if good.all() else int(np.argmin(good))
         turn = int(np.argmax(back[:count])) if back[:count].any() else count
         return count if turn == count else int(np.argmax(self.size[:turn])) + 1
-
-
-def straight_enough(here: Expansion, places: Array) -> bool:
-    """Whether the targets (N, inputs) lie near the line from its own place to the last of them."""
-    way = places[-1] - here.place
-    length = float(way @ way)
-    if not length > 0.0:
-        return True
-    off = places - here.place
-    beside = off - (off @ (way / length))[:, None] * way
-    return bool((Ahead.of(here, beside).third <= BESIDE).all())
 
 
 def rough_of(pose: Pose) -> Rough:

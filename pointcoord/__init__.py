@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         UnknownName,
     )
     from pointcoord.mapping.kinematic_map import KinematicMap, kinematic_map
+    from pointcoord.poses import SolvedPoses, solve_poses
     from pointcoord.results.motion import Motion
     from pointcoord.results.samples import Samples
     from pointcoord.scene.scene_file import Scene, built_in_scenes
@@ -60,6 +61,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SingularConfiguration",
+    "SolvedPoses",
     "Standing",
     "Sweep",
     "SweepError",
@@ -70,6 +72,7 @@ __all__ = [
     "grid_of",
     "kinematic_map",
     "simulate",
+    "solve_poses",
     "standing",
     "sweep",
     "sweep_blocks",
@@ -82,6 +85,7 @@ _MODULES = {
     "Motion": "results.motion",
     "Samples": "results.samples",
     "Scene": "scene.scene_file",
+    "SolvedPoses": "poses",
     "Standing": "drawing_stands",
     "Sweep": "sweeping.swept",
     "built_in_scenes": "scene.scene_file",
@@ -90,6 +94,7 @@ _MODULES = {
     "grid_of": "sweeping.designs",
     "kinematic_map": "mapping.kinematic_map",
     "simulate": "simulation",
+    "solve_poses": "poses",
     "standing": "drawing_stands",
     "sweep": "sweeping.sweep",
     "sweep_blocks": "sweeping.sweep",

@@ -6,7 +6,6 @@ Every message says what is wrong, where, the value, what is allowed and what to 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
 from typing import Any
 
 
@@ -73,6 +72,9 @@ class UnknownName(PointcoordError, LookupError):
         self.kind = kind
         self.name = name
         self.valid = tuple(valid)
+        # Imported here: few names are misspelt.
+        from difflib import get_close_matches
+
         near = get_close_matches(name, self.valid, n=1)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
         super().__init__(f"no {kind} named {name!r}{hint}; there are: {', '.join(self.valid) or 'none'}")

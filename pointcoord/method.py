@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
 from pointcoord.solve.chord import solve_by_chord

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.plan import plan_effects
 from pointcoord.errors import (
     InputNotKnown,
@@ -96,9 +97,10 @@ def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
 
 @dataclass(frozen=True)
 class Effort:
-    """What the accuracy that a scene asks for makes the method `series` do.
+    """What the accuracy that a scene asks for makes the method `auto` do.
 
     Attributes:
+        method: which way it goes, `series` or `map`. why: a note that says so where it is the map.
         tolerance: of positions, mm: the scene's, or the nearest that a series holds.
         part: the same as a part of the car's size, which rates are held to.
         orders: of each series.
@@ -112,6 +114,8 @@ class Effort:
         status: whether that is the end, and if not, why.
     """
 
+    method: str
+    why: str
     tolerance: float
     part: float
     orders: tuple[int, ...]
@@ -126,29 +130,32 @@ class Effort:
 
 
 def effort(scene: Scene) -> Effort:
-    """Find what solving a scene takes, by building its series; nothing is summed at its instants.
+    """Find what solving a scene takes, by building its series or its map; nothing is summed at its instants.
 
     Raises:
         PointcoordError: what `simulate` raises before a motion begins.
     """
     require_scene(scene)
-    task = prepare_task(Scene.checked(scene, scene.title or "scene"), SERIES)
-    mechanism = task.readout.mechanism
-    chain, part = _chain(task), mechanism.moving_part(task.functions)
-    whole = scene.mechanism.topology
+    task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
+    mechanism, states = task.readout.mechanism, solved.states
+    whole, mapped = scene.mechanism.topology, task.method is MAP
+    # A map is of all coordinates, whatever moves them.
+    moving = mechanism.map.unknowns if mapped else mechanism.moving_part(task.functions).system.unknowns
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
+        method=task.method.name,
+        why=states.notes[0] if mapped else "",
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
-        orders=tuple(segment.order for segment in chain.segments),
-        moving=part.system.unknowns,
-        still=mechanism.map.unknowns - part.system.unknowns,
+        orders=states.orders,
+        moving=moving,
+        still=mechanism.map.unknowns - moving,
         not_needed=whole.layout.unknowns - mechanism.map.unknowns,
         points_not_needed=_unsolved(task),
         start=task.start.work,
-        work=task.start.work + chain.work,
-        stop=chain.stop if chain.segments else scene.time.start,
-        status=chain.status,
+        work=task.start.work + replace(states.work, derivatives_evaluated=0, coordinates_evaluated=0),
+        stop=max(states.stop, scene.time.start),
+        status=states.status,
     )
 
 

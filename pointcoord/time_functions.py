@@ -9,7 +9,6 @@ which is all that positions, velocities, accelerations and whole motions need.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, perm
 from operator import mul
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import SPLITTER, two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed, cosine_sine
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF

@@ -16,6 +16,7 @@ FORBIDDEN = {
 ROOMS = {
     "pointcoord": (
         "errors",
+        "data_classes",
         "numerics",
         "time_functions",
         "linkage",
@@ -28,6 +29,7 @@ ROOMS = {
         "results",
         "scene",
         "simulation",
+        "poses",
         "drawing_stands",
         "sweeping",
         "mapping",

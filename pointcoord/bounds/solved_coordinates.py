@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import Summed
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_rates import Summed
 
 Array = NDArray[np.float64]
 

@@ -8,19 +8,21 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity
 from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
+    from pointcoord.bounds.reported_bounds import Numbers
 
 Array = NDArray[np.float64]
 

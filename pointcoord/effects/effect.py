@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
+    from pointcoord.bounds.reported_bounds import Numbers
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]

@@ -13,19 +13,21 @@ that was found from all points by least squares (see `rigid`).
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_points import EnclosedPoses, Points, edges_of
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.data_classes import dataclass
 from pointcoord.effects import rigid
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, cross, dot, quotient
 from pointcoord.numerics.rounding import EPS
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Points
+    from pointcoord.bounds.reported_bounds import Numbers
 
 Array = NDArray[np.float64]
 States = Mapping[str, Array]
@@ -141,6 +143,8 @@ def body_rate_error(
         found: the computed rate, (N, 3).
         pull: the exact angular velocity where `rates` are accelerations.
     """
+    from pointcoord.bounds.enclosed_points import edges_of
+
     e1, e2 = edges_of(points, names)
     turning = Enclosed.of(found)
     v1, v2 = edges_of(rates, names)

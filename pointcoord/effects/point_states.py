@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.linkage.topology import Topology
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
+    from pointcoord.bounds.reported_bounds import Numbers
 
 Array = NDArray[np.float64]
 

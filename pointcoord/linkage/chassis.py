@@ -10,11 +10,11 @@ speed costs a digit.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed

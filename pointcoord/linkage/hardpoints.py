@@ -13,6 +13,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.linear import factorise, null_directions
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 
@@ -109,6 +110,8 @@ def _check_determined(mechanism: Mechanism) -> None:
     equations, unknowns = len(system.rows), system.unknowns
     jacobian = system.jacobian(mechanism.drawn)
     if equations == unknowns:
+        if _regular_like_the_first(jacobian.reshape(-1, unknowns, unknowns)):
+            return
         singular = factorise(jacobian).singular
         if not singular.any():
             return
@@ -132,6 +135,25 @@ def _check_determined(mechanism: Mechanism) -> None:
         f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}{advice}",
         names,
     )
+
+
+def _regular_like_the_first(matrices: Array) -> bool:
+    """Whether matrices are far from singular because they are near the first, shape (members, n, n).
+
+    With X the first one's inverse and |I - X A| <= 1/2, |A^-1| <= 2 |X|: one product for all, where each
+    would take a factorisation. False says nothing.
+    """
+    first, n = factorise(matrices[0]), matrices.shape[-1]
+    if len(matrices) < 2 or first.singular:
+        return False
+    inverse = first.preconditioner
+    products = inverse @ matrices.transpose(1, 0, 2).reshape(n, -1)
+    away = np.abs(products.reshape(n, -1, n) - np.eye(n)[:, None]).sum(axis=-1).max()
+    rows = np.abs(matrices).sum(axis=-1)
+    # The condition with rows scaled by powers of two to a largest entry between 1/2 and 1.
+    spread = (rows / np.abs(matrices).max(axis=-1)).max()
+    scaled = (np.abs(inverse) * (rows.max(axis=0))).sum(axis=-1).max()
+    return bool(away <= 0.5 and n * EPS * 4.0 * spread * scaled < 1.0)
 
 
 def _dominant(directions: Array) -> list[int]:

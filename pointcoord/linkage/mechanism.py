@@ -8,12 +8,13 @@ power of two changes no bit of a result.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.linkage.carried_points import carried_gain, carried_series
 from pointcoord.linkage.drawing import Drawing

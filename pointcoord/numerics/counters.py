@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import fields
+from operator import add, attrgetter
+
+from pointcoord.data_classes import dataclass
 
 
 @dataclass(frozen=True)
@@ -30,13 +33,7 @@ class Work:
     coordinates_evaluated: int = 0
 
     def __add__(self, other: Work) -> Work:
-        return Work(
-            self.residuals + other.residuals,
-            self.factorisations + other.factorisations,
-            self.rate_solves + other.rate_solves,
-            self.unknowns_solved + other.unknowns_solved,
-            self.segments + other.segments,
-            self.series_orders + other.series_orders,
-            self.derivatives_evaluated + other.derivatives_evaluated,
-            self.coordinates_evaluated + other.coordinates_evaluated,
-        )
+        return Work(*map(add, _counts(self), _counts(other)))
+
+
+_counts = attrgetter(*(each.name for each in fields(Work)))

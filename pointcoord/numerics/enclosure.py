@@ -13,12 +13,10 @@ dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from fractions import Fraction
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -156,6 +154,8 @@ def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
 
 def _inverse(number: int) -> Enclosed:
     high = 1.0 / number
+    from fractions import Fraction
+
     return Enclosed.of(high, float(Fraction(1, number) - Fraction(high)), UNIT_ROUNDOFF**2 * high)
 
 

@@ -9,11 +9,10 @@ few entries is inverted block after block (see `block_inverse`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.rounding import EPS
 

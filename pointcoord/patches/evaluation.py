@@ -118,22 +118,29 @@ def sum_series(
 
 
 def sum_rows(
-    coefficients: Array,
+    tables: Sequence[Array],
     middle: Array,
     half: Array,
     order: int,
     patch: Whole,
     states: Sequence[Array],
-    out: Array,
-) -> None:
-    """The same into an array of shape (derivatives + 1, m, N), with the poses side by side in memory."""
-    summing = _Summing.of(coefficients, middle, half, order, states)
-    for number, members in _by_patch(patch, len(coefficients)):
+) -> list[Array]:
+    """The same with poses side by side in memory, and of each derivative only what is wanted.
+
+    Args:
+        tables: by derivative the coefficients of what is wanted of it, each (P, powers, m).
+    Returns:
+        By derivative, each (m, N).
+    """
+    found = [np.empty((table.shape[-1], len(patch))) for table in tables]
+    summing = _Summing.of(tables[0], middle, half, order, states)
+    for number, members in _by_patch(patch, len(tables[0])):
         for here, d, block in summing.blocks(number, members):
-            summed = coefficients[number, 1:].T @ block[1:]
+            summed = tables[d][number, 1:].T @ block[1:]
             if d == 0:
-                summed += coefficients[number, 0, :, None]
-            out[d][:, here] = summed
+                summed += tables[0][number, 0, :, None]
+            found[d][:, here] = summed
+    return found
 
 
 def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp] | None]]:

@@ -219,7 +219,7 @@ class _Flood:
         series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
         solves = len(arrived) * (powers(count, self.order).count - 1)
         self.work += Work(
-            factorisations=len(arrived), rate_solves=solves, series_orders=len(arrived) * self.order
+            factorisations=len(arrived), rate_solves=solves, unknowns_solved=solves * system.unknowns
         )
         last, along = last_terms(series[..., : system.unknowns], count, self.order)
         coarse = last * float(mechanism.unit) > COARSE * self.limits.tolerance

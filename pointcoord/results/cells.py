@@ -15,8 +15,8 @@ what a coordinate costs. Whether a cell is short enough is not guessed:
   of the series is rounded itself, whatever the terms are.
 - of a number that is computed of states, analytic as these are: where the second half of its coefficients is
   below `HALFWAY`, what lies beyond them is below the square of that and more.
-- a law of the chassis is taken at the instants themselves, unless the same holds of it, no break lies in the
-  cell, and it nowhere comes close to zero there if its own rounding does.
+- a law of the chassis is taken at the instants themselves, unless the same holds of it and its own rounding
+  is that of its largest number in the cell.
 
 A cell that is too long is halved; where one of few instants still is, as where a motion begins from rest and
 each number counts relative to itself, the plain formulas are left to do. How far a number is off is proven
@@ -141,15 +141,15 @@ class _Laws:
             law = chassis.law(name, points.ravel(), derivatives[-1])[list(derivatives)]
             values = law.reshape(-1, *points.shape)
             found = interpolation(DEGREE).chebyshev(values, moved)
-            size = np.abs(values)
+            size, least = np.abs(values).max(axis=-1), np.abs(values).min(axis=-1)
             rounding = np.stack([function.rounding(points.ravel(), d) for d in derivatives])
             own = rounding.reshape(values.shape).min(axis=-1)
-            kept = UNIT_ROUNDOFF * size.max(axis=-1) <= 2.0 * np.maximum(
-                UNIT_ROUNDOFF * size.min(axis=-1), own
-            )
-            falling = np.abs(found[..., DEGREE // 2 + 1 :]).max(axis=-1) <= HALFWAY * size.max(axis=-1)
-            breaks = np.searchsorted(function.breaks, points[:, [0, -1]].T)
-            smooth[name] = (kept & falling).all(axis=0) & (breaks[0] == breaks[1])
+            # What a law does not round by itself, as a spline, is meant as it is computed, digit by digit;
+            # so one whose derivatives jump is never a polynomial here.
+            kept = (own > 0.0) & (UNIT_ROUNDOFF * size <= 2.0 * np.maximum(UNIT_ROUNDOFF * least, own))
+            kept |= (values == values[..., :1]).all(axis=-1)
+            falling = np.abs(found[..., DEGREE // 2 + 1 :]).max(axis=-1) <= HALFWAY * size
+            smooth[name] = (kept & falling).all(axis=0)
             coefficients[name] = _of_powers(found)
         return cls(chassis, derivatives, coefficients, smooth)
 
@@ -283,13 +283,10 @@ class CloseInstants:
         coefficients, good = self._coefficients(cells, times)
         cells, coefficients = cells.chosen(good), coefficients[good]
         laws = _Laws.of(self.readout.chassis, table.reported, cells, times)
-        if added.shape[-1] > 1:
-            still = table.height
-        else:
+        if not laws.smooth:
             for low, high in cells.stretches():
                 rows[still:, low:high] = added[still:]
-        matrix = np.zeros((still, DEGREE + 1 + added.shape[-1]))
-        matrix[:, DEGREE + 1 :] = added[:still]
+        matrix = np.concatenate([np.zeros((still, DEGREE + 1)), added[:still]], axis=-1)
         room = np.ones((matrix.shape[-1], MOST))
         for cell, (low, high) in enumerate(zip(cells.low.tolist(), cells.high.tolist(), strict=True)):
             basis = room[:, : high - low]
@@ -299,8 +296,10 @@ class CloseInstants:
             for known in (1, 2, 4):
                 np.multiply(power[1 : known + 1], power[known], out=power[known + 1 : 2 * known + 1])
             laws.put(cell, times[low:high], basis[: DEGREE + 1], basis[DEGREE + 1 : -1])
-            matrix[: table.first_still, : DEGREE + 1] = coefficients[cell]
+            matrix[:, : DEGREE + 1] = coefficients[cell]
             np.matmul(matrix, basis, out=rows[:still, low:high])
+            if laws.smooth:
+                np.matmul(added[still:], basis[DEGREE + 1 :], out=rows[still:, low:high])
         return cells
 
     def _coefficients(self, cells: _Cells, times: Array) -> tuple[Array, NDArray[np.bool_]]:

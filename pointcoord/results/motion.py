@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.bounds.proof import Proof
 from pointcoord.errors import NotComputed
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
@@ -17,6 +17,9 @@ from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.status import Status
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.proof import Proof
 
 Array = NDArray[np.float64]
 
@@ -28,7 +31,7 @@ class Motion(Samples):
     It can be pickled, with all that it can still be asked for.
 
     Attributes:
-        method: how it was solved: series, newton or another method's name.
+        method: how it was solved: series, map, newton or another method's name.
         status: whether it covers the whole scene, and if not, what stopped it.
         start: the assembled pose at the first instant, with its condition number and proven bound.
         closing: how far the drawing's points moved to close.

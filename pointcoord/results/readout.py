@@ -49,7 +49,7 @@ class Readout:
 
     @property
     def reported_derivative(self) -> int:
-        """Highest time derivative that is reported of points."""
+        """Highest time derivative that is reported of points; 0 where none is."""
         return max(self.table.reported, default=0)
 
     @cached_property

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.proof import Proof, prove
-from pointcoord.bounds.reported_bounds import Reported
 from pointcoord.results.cells import CloseInstants
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates, StatesOfChain
 from pointcoord.time_functions import TimeFunction
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.proof import Proof
+    from pointcoord.bounds.reported_bounds import Reported
 
 Array = NDArray[np.float64]
 
@@ -96,11 +99,16 @@ class SolvedScene:
             rates: every number by itself.
             certain: as if the laws' values were exact as they are computed.
         """
+        # What proves is imported where it is asked for, as most motions are read only.
+        from pointcoord.bounds.proof import prove
+
         reported = self._reported(samples)
         return prove(self.readout.mechanism, samples.times, reported, rates=rates, certain=certain)
 
     def _reported(self, samples: Samples) -> Reported:
         """All numbers of samples, and what went into them beside the coordinates."""
+        from pointcoord.bounds.reported_bounds import Reported
+
         readout = self.readout
         return Reported(
             numbers=samples.numbers,

@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
@@ -21,10 +20,13 @@ from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
 from pointcoord.results.table import State, vectors
 from pointcoord.solve.dense_output import SeriesRows, evaluate
-from pointcoord.solve.pointwise import Solved
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_rates import Summed
+    from pointcoord.solve.pointwise import Solved
 
 Array = NDArray[np.float64]
 
@@ -50,6 +52,16 @@ class SolvedStates(SolvedCoordinates, Protocol):
     @property
     def notes(self) -> tuple[str, ...]:
         """Where they were not solved for as the scene asks."""
+        ...
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of every series that they are summed from."""
+        ...
+
+    @property
+    def stop(self) -> float:
+        """Up to when they are known, s; minus infinity where they are not at all."""
         ...
 
     def covered(self, instants: Array) -> Array:
@@ -82,6 +94,16 @@ class StatesAtInstants:
     def status(self) -> Status:
         """The solver's."""
         return self.solved.status
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """There are no series."""
+        return ()
+
+    @property
+    def stop(self) -> float:
+        """The last instant that was reached."""
+        return float(self.solved.times[-1]) if len(self.solved.times) else -np.inf
 
     def covered(self, instants: Array) -> Array:
         """Up to the last one that was reached."""
@@ -153,10 +175,19 @@ class StatesOfChain:
         """The solver's."""
         return self.chain.status
 
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of each segment."""
+        return tuple(segment.order for segment in self.chain.segments)
+
+    @property
+    def stop(self) -> float:
+        """The end of the chain."""
+        return self.chain.stop if self.chain.segments else -np.inf
+
     def covered(self, instants: Array) -> Array:
         """Those up to the end of the chain."""
-        segments = self.chain.segments
-        return instants[instants <= self.chain.stop] if segments else instants[:0]
+        return instants[instants <= self.stop]
 
     def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
         """States at instants of shape (N,) that do not decrease.
@@ -218,6 +249,8 @@ class StatesOfChain:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
+        from pointcoord.bounds.enclosed_rates import Summed
+
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         derivative = self.readout.plan.derivative
 
@@ -273,7 +306,7 @@ class StatesOfChain:
     def still(self) -> Array:
         """Rows of the chassis points that are reported, (..., rows, 1), mm (see `_standing`)."""
         places = self._standing(self.readout.table.still)
-        return places.reshape(*places.shape[:-3], -1, 1)
+        return places.reshape(*places.shape[:-2], -1, 1)
 
     @cached_property
     def _spare_still(self) -> Array:

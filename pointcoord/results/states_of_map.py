@@ -48,6 +48,16 @@ class StatesOfMap:
     notes: tuple[str, ...] = ()
     dense: bool = True
 
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of each patch."""
+        return () if self.way.patches is None else (self.way.order,) * len(self.way.patches.low)
+
+    @property
+    def stop(self) -> float:
+        """The end of the part of the way that patches cover."""
+        return self.way.until
+
     def covered(self, instants: Array) -> Array:
         """Those on the part of the way that patches cover."""
         return instants[instants <= self.way.until]
@@ -67,21 +77,23 @@ class StatesOfMap:
             rows = np.empty((table.height, len(instants)))
         middle, half = self._boxes
         inputs, patch = self._inputs(instants)
-        sums = np.empty((len(inputs), self._patches.coefficients.shape[-1], len(instants)))
-        sum_rows(self._patches.coefficients, middle, half, self.way.order, patch, inputs, sums)
-        place = {name: 3 * i for i, name in enumerate(moving_points(topology))}
+        wanted, tables = self._tables
+        sums = sum_rows(tables, middle, half, self.way.order, patch, inputs)
         states: list[dict[str, Array]] = [{} for _ in inputs]
+        for order, names in enumerate(wanted):
+            for i, name in enumerate(names):
+                states[order][name] = vectors(sums[order], 3 * i)
         unit = float(readout.mechanism.unit)
+        still = {name: drawn[name] * unit for name in topology.chassis}
         for first, (order, name) in table.states:
-            if name in place:
-                rows[first : first + 3] = sums[order, place[name] : place[name] + 3]
+            seen = vectors(rows, first)
+            if name in still:
+                seen[...] = still[name] if order == 0 else 0.0
             else:
-                vectors(rows, first)[...] = drawn[name] * unit if order == 0 else 0.0
-            states[order][name] = vectors(rows, first)
-        for order, name in table.spare:
-            states[order][name] = vectors(sums[order], place[name])
+                seen[...] = states[order][name]
+            states[order][name] = seen
         for order, name in table.spare_still:
-            standing = drawn[name] * (unit if order == 0 else 0.0)
+            standing = still[name] if order == 0 else np.zeros(3)
             states[order][name] = np.broadcast_to(standing, (len(instants), 3))
         return states
 
@@ -124,13 +136,12 @@ class StatesOfMap:
     @property
     def work(self) -> Work:
         """What making the patches took, and the sums of each instant."""
-        readout = self.readout
-        count = 0 if self.way.patches is None else len(self.way.patches.low)
-        orders = readout.plan.derivative + 1
+        table = self.readout.table
         return self.way.work + Work(
-            segments=count,
-            derivatives_evaluated=orders,
-            coordinates_evaluated=3 * orders * len(moving_points(readout.mechanism.topology)),
+            segments=len(self.orders),
+            series_orders=sum(self.orders),
+            derivatives_evaluated=self.readout.plan.derivative + 1,
+            coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
 
     def _inputs(self, instants: Array) -> tuple[list[Array], Whole]:
@@ -151,6 +162,17 @@ class StatesOfMap:
     def _patches(self) -> Patches:
         assert self.way.patches is not None  # nothing is read where nothing is covered
         return self.way.patches
+
+    @cached_property
+    def _tables(self) -> tuple[list[list[str]], list[Array]]:
+        """By derivative, the points that are wanted, and their coefficients, (P, powers, 3 points), mm."""
+        table, place = self.readout.table, moving_points(self.readout.mechanism.topology)
+        wanted = [
+            [name for d, name in (*table.moving, *table.spare) if d == order]
+            for order in range(self.readout.plan.derivative + 1)
+        ]
+        columns = [[3 * place.index(name) + axis for name in names for axis in range(3)] for names in wanted]
+        return wanted, [np.ascontiguousarray(self._patches.coefficients[..., c]) for c in columns]
 
     @cached_property
     def _boxes(self) -> tuple[Array, Array]:

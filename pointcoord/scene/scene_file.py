@@ -7,36 +7,112 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from importlib import resources
 from itertools import pairwise
 from pathlib import Path
-from typing import IO, Annotated, Any, Literal, Self
+from typing import IO, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.even_instants import even_instants
+from pointcoord.scene.checks import (
+    list_of,
+    number,
+    one_of,
+    optional,
+    part,
+    positive,
+    table_of,
+    text,
+    vector,
+    whole_number,
+)
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.messages import meant, plain_number, shown
-from pointcoord.scene.scene_part import Part
+from pointcoord.scene.messages import meant, shown
+from pointcoord.scene.scene_part import Part, key
 from pointcoord.scene.scene_text import parsed, read_file, read_stream
 from pointcoord.suspensions import SUSPENSIONS
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
-Plain = BeforeValidator(plain_number)
-Number = Annotated[float, Plain, Field(strict=True, allow_inf_nan=False)]
-Vector = tuple[Number, Number, Number]
+Vector = tuple[float, float, float]
+Others = Mapping[str, Any]
+"""The keys of a part that come before one, with their values."""
+
+# The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
+SCENES = Path(__file__).parents[1] / "scenes"
 
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
+
+
+def _known_type(type: str, others: Others) -> str:
+    if type not in SUSPENSIONS:
+        hint = meant(type, SUSPENSIONS)
+        raise ValueError(f"no suspension is called {shown(type)}{hint}; allowed: {', '.join(SUSPENSIONS)}")
+    return type
+
+
+def _known_closure(closure: str, others: Others) -> str:
+    if "type" in others:  # or else that is the fault
+        closures = SUSPENSIONS[others["type"]].closures
+        if closure not in closures:
+            raise ValueError(
+                f"a {others['type']} has no closure called {shown(closure)}; allowed: {', '.join(closures)}"
+            )
+    return closure
+
+
+def _known_points(points: dict[str, Vector], others: Others) -> dict[str, Vector]:
+    if not {"type", "closure"} <= others.keys():
+        return points
+    type = others["type"]
+    topology = SUSPENSIONS[type].closures[others["closure"]]
+    extra = [name for name in points if name not in topology.points]
+    missing = [name for name in topology.required_points if name not in points]
+    if extra:
+        elsewhere = [one for one, kind in SUSPENSIONS.items() if extra[0] in kind.points]
+        hint = f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], topology.points)
+        raise ValueError(
+            f"no point of a {type} is called {shown(extra[0])}{hint}; allowed: {', '.join(topology.points)}"
+        )
+    if missing:
+        raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(topology.required_points)}")
+    return topology.with_defaults(points)
+
+
+def _points_of_the_car(points: tuple[str, ...] | None, others: Others) -> tuple[str, ...] | None:
+    if points is None or "mechanism" not in others:
+        return points
+    there = others["mechanism"].topology.points
+    if not points:
+        raise ValueError(
+            f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
+        )
+    for place, name in enumerate(points):
+        if name not in there:
+            raise ValueError(
+                f"no point of this car is called {shown(name)}{meant(name, there)}; "
+                f"allowed: {', '.join(there)}"
+            )
+        if name in points[:place]:
+            raise ValueError(f"{name!r} is named twice; allowed: each point once")
+    return points
+
+
+def _known_effects(effects: tuple[str, ...], others: Others) -> tuple[str, ...]:
+    for name in effects:
+        if name not in EFFECTS:
+            givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
+            hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
+            raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
+    return effects
 
 
 class MechanismPart(Part):
@@ -47,70 +123,28 @@ class MechanismPart(Part):
     chassis that the file leaves to others that stand in for them.
     """
 
-    type: str
-    closure: str = "drawn"
-    side: Literal["left", "right"] = "left"
-    up: Vector = (0.0, 0.0, 1.0)
-    right: Vector = (0.0, 1.0, 0.0)
-    points: dict[str, Vector]
+    type: str = key(text, agrees=_known_type)
+    closure: str = key(text, default="drawn", agrees=_known_closure)
+    side: Literal["left", "right"] = key(one_of("left", "right"), default="left")
+    up: Vector = key(vector, default=(0.0, 0.0, 1.0))
+    right: Vector = key(vector, default=(0.0, 1.0, 0.0))
+    points: dict[str, Vector] = key(table_of(vector), agrees=_known_points)
 
-    @field_validator("type")
-    @classmethod
-    def _known_type(cls, type: str) -> str:
-        if type not in SUSPENSIONS:
-            hint = meant(type, SUSPENSIONS)
-            raise ValueError(
-                f"no suspension is called {shown(type)}{hint}; allowed: {', '.join(SUSPENSIONS)}"
-            )
-        return type
+    def agree(self) -> None:
+        """Its axes, its side and its spin axis have a meaning."""
+        self._orthonormal()
+        self._wheel_outboard()
+        self._spin_axis()
 
-    @field_validator("closure")
-    @classmethod
-    def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
-        if "type" in others.data:  # or else that is the fault
-            type = others.data["type"]
-            closures = SUSPENSIONS[type].closures
-            if closure not in closures:
-                raise ValueError(
-                    f"a {type} has no closure called {shown(closure)}; allowed: {', '.join(closures)}"
-                )
-        return closure
-
-    @field_validator("points")
-    @classmethod
-    def _known_points(cls, points: dict[str, Vector], others: ValidationInfo) -> dict[str, Vector]:
-        if not {"type", "closure"} <= others.data.keys():
-            return points
-        topology = SUSPENSIONS[others.data["type"]].closures[others.data["closure"]]
-        extra = [name for name in points if name not in topology.points]
-        missing = [name for name in topology.required_points if name not in points]
-        if extra:
-            type = others.data["type"]
-            elsewhere = [one for one, kind in SUSPENSIONS.items() if extra[0] in kind.points]
-            hint = (
-                f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], topology.points)
-            )
-            raise ValueError(
-                f"no point of a {type} is called {shown(extra[0])}{hint}; "
-                f"allowed: {', '.join(topology.points)}"
-            )
-        if missing:
-            needed = ", ".join(topology.required_points)
-            raise ValueError(f"{missing[0]!r} is missing; needed: {needed}")
-        return topology.with_defaults(points)
-
-    @model_validator(mode="after")
-    def _orthonormal(self) -> Self:
+    def _orthonormal(self) -> None:
         up, right = np.array(self.up), np.array(self.right)
         # Components printed with 15 digits leave 1e-15 in each product; anything above is a slip.
         with np.errstate(over="ignore", invalid="ignore"):
             worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
         if not worst <= 1e-12:
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
-        return self
 
-    @model_validator(mode="after")
-    def _wheel_outboard(self) -> Self:
+    def _wheel_outboard(self) -> None:
         inner, wheel = self.topology.inboard, self.topology.wheel_centre
         with np.errstate(over="ignore", invalid="ignore"):
             inboard = float((np.array(self.points[inner]) - np.array(self.points[wheel])) @ self.outboard)
@@ -122,17 +156,14 @@ class MechanismPart(Part):
                 f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
                 f"if it is a wheel of the other side, try side = {other!r}"
             )
-        return self
 
-    @model_validator(mode="after")
-    def _spin_axis(self) -> Self:
+    def _spin_axis(self) -> None:
         inner, outer = self._whole.wheel_axis
         if self.points.get(inner) == self.points[outer]:
             raise ValueError(
                 f"{inner} and {outer} are at the same place, so that the wheel's spin axis has "
                 "no direction; allowed: two points of the axis apart from each other"
             )
-        return self
 
     @property
     def topology(self) -> Topology:
@@ -173,20 +204,20 @@ class MechanismPart(Part):
 class SinePart(Part):
     """offset + amplitude sin(angular_frequency t + phase)."""
 
-    amplitude: Number
-    angular_frequency: Number
-    phase: Number = 0.0
-    offset: Number = 0.0
+    amplitude: float = key(number)
+    angular_frequency: float = key(number)
+    phase: float = key(number, default=0.0)
+    offset: float = key(number, default=0.0)
 
 
 class TablePart(Part):
     """A cubic spline through values at increasing times."""
 
-    times: tuple[Number, ...] = Field(min_length=4)
-    values: tuple[Number, ...] = Field(min_length=4)
+    times: tuple[float, ...] = key(list_of(number, at_least=4))
+    values: tuple[float, ...] = key(list_of(number, at_least=4))
 
-    @model_validator(mode="after")
-    def _increasing(self) -> Self:
+    def agree(self) -> None:
+        """Its times increase, and its spline is finite."""
         if len(self.times) != len(self.values):
             raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
         if not all(earlier < later for earlier, later in pairwise(self.times)):
@@ -195,19 +226,18 @@ class TablePart(Part):
             raise ValueError(
                 "the spline through the table is not finite; allowed: smaller values, or times further apart"
             )
-        return self
 
 
 class InputPart(Part):
     """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
 
-    constant: Number | None = None
-    polynomial: tuple[Number, ...] | None = Field(default=None, min_length=1)
-    sine: SinePart | None = None
-    table: TablePart | None = None
+    constant: float | None = key(optional(number), default=None)
+    polynomial: tuple[float, ...] | None = key(optional(list_of(number, at_least=1)), default=None)
+    sine: SinePart | None = key(optional(part(SinePart)), default=None)
+    table: TablePart | None = key(optional(part(TablePart)), default=None)
 
-    @model_validator(mode="after")
-    def _one_kind(self) -> Self:
+    def agree(self) -> None:
+        """It is of one kind."""
         given = [
             name for name in ("constant", "polynomial", "sine", "table") if getattr(self, name) is not None
         ]
@@ -216,7 +246,6 @@ class InputPart(Part):
                 f"{' and '.join(given) or 'nothing'} given; "
                 "allowed: exactly one of constant, polynomial, sine, table"
             )
-        return self
 
     @property
     def function(self) -> TimeFunction:
@@ -234,12 +263,12 @@ class InputPart(Part):
 class TimePart(Part):
     """The instants: `samples` of them evenly from start to stop, both included; s."""
 
-    start: Number
-    stop: Number
-    samples: Annotated[int, Plain, Field(strict=True, ge=1, le=MOST_SAMPLES)]
+    start: float = key(number)
+    stop: float = key(number)
+    samples: int = key(whole_number(1, MOST_SAMPLES))
 
-    @model_validator(mode="after")
-    def _forwards(self) -> Self:
+    def agree(self) -> None:
+        """It goes forwards, within what a motion can count."""
         for name, instant in (("start", self.start), ("stop", self.stop)):
             if abs(instant) > FARTHEST:
                 raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
@@ -249,7 +278,6 @@ class TimePart(Part):
             )
         if self.samples > 1 and not self.start < self.stop:
             raise ValueError(f"start {self.start} is not before stop {self.stop}; allowed: start < stop")
-        return self
 
 
 class Scene(Part):
@@ -259,55 +287,27 @@ class Scene(Part):
     effects hang on is not solved for.
     """
 
-    title: str = ""
-    effects: tuple[str, ...] = ()
-    tolerance: Annotated[float, Plain, Field(strict=True, gt=0.0, allow_inf_nan=False)] = 1e-9
-    mechanism: MechanismPart
-    inputs: dict[str, InputPart]
-    time: TimePart
-    points: tuple[str, ...] | None = None
+    title: str = key(text, default="")
+    effects: tuple[str, ...] = key(list_of(text), default=(), agrees=_known_effects)
+    tolerance: float = key(positive, default=1e-9)
+    mechanism: MechanismPart = key(part(MechanismPart))
+    inputs: dict[str, InputPart] = key(table_of(part(InputPart)))
+    time: TimePart = key(part(TimePart))
+    points: tuple[str, ...] | None = key(optional(list_of(text)), default=None, agrees=_points_of_the_car)
 
-    @field_validator("effects")
-    @classmethod
-    def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
-        for name in effects:
-            if name not in EFFECTS:
-                givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
-                hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
-                raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
-        return effects
+    def agree(self) -> None:
+        """Its effects and its inputs belong to its mechanism."""
+        self._effects_have_a_meaning()
+        self._inputs_fit()
 
-    @field_validator("points")
-    @classmethod
-    def _known_points(cls, points: tuple[str, ...] | None, others: ValidationInfo) -> tuple[str, ...] | None:
-        if points is None or "mechanism" not in others.data:
-            return points
-        there = others.data["mechanism"].topology.points
-        if not points:
-            raise ValueError(
-                f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
-            )
-        for number, name in enumerate(points):
-            if name not in there:
-                raise ValueError(
-                    f"no point of this car is called {shown(name)}{meant(name, there)}; "
-                    f"allowed: {', '.join(there)}"
-                )
-            if name in points[:number]:
-                raise ValueError(f"{name!r} is named twice; allowed: each point once")
-        return points
-
-    @model_validator(mode="after")
-    def _effects_have_a_meaning(self) -> Self:
+    def _effects_have_a_meaning(self) -> None:
         topology, points = self.mechanism.topology, self.mechanism.points
         for name in self.effects:
             problem = EFFECTS[name].refusal(topology, points)
             if problem:
                 raise ValueError(problem)
-        return self
 
-    @model_validator(mode="after")
-    def _inputs_fit(self) -> Self:
+    def _inputs_fit(self) -> None:
         topology = self.mechanism.topology
         for name in self.inputs:
             if name not in topology.inputs:
@@ -318,8 +318,8 @@ class Scene(Part):
         for name in topology.required_inputs:
             if name not in self.inputs:
                 raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")
-        for name, part in self.inputs.items():
-            table = part.table
+        for name, law in self.inputs.items():
+            table = law.table
             if table is not None and not (
                 table.times[0] <= self.time.start and self.time.stop <= table.times[-1]
             ):
@@ -327,7 +327,6 @@ class Scene(Part):
                     f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
                     f"allowed: all of time, {self.time.start} to {self.time.stop} s"
                 )
-        return self
 
     @property
     def reported_points(self) -> tuple[str, ...]:
@@ -348,7 +347,7 @@ class Scene(Part):
     @property
     def functions(self) -> dict[str, TimeFunction]:
         """Every input as a function of time."""
-        return {name: part.function for name, part in self.inputs.items()}
+        return {name: law.function for name, law in self.inputs.items()}
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -371,10 +370,10 @@ class Scene(Part):
             allowed = f"a path, or one of {', '.join(built_in_scenes())}"
             raise SceneError(shown(name), "", f"is a {type(name).__name__}, and names no scene", allowed)
         if str(name) in built_in_scenes():
-            text = resources.files("pointcoord").joinpath("scenes", f"{name}.toml").read_bytes()
+            written = (SCENES / f"{name}.toml").read_bytes()
         else:
-            text = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
-        return cls.from_mapping(parsed(text, str(name)), str(name))
+            written = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
+        return cls.from_mapping(parsed(written, str(name)), str(name))
 
     @classmethod
     def read(cls, stream: IO[bytes], source: str = "standard input") -> Scene:
@@ -388,5 +387,4 @@ class Scene(Part):
 
 def built_in_scenes() -> tuple[str, ...]:
     """Names of the scenes that come with the package."""
-    folder = resources.files("pointcoord").joinpath("scenes")
-    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+    return tuple(sorted(path.stem for path in SCENES.glob("*.toml")))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import stat
 import sys
-import tomllib
 from pathlib import Path
 from typing import IO, Any
 
@@ -60,6 +59,9 @@ def parsed(text: bytes, source: str) -> dict[str, Any]:
     Raises:
         SceneError: it is something else.
     """
+    # Imported here: a scene need not come from a file.
+    import tomllib
+
     try:
         return tomllib.loads(text.decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

@@ -28,14 +28,13 @@ tangents lead where no few of these are proven to reach the end, and tell where 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.proof import pose_bound
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import orientation
@@ -95,6 +94,9 @@ class Pose:
 
         Infinite where nothing is proven. See `kantorovich` for what it covers; computed when it is read.
         """
+        # Imported here, like all that proves: most poses are never asked for it.
+        from pointcoord.bounds.proof import pose_bound
+
         return pose_bound(self.mechanism, self.y, self.factors)
 
 
@@ -254,7 +256,8 @@ def led(
         end = proven_end(system, y, target, first, system.residual(y), tolerance)
         if end is not None:
             iterations, left = np.array(end.iterations), np.array(end.left)
-            return Path(end.y, end.factors, iterations, left, np.array(1.0), end.work)
+            work = end.work if factors is not None else end.work + Work(factorisations=1)
+            return Path(end.y, end.factors, iterations, left, np.array(1.0), work)
     return follow(system, y, target, factors, tolerance)
 
 

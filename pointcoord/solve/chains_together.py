@@ -1,12 +1,12 @@
-r"""A chain of series that many members share, a member a column: what `taylor.build_chain` does with the batch last.
+r"""A chain of series that many members share, a member a column: `taylor.build_chain` with the batch last.
 
-Segments are cut where the coarsest of their members' last terms say, each end is solved by Newton's method and
-checked as there: the first step must be no more than the tolerance and rounding, the end on its branch, and what is
-left proven to be small, block by block (see `block_proof`). The order is the one that costs least here, where a
-segment beside its orders costs less than one by one, and the products of a high order more.
+Segments are cut where the coarsest of their members' last terms say, each end is solved by Newton's method
+and checked as there: the first step must be no more than the tolerance and rounding, the end on its branch,
+and what is left proven to be small, block by block (see `block_proof`). The order is the one that costs least
+here, where a segment beside its orders costs less than one by one, and the products of a high order more.
 
-A member that asks for much shorter segments than the others, or whose end is not confirmed, is reported: whoever
-asked solves it by itself, and either takes it out or says that it is to stay.
+A member that asks for much shorter segments than the others, or whose end is not confirmed, is reported:
+whoever asked solves it by itself, and either takes it out or says that it is to stay.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ Numbers = NDArray[np.intp]
 
 # Orders of the first segment, by which the order of the others is chosen, and at least of any.
 BEGUN = 8
-# What a segment costs beside its orders, in orders, and what the products of an order cost for each order below.
+# What a segment costs beside its orders, in orders, and what the products of an order cost for each order
+# below.
 SEGMENT, PRODUCTS = 12.0, 0.015
 # A member whose last terms alone would make the segments this much shorter than the middle one's stands out.
 STANDS_OUT = 0.5
@@ -51,7 +52,7 @@ NEWTON = 4
 
 
 class NotTogether(Exception):
-    """The members cannot be followed together by quick means; the plain form must say what there is to say."""
+    """The members cannot be followed together; the plain form must say what there is to say."""
 
 
 @dataclass(frozen=True)
@@ -77,17 +78,20 @@ class Course:
         Raises:
             NotTogether: it takes the plain form.
         """
-        columns, alive = self.columns, np.arange(y.shape[-1])
+        alive = np.arange(y.shape[-1])
         joint = _Joint(self.start, y, left, self.stop - self.start)
         segments: list[Segment] = []
         stays: set[int] = set()
+        spare: ColumnSeries | None = None
         work = Work()
         mechanism_now = mechanism
         while joint.instant < self.stop or not segments:
             if len(segments) == MOST_SEGMENTS or not len(alive):
                 raise NotTogether
-            step = _Step(self, mechanism_now, joint, stays, alive)
+            staying = np.array([int(number) in stays for number in alive])
+            step = _Step(self, mechanism_now, joint, staying, spare)
             ended = step.take()
+            spare = step.begun
             work += step.work
             if isinstance(ended, _Joint):
                 segments.append(step.segment(ended.instant))
@@ -112,7 +116,6 @@ class Course:
                 Segment(s.start, s.stop, s.scale, s.coefficients[numbers], np.asarray(s.left)[numbers])
                 for s in segments
             ]
-        del columns
         return alive, tuple(segments), work
 
 
@@ -144,11 +147,18 @@ class _Step:
     """
 
     def __init__(
-        self, course: Course, mechanism: Mechanism, joint: _Joint, stays: set[int], alive: Numbers
+        self,
+        course: Course,
+        mechanism: Mechanism,
+        joint: _Joint,
+        stays: NDArray[np.bool_],
+        spare: ColumnSeries | None,
     ) -> None:
         self.course, self.mechanism, self.joint = course, mechanism, joint
-        self.stays = np.array([int(number) in stays for number in alive])
+        self.stays = stays
         self.failed = False
+        self.begun: ColumnSeries | None = None
+        self.spare = spare
         self.work = Work()
         self.scale = power_of_two(joint.length)
         columns = course.columns
@@ -168,7 +178,6 @@ class _Step:
             self._expand(max(course.settings.derivative, 1))
             return _Joint(course.stop, joint.y, joint.left, joint.length)
         order = BEGUN if joint.decay is None else _order(joint.decay, time)
-        self._begin(MOST)
         self._expand(order)
         length = self._length()
         if np.isfinite(length):
@@ -196,6 +205,13 @@ class _Step:
             length = 0.5 * (end - joint.instant)
         return self._unsound(~good)
 
+    @property
+    def series(self) -> ColumnSeries:
+        """What is expanded."""
+        if self.begun is None:
+            raise ValueError("nothing is expanded yet")
+        return self.begun
+
     def segment(self, stop: float) -> Segment:
         """The segment up to an instant, its members first."""
         series = self.series.y[: self.series.count]
@@ -220,19 +236,31 @@ class _Step:
             found.append(np.broadcast_to(series, (self.joint.y.shape[-1], order + 1)).T)
         return np.stack(found, axis=1)
 
-    def _begin(self, most: int) -> None:
-        joint, columns = self.joint, self.course.columns
+    def _law(self, most: int) -> None:
+        joint = self.joint
         self.law = self._known(joint.instant, most) * (self.scale ** np.arange(most + 1.0))[:, None, None]
         if not np.isfinite(self.law).all():
             raise NotTogether
-        moving = [place for i, place in enumerate(columns.driven) if self.law[1:, i].any()]
+
+    def _begin(self, most: int) -> None:
+        joint, columns = self.joint, self.course.columns
+        self._law(most)
+        functions = self.course.functions
+        drives = zip(self.mechanism.topology.drives, columns.driven, strict=True)
+        # Every order counts: a law may stand still in its first ones.
+        moving = [
+            place for drive, place in drives if functions[drive.input].series(joint.instant, MOST)[1:].any()
+        ]
         self.moving = [columns.driven.index(place) for place in moving]
-        self.series = ColumnSeries.begin(columns.map, self.factors, joint.y, moving, most)
+        self.begun = ColumnSeries.begin(columns.map, self.factors, joint.y, moving, most, self.spare)
         self.sizes = np.zeros((1, joint.y.shape[-1]))
 
     def _expand(self, order: int) -> None:
-        if not hasattr(self, "series"):
+        if self.begun is None:
             self._begin(order)
+        elif order >= len(self.law):
+            self._law(order)
+            self.begun.longer(order)
         n, members = self.course.columns.map.unknowns, self.joint.y.shape[-1]
         self.work += Work(series_orders=order, rate_solves=order * members)
         with np.errstate(all="ignore"):
@@ -296,7 +324,8 @@ class _Step:
                     alone = (omega * (first_step + left_out)).max(axis=0) / columns.least
                     good &= alone <= 2.0 * NEAR
                 off = Off(columns, proof.turning_of_all(inverse), size)
-                radius = proof.radii(inverse, omega, off.missed(0.0), off.turns, np.abs(factors.entries))
+                jacobian = np.abs(rows.jacobian(rows.differences(y)))
+                radius, _ = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
                 left = radius.max(axis=0)
                 self.work += Work(residuals=members, factorisations=members)
                 if (left <= SOLVED * tolerance).all() or not good.any():

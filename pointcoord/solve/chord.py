@@ -21,11 +21,12 @@ so, X is made anew, and if that is not enough the path is followed in shorter pr
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise

@@ -4,8 +4,8 @@ A batch of cars shares the segments of one chain of series. A design that cannot
 drops out with its status, and the others go on as if it had not been there.
 
 Many designs are solved as columns (see `paths_together` and `chains_together`), with one operation for all of
-them. What does not go well there is solved again by itself in the plain form, which decides, and words the reason.
-Few designs, and whatever the columns cannot do at all, are solved in the plain form from the start.
+them. What does not go well there is solved again by itself in the plain form, which decides, and words the
+reason. Few designs, and whatever the columns cannot do at all, are solved in the plain form from the start.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Path, Pose, assemble, close_drawing
 from pointcoord.solve.chains_together import Course, NotTogether
 from pointcoord.solve.paths_together import Columns, columns_of, follow_together
-from pointcoord.solve.status import COMPLETE, Blocked, Status
+from pointcoord.solve.status import COMPLETE, Status, TooLong, blocked_by
 from pointcoord.solve.taylor import Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# Fewer designs are solved in the plain form: the operations on columns cost as much for one as for some dozens.
+# Fewer designs are solved in the plain form: the operations on columns cost as much for one as for some
+# dozens.
 FEW = 8
 
 
@@ -93,8 +94,9 @@ def solve_plainly(mechanism: Mechanism, follow: Follow) -> SolvedDesigns:
             closed[members] = ended.drawing.y
         if ended.status.complete:
             alive.append(members)
-        elif len(members) == 1:
-            failures[int(members[0])] = ended.status
+        elif len(members) == 1 or isinstance(ended.status, TooLong):
+            # How long a motion is hangs on its laws, which all of them share.
+            failures |= dict.fromkeys(members.tolist(), ended.status)
         else:
             # Which of them it was shows in halves.
             middle = len(members) // 2
@@ -140,14 +142,14 @@ class Follow:
         return _Ended(drawing, pose, chain, chain.status)
 
     def begun(self, mechanism: Mechanism) -> tuple[Path | None, Pose | Status]:
-        """The closed drawings of a batch, and its poses at the start or what stops the first that has none."""
+        """The closed drawings of a batch, and its poses at the start, or what stops the first without one."""
         drawing, start = None, self.start
         try:
             drawing = close_drawing(mechanism, start, self.tolerance)
             inputs = {name: law.series(start, 0)[..., 0] for name, law in self.functions.items()}
             return drawing, assemble(mechanism, inputs, start, drawing, self.tolerance)
         except AssemblyError as error:
-            return drawing, _status(error)
+            return drawing, blocked_by(error)
 
 
 @dataclass(frozen=True)
@@ -221,15 +223,3 @@ class _Together:
             else:
                 failures[number] = end
         return closed, pose, left
-
-
-def _status(error: AssemblyError) -> Blocked:
-    return Blocked(
-        error.problem,
-        reached=error.reached,
-        wanted=error.wanted,
-        condition=error.condition,
-        reduce=error.reduce,
-        limits=error.limits,
-        instant=error.instant,
-    )

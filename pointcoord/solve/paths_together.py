@@ -1,16 +1,17 @@
 r"""Straight paths of many members at once, a member a column: what `assembly.follow` does one by one.
 
-A step goes along the tangent y1 from where Newton's method has come to, y + e, and C is quadratic, so that
+A step goes along a short series from where Newton's method has come to, y + e + y1 s + ... + yp s^p, and C is
+quadratic, so that what it leaves is
 
-    C(y + e + s y1) - (1 - s) C(y) = B(e + s y1, e + s y1)      exactly.
+    sum_{k > p} s^k sum_{i + j = k} B(y_i, y_j) + B(e, e) + 2 B(e, y1 s + ...)      exactly.
 
-The proof is block by block (see `block_proof`), so that a step is as long as the block allows that bends most, and
-not a tenth of that. It gives a tube of assemblies along the step, and how far about its middle there is no other.
-What Newton's method then finds at the end is in the tube: that is checked block by block as well. At the end of
-the path it goes on until what is left is proven to be below the tolerance.
+The proof is block by block (see `block_proof`), so that a step is as long as the block allows that bends
+most, and not a tenth of that. It gives a tube of assemblies along the step, and how far about its middle
+there is no other. What Newton's method then finds at the end is in the tube: that is checked block by block
+as well. At the end of the path it goes on until what is left is proven to be below the tolerance.
 
-A member whose pivots turn bad (see `elimination`), or whose steps become short, is given up: whoever asked solves
-it by `assembly.follow`, which decides, and tells why.
+A member whose pivots turn bad (see `elimination`), or whose steps become short, is given up: whoever asked
+solves it by `assembly.follow`, which decides, and tells why.
 """
 
 from __future__ import annotations
@@ -29,9 +30,11 @@ from pointcoord.numerics.quadratic import QuadraticMap
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# Members at a time: what lies between the operations stays in a cache, and a call costs little beside its numbers.
+# Members at a time: what lies between the operations stays in a cache, and a call costs little beside its
+# numbers.
 CHUNK = 1024
-# Fraction of the step that each block alone would allow, and what is left of it where the blocks together do not.
+# Fraction of the step that each block alone would allow, and what is left of it where the blocks together do
+# not.
 SAFETY, SHORTER, TRIALS = 0.9, 0.75, 6
 GUESSES = tuple(0.75**k for k in range(16))
 # Order of the series that a step follows, and the least weight of an unknown in the norm of its block.
@@ -88,7 +91,7 @@ def columns_of(
 
 
 def _weights(system: QuadraticMap, driven: list[int], y: Array) -> Array:
-    """How far the unknowns of a block go together: of |X C_b(y1)|, y1 the tangents, the dominant eigenvector."""
+    """How far unknowns of a block go together: the dominant eigenvector of |X C_b(y1)|, y1 the tangents."""
     n = system.unknowns
     inverse = np.linalg.inv(system.jacobian(y))
     turns = np.zeros((n, n))
@@ -265,13 +268,14 @@ def _advance(columns: Columns, group: _Travelling, first: bool) -> NDArray[np.bo
             here[:n] += correction
             off = replace(off, correction=np.abs(correction).max(axis=0))
             # Newton's method has found the assembly of the tube that leads here, and no other.
-            radius = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
+            jacobian += np.abs(rows.jacobian_along(rows.differences(_padded(correction, len(here)))))
+            radius, _ = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
             sound &= (proof.largest(here[:n] - group.middle) + radius <= group.alone).all(axis=0)
         s = _first_guess(turns, np.stack([proof.by_block(part) for part in missed]), omega)
         for _ in range(TRIALS):
             off_by = off.missed(_sum(sizes, s, 1)) + _sum(missed, s, order + 1)
             turned = _sum(turns, s, 1) + off.turns
-            radius = proof.radii(inverse, omega, off_by, turned, jacobian)
+            radius, together = proof.radii(inverse, omega, off_by, turned, jacobian)
             proven = np.isfinite(radius).all(axis=0)
             if proven.all():
                 break
@@ -282,8 +286,13 @@ def _advance(columns: Columns, group: _Travelling, first: bool) -> NDArray[np.bo
         group.remaining = np.where(ended, 0.0, group.remaining * (1.0 - s))
         here[n:] = np.where(ended, group.target, group.target - group.change * group.remaining)
         group.middle = here[:n].copy()
-        group.alone = np.where(omega > 0.0, (1.0 - turned) / omega, np.inf)
+        group.alone = np.where(omega > 0.0, (1.0 - together) / omega, np.inf)
     return np.asarray(kept & np.isfinite(here).all(axis=0))
+
+
+def _padded(correction: Array, size: int) -> Array:
+    """A correction of the unknowns as one of all coordinates, shape (size, members)."""
+    return np.concatenate([correction, np.zeros((size - len(correction), correction.shape[-1]))])
 
 
 def _sum(terms: Array, s: Array, first: int) -> Array:
@@ -347,9 +356,9 @@ def _finish(
             inverse = factors.inverse()
             np.abs(inverse, out=inverse)
             off = Off(columns, proof.turning_of_all(inverse), np.abs(step).max(axis=0))
-            jacobian = np.abs(factors.entries)
+            jacobian = np.abs(rows.jacobian(rows.differences(y)))
             omega = proof.lipschitz(inverse)
-            radius = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
+            radius, _ = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
             rest = radius.max(axis=0)
             sound = factors.sound & (proof.largest(y[:n] - group.middle) + radius <= group.alone).all(axis=0)
             ended = sound & (rest <= tolerance)

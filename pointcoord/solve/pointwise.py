@@ -28,12 +28,13 @@ once either way. This is what the series are measured against.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise

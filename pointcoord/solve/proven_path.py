@@ -25,13 +25,13 @@ that is proven.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.branch import orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
@@ -118,7 +118,8 @@ def _proven_series(
         known[0], known[1] = y[n:], change
         series = expand(system, factors, y, known, begun)
         share = _proven_share(system, series, factors, offset, pieces)
-    return series, share, Work(residuals=1, factorisations=pieces, rate_solves=order)
+    # Its orders are no rates of a motion, as the tangents of a path are none.
+    return series, share, Work(residuals=1, factorisations=pieces)
 
 
 def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset: Array, pieces: int) -> float:
@@ -140,10 +141,8 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset:
     matrices = system.jacobian(series) * factors.row_scale[:, None]
     matrices *= (reach ** np.arange(order + 1.0))[:, None, None]
     local = (_about_middles(order, pieces) @ matrices.reshape(order + 1, -1)).reshape(pieces, -1, n, n)
-    try:
-        inverse = np.linalg.inv(local[:, 0])
-    except np.linalg.LinAlgError:
-        return 0.0
+    # Of one that has no inverse all that follows is infinite or no number, and nothing is proven.
+    inverse = factorise(local[:, 0]).preconditioner
     flat = np.ascontiguousarray(local.swapaxes(1, 2)).reshape(pieces, n, -1)
     moved = (inverse @ flat).reshape(pieces, n, order + 1, n)
     moved[:, :, 0] -= np.eye(n)

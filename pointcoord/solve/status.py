@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import Any
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import (
     AssemblyError,
     MotionNotMapped,
@@ -73,6 +73,19 @@ class Blocked(Status):
             instant=self.instant,
             partial=partial,
         )
+
+
+def blocked_by(error: AssemblyError) -> Blocked:
+    """The status of a path that ended with an error."""
+    return Blocked(
+        error.problem,
+        reached=error.reached,
+        wanted=error.wanted,
+        condition=error.condition,
+        reduce=error.reduce,
+        limits=error.limits,
+        instant=error.instant,
+    )
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.topology import Topology
 
 

@@ -219,6 +219,7 @@ def _shared(scene: Scene) -> dict[str, object]:
         "mechanism.points": tuple(sorted(part.points)),
         "inputs": tuple(sorted(scene.inputs)),
         "effects": scene.effects,
+        "points": scene.points,
         "tolerance": scene.tolerance,
         "time": (scene.time.start, scene.time.stop, scene.time.samples),
     }

@@ -35,7 +35,7 @@ from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import SolvedScene
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.states_of_designs import StatesOfDesigns
 from pointcoord.results.table import Table
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
 from pointcoord.scene.scene_file import Scene
@@ -99,7 +99,7 @@ class Course:
             laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
         part = laws[0].mechanism
         axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-        return cls(designs, plan_effects(laws[0].effects), axes, laws, which)
+        return cls(designs, plan_effects(laws[0].effects, None, laws[0].unreported_points), axes, laws, which)
 
     @property
     def scene(self) -> Scene:
@@ -156,7 +156,7 @@ class _Block:
     """What is known so far of a block of designs.
 
     Attributes:
-        rows: the table of each design, (D, height, N).
+        rows: the table of each design, (D, height, N). filled: whether it is.
         failures, notes: as far as they are found.
         readouts: the last one that was used, if any.
     """
@@ -164,6 +164,7 @@ class _Block:
     course: Course
     first: int
     rows: Array
+    filled: NDArray[np.bool_]
     closing: Array
     drawn: dict[str, Array]
     failures: dict[int, Failure]
@@ -173,7 +174,7 @@ class _Block:
     @classmethod
     def empty(cls, course: Course, first: int, last: int) -> _Block:
         count = last - first
-        rows = np.full((count, course.table.height, len(course.scene.instants)), np.nan)
+        rows = np.empty((count, course.table.height, len(course.scene.instants)))
         names = [
             name
             for effect in course.plan.computed
@@ -181,13 +182,17 @@ class _Block:
             for name in effect.names or ()
         ]
         drawn = {name: np.full(count, np.nan) for name in names}
-        return cls(course, first, rows, np.full(count, np.nan), drawn, {}, [], [])
+        filled = np.zeros(count, dtype=bool)
+        return cls(course, first, rows, filled, np.full(count, np.nan), drawn, {}, [], [])
 
     def sweep(self) -> Sweep:
         """The block as a result."""
         course, scene = self.course, self.course.scene
         numbers = np.arange(self.first, self.first + len(self.rows))
         solved = np.array([number not in self.failures for number in numbers.tolist()])
+        # What was not filled holds anything.
+        assert (self.filled == solved).all()
+        self.rows[~solved] = np.nan
         # Where no design has a mechanism, the scene's own must do to name what would have been computed.
         readouts = self.readouts or [_readout(course, scene, scene_mechanism(scene))]
         samples = readouts[0].named(scene.instants, self.rows)
@@ -208,7 +213,7 @@ class _Block:
         """Mark designs as ones that cannot be solved."""
         for number in members:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
-            self.rows[int(number) - self.first] = np.nan
+            self.filled[int(number) - self.first] = False
 
     def solve(self, scene: Scene, members: Numbers) -> None:
         """Solve designs that share their laws."""
@@ -272,23 +277,16 @@ class _Block:
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
 
-        def solved_together(some: Mechanism) -> SolvedDesigns:
-            return solve_designs(some, functions, time.start, time.stop, settings, allowed)
-
-        solved = solved_together(mechanism)
+        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
         for place, status in solved.failures.items():
             if members[place] in self.failures:
                 continue
-            if isinstance(status, TooLong | TooRough) and len(members) > 1:
-                # What is too long or too rough for all together may not be so for one.
-                own = np.array([place])
-                alone = solved_together(mechanism.taken(own))
-                if not alone.failures:
-                    self._read(scene, members[own], mechanism.taken(own), functions, alone)
-                    continue
-                status = alone.failures[0]
+            if isinstance(status, TooLong | TooRough):
+                # What is too long or too rough for all together may not be so for one, or for a map.
+                self._alone(int(members[place]))
+                continue
             self.fail([members[place]], _error(status))
 
     def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
@@ -342,7 +340,7 @@ class _Block:
         part = mechanism.taken(solved.alive)
         readout = _readout(self.course, scene, part)
         self.readouts[:] = [readout]
-        states = StatesOfChain(readout, functions, solved.chain, scene.time.start)
+        states = StatesOfDesigns(readout, functions, solved.chain, scene.time.start)
         whole = SolvedScene(readout, functions, states)
         places = alive - self.first
         kept = np.array([number not in self.failures for number in alive.tolist()])
@@ -352,10 +350,26 @@ class _Block:
             rows = np.empty((len(alive), *self.rows.shape[1:]))
             whole.samples(instants, rows)
             self.rows[places[kept]] = rows[kept]
+        self.filled[places[kept]] = True
         for words in tolerance_notes(scene, part.taken(0)):
             self._note("tolerance", alive, kept, _the_same(words), warns=False)
         self._require_known(scene, alive[kept], functions)
-        self._note_missing(alive, kept)
+        self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
+
+    def _alone(self, number: int) -> None:
+        """Solve one design as a scene of its own, by whatever follows its laws."""
+        try:
+            motion = simulate(self.course.designs.design(number))
+        except PointcoordError as error:
+            self.fail([number], error)
+            return
+        place = number - self.first
+        for quantity, names in self.course.table.places.items():
+            for name in names:
+                self.course.table.put(self.rows[place], quantity, name, motion.numbers[quantity][name])
+        self.filled[place] = True
+        words = f"solved by itself, by the method {motion.method!r}"
+        self._note("alone", np.array([number]), np.array([True]), _the_same(words), warns=False)
 
     def _require_known(self, scene: Scene, members: Numbers, functions: Mapping[str, TimeFunction]) -> None:
         """Where a law is less certain than the tolerance, hold each design to what it would be alone."""
@@ -368,19 +382,22 @@ class _Block:
             except PointcoordError as error:
                 self.fail([number], error)
 
-    def _note_missing(self, members: Numbers, kept: NDArray[np.bool_]) -> None:
+    def _note_missing(self, members: Numbers) -> None:
         """Note which numbers are none, and why."""
-        places = self.course.table.places
+        rows = self.rows[members - self.first]
+        # A sum of numbers may overflow and be looked at for nothing, but none that is no number is missed.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if np.isfinite(rows.sum()):
+                return
+        missing = np.asarray(~np.isfinite(rows).all(axis=-1))
         for effect in self.course.plan.computed:
             why = f": {effect.no_number}" if effect.no_number else ""
             for quantity in effect.quantities:
-                for name, rows in places[quantity.name].items():
-                    if effect.names is not None and name not in effect.names:
-                        continue
-                    numbers = self.rows[members - self.first][:, rows]
-                    missing = ~np.isfinite(numbers).all(axis=(-2, -1)) & kept
-                    words = f"{quantity.words} of {name} is not a number at some instants{why}"
-                    self._note(f"{quantity.name} {name}", members, missing, _the_same(words), warns=False)
+                for name, place in self.course.table.places[quantity.name].items():
+                    if effect.names is None or name in effect.names:
+                        words = f"{quantity.words} of {name} is not a number at some instants{why}"
+                        where = np.asarray(missing[:, place].any(axis=-1))
+                        self._note(f"{quantity.name} {name}", members, where, _the_same(words), warns=False)
 
 
 def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:

@@ -80,8 +80,8 @@ def sweep_blocks(
 
     >>> from pointcoord import Scene
     >>> blocks = sweep_blocks(Scene.load("steer"), offsets={"strut_top.y": [0.0, 1.0]}, memory=100e6)
-    >>> [float(block.wheel["camber"].max().round(4)) for block in blocks]
-    [0.0079]
+    >>> sum(len(block) for block in blocks)
+    2
     """
     course = Course.of(_designs(designs, points, offsets, grid))
     require_room(course, memory)

@@ -126,7 +126,7 @@ def test_two_expansions_are_off_by_the_sixth_order_on_the_line_between_them(mode
     off = []
     for scale in (2.0, 1.0):
         _, found, poses = expansions(model, [-scale * WAY, 0.3 * scale * WAY, scale * WAY])
-        line = line_between(found[0], found[2], found[1].place[None])
+        line = line_between(found[0].place, found[2].place, found[1].place[None])
         assert np.abs(line.beside).max() < 1e-15
         off.append(float(np.abs(between(found[0], found[2], line)[0] - poses[1].q).max()))
     # 2^6, but for the seventh order, by which a half more or less is left.
@@ -139,7 +139,7 @@ def test_beside_the_line_two_expansions_are_off_by_the_second_order_of_both(mode
     off = []
     for scale in (1.0, 0.5):
         _, found, poses = expansions(model, [-scale * WAY, 0.3 * scale * (WAY + 0.3 * ASIDE), scale * WAY])
-        line = line_between(found[0], found[2], found[1].place[None])
+        line = line_between(found[0].place, found[2].place, found[1].place[None])
         off.append(float(np.abs(between(found[0], found[2], line)[0] - poses[1].q).max()))
     assert off[1] > 1e-12
     # Third order at least: eighths or less are left of halves.

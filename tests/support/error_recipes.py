@@ -186,15 +186,28 @@ RECIPES: dict[str, Recipe] = {
     "pointcoord.errors.MotionTooLong": Recipe(
         lambda _, pretend: (
             pretend.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 5),
-            pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}})),
+            pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}}), "series"),
         ),
         ("from 0 to 2.6 s", "segments; allowed: 5", "reach t = ", "slow the inputs down", "'newton'"),
         {"limit": 5, "stop": 2.6, "instant": np.isfinite, "partial": bool},
     ),
     "pointcoord.errors.MotionTooRough": Recipe(
-        lambda *_: pointcoord.simulate(jumping()),
+        lambda *_: pointcoord.simulate(jumping(), "series"),
         ("input 'arm_angle' changes too fast", "after t = 0.4999999", "'newton'"),
         {"name": "arm_angle", "instant": 0.5 - 2e-8, "partial": lambda motion: motion is None},
+    ),
+    "pointcoord.errors.MotionNotMapped": Recipe(
+        lambda _, pretend: (
+            pretend.setattr("pointcoord.patches.way_map.ENOUGH", 0),
+            pointcoord.simulate(BOUNCE, "map"),
+        ),
+        ("does not cover their way after t = 0 s", "arm_angle = 0.8", "the most patches", "'newton'"),
+        {
+            "instant": 0.0,
+            "inputs": lambda inputs: set(inputs) == {"arm_angle", "rack"},
+            "reason": bool,
+            "partial": lambda motion: motion is None,
+        },
     ),
     "pointcoord.errors.SingularConfiguration": Recipe(
         lambda *_: body_rates(IN_LINE, IN_LINE, IN_LINE),

@@ -55,9 +55,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--method",
         choices=tuple(BY_NAME),
-        default="series",
-        help="series (if not given): a chain of power series in time; newton: Newton's method at each "
-        "instant; printed: that with the paper's formulas as printed, some of which are wrong",
+        default="auto",
+        help="auto (if not given): series, or a map where these are too long or too rough; series: a chain "
+        "of power series in time; map: series in the inputs, on patches that cover their way; newton: "
+        "Newton's method at each instant; printed: that with the paper's formulas as printed, some of which "
+        "are wrong",
     )
     add_quiet(parser)
     parser.set_defaults(run=run)
@@ -82,9 +84,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     target = place_of_result(options, ENDINGS, console)
     if target is not None:
         require_writer(target)
-    if options.instants is not None and not BY_NAME[options.method].by_series:
+    if options.instants is not None and not BY_NAME[options.method].dense:
         raise UsageError(
-            f"--instants needs the method series; {options.method} solves at the scene's own samples only"
+            f"--instants needs the method auto, series or map; {options.method} solves at the scene's own "
+            "samples only"
         )
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:

@@ -25,8 +25,8 @@ SOLVED = ("positions", "positions and velocities", "positions, velocities and ac
 DESCRIPTION = """\
 Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
 value of each input, how far each can go from there, the wheel's angles, and how far the
-drawing is from closing. What the asked accuracy takes is found by building the series; the
-motion itself is not computed."""
+drawing is from closing. Whether by series in time or by a map of the inputs, and what the asked
+accuracy takes, is found by building these; the motion itself is not computed."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -103,12 +103,15 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
     except PointcoordError as error:
         return [f"takes: not known, because it cannot be solved: {error}"]
     rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
-    lines = [f"accuracy: positions to {found.tolerance:.3g} mm{rates}"]
+    way = found.why or "solved by series in time, which are few enough; a map of the inputs is not needed"
+    lines = [way, f"accuracy: positions to {found.tolerance:.3g} mm{rates}"]
     if found.orders:
         few, many = min(found.orders), max(found.orders)
         order = f"order {few}" if few == many else f"orders {few} to {many}"
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
-        lines[:0] = _unknowns(found)
+        if found.method == "map":
+            series += " in the inputs, each proven on a patch of their way,"
+        lines += _unknowns(found)
         lines.append(
             f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
             f"factorisations, {found.start.factorisations} of them to assemble the start"
@@ -125,7 +128,8 @@ def _unknowns(found: Effort) -> list[str]:
         parts.append(f"{found.still} more stand still and are solved once")
     if found.not_needed:
         parts.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
-    return [f"solved at each step: {'; '.join(parts)}"]
+    where = "on each patch" if found.method == "map" else "at each step"
+    return [f"solved {where}: {'; '.join(parts)}"]
 
 
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:

@@ -21,7 +21,7 @@ from validate.cost.row import QuantityError, Row, Time
 ACCURACIES = (1e-3, 1e-6, 1e-9)
 """In the unit of each quantity: mm of positions."""
 
-OURS = ("series", "newton", "newton-cold", "chord")
+OURS = ("series", "map", "newton", "newton-cold", "chord")
 """The ways of this project's solver; every other way is a contestant."""
 
 DECADES = 2.0  # below the largest size: an exponent is fitted where fixed costs have been left behind

@@ -1,7 +1,8 @@
 r"""Whether pointcoord's proven bounds hold, and how loose they are, up to the poses where a car locks.
 
 Two sets of random poses of every suspension (see `near_singular`), each reproducible by its number: cars held
-close to the end of an input, and motions that run towards such an end, at random instants between.
+close to the end of an input, and motions that run towards such an end, at random instants between. Each
+instant is proven alone and among many that are close to it; the lesser bound counts.
 
     python -m validate.studies.bounds --poses 10000
 
@@ -50,6 +51,8 @@ Answer = TypeVar("Answer")
 
 DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
 INSTANTS = 4  # per motion
+COMPANY = 63  # instants beside each
+CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
 LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
 FOLD = 1e-3  # nearer to the end than this part of the range, its fold is all that matters
 
@@ -167,9 +170,15 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
             f"pointcoord: {motion if isinstance(motion, str) else 'answers'}; "
             f"reference: {reference if isinstance(reference, str) else 'answers'}",
         )
-    samples = motion.at(np.array([instant]))
-    proof = motion.proof_of(samples)
-    bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
+    company, place = _company(motion, instant)
+    together = motion.at(company)
+    samples = together.part(place, place + 1)
+    # Neighbours share an inverse; what is proven among them must hold as well as what is proven alone.
+    proof, among = motion.proof_of(samples), motion.proof_of(together)
+    bound, carried = (
+        min(float(getattr(proof, name)[0]), float(getattr(among, name)[place]))
+        for name in ("bound", "carried_bound")
+    )
     if not math.isfinite(bound):
         return Refusal(pose.number, Variant.of(pose.car), distance, "pointcoord: no finite bound")
     error = carried_error = math.inf  # where the reference has no such assembly
@@ -192,6 +201,16 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
         carried_error=carried_error,
         carried_bound=carried,
     )
+
+
+def _company(motion: Motion, instant: float) -> tuple[Array, int]:
+    """An instant of a motion among many that are close to it, and its place among them."""
+    first, last = float(motion.times[0]), float(motion.times[-1])
+    # Closer where an end is near, in whose last part everything changes as fast as in all that is before.
+    near = min(CLOSE, NEARER * (last - instant))
+    company = np.unique(np.clip(instant + near * np.linspace(-1.0, 1.0, COMPANY), first, last))
+    company = np.unique(np.append(company, instant))
+    return company, int(np.searchsorted(company, instant))
 
 
 def _answer(ask: Callable[[], Answer]) -> Answer | str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.axis_in_body import AxisInBody, axis_scale
 from pointcoord.linkage.constraints.constraint import Constraint, per_axis
 from pointcoord.linkage.constraints.on_axis import OnAxis

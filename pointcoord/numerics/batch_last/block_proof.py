@@ -1,20 +1,21 @@
 r"""Newton and Kantorovich's theorem block by block, for many members, a member a column.
 
-C_u is block triangular (see `structure`): each block of rows determines its own unknowns, given known coordinates
-and the unknowns of earlier blocks. So one assembly after another can be proven to lie near a predictor y + p(s),
-0 <= s <= 1, each in the norm of its own few unknowns, where the whole system in one norm would need steps a tenth
-as long. For a block b with X = C_b^-1 at y (of its own rows and unknowns), earlier unknowns within R_e of their
-predictors, and rows C_b(y + p) known up to sign,
+C_u is block triangular (see `structure`): each block of rows determines its own unknowns, given known
+coordinates and the unknowns of earlier blocks. So one assembly after another can be proven to lie near a
+predictor y + p(s), 0 <= s <= 1, each in the norm of its own few unknowns, where the whole system in one norm
+would need steps a tenth as long. For a block b with X = C_b^-1 at y (of its own rows and unknowns) and
+earlier unknowns within R_e of their predictors,
 
     eta   = |X C_b(y + p)| + |X| (|C_e(y + p)| R_e + sum |B_ee'| R_e R_e'),
     z     = |X C_b'(p)| + |X| sum |2 B_be| R_e,
     omega = max_i sum_r |X_ir| sum_jk |2 B_rjk|         over the unknowns j and k of the block,
 
-say by 2 omega eta <= (1 - z)^2 that exactly one assembly of the block lies within R_b = 2 eta / ((1 - z)(1 +
-sqrt(1 - h))), h = 2 omega eta / (1 - z)^2. All of it grows with s if p does, so what holds at the end of a step
-holds all along it: the assemblies along it are one branch, and by the uniqueness in each block no other one is
-within (1 - z) / omega of them. The norm of a block weighs its unknowns, max_i |u_i| / g_i, by how far they go
-together, so that one that moves little counts as much as one that moves far.
+say by 2 omega eta <= (1 - z)^2 that exactly one assembly of the block lies within
+R_b = 2 eta / ((1 - z)(1 + sqrt(1 - h))), h = 2 omega eta / (1 - z)^2. All of it grows with s if p does, so
+what holds at the end of a step holds all along it: the assemblies along it are one branch, and by the
+uniqueness in each block no other one is within (1 - z) / omega of them. The norm of a block weighs its
+unknowns, max_i |u_i| / g_i, by how far they
+go together, so that one that moves little counts as much as one that moves far.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ class _Coupling:
         by_row: g_j where such an entry is of a row, (rows, entries).
         turning: sum |2 B_rjk| over the block's own j and the k of each earlier block, (rows, blocks).
         bending: half that over j and k of earlier blocks, (rows, pairs). pairs: these, by number.
-        inverse_rows: row of each entry of X, counted in the block. sums: 1 / g_i where one is of an unknown i.
+        inverse_rows: row of each entry of X, counted in the block. sums: 1 / g_i where one is of an unknown
+            i.
     """
 
     rows: Indices
@@ -123,15 +125,17 @@ class BlockProof:
             own.max(axis=0, out=out)
         return largest
 
-    def radii(self, inverse: Array, omega: Array, missed: Array, turns: Array, jacobian: Array) -> Array:
-        """R_b of each block, shape (blocks, members); infinite from the first block on that is not proven.
+    def radii(
+        self, inverse: Array, omega: Array, missed: Array, turns: Array, jacobian: Array
+    ) -> tuple[Array, Array]:
+        """R_b and z of each block, shape (blocks, members); R_b is infinite where a block is not proven.
 
         Args:
             inverse: magnitudes of the entries of X. omega: of each block.
             missed: |X C_b(y + p)| by weights, shape (unknowns, members). turns: |X C_b(p)| of each block.
             jacobian: magnitudes of the entries of C_u(y + p), at most.
         """
-        found = np.zeros_like(omega)
+        found, turned = np.zeros_like(omega), np.empty_like(omega)
         for number, c in enumerate(self.couplings):
             eta, z = missed.take(c.unknowns, axis=0), turns[number]
             if len(c.entries):
@@ -140,10 +144,11 @@ class BlockProof:
                 if len(c.pairs[0]):
                     rows += c.bending @ (found.take(c.pairs[0], axis=0) * found.take(c.pairs[1], axis=0))
                 eta += c.sums @ (mine * rows.take(c.inverse_rows, axis=0))
-                turned = (c.turning @ found).take(c.inverse_rows, axis=0)
-                z = z + (c.sums @ (mine * turned)).max(axis=0)
+                extra = (c.turning @ found).take(c.inverse_rows, axis=0)
+                z = z + (c.sums @ (mine * extra)).max(axis=0)
+            turned[number] = z
             found[number] = kantorovich_radius(eta.max(axis=0), z, omega[number])
-        return found
+        return found, turned
 
 
 def kantorovich_radius(eta: Array, z: Array, omega: Array) -> Array:

@@ -4,15 +4,14 @@ The rows are made of differences of coordinates, d = y_first - y_second, each ta
 
     C(y) = Q (d_left d_right) + L d,      C_u(y) = J [d, 1],
 
-with Q, L and J matrices of small whole numbers that all members share, so that a row is rounded no more than in
-the plain form (see `quadratic`). Coordinates that are constants of every mechanism, 0 and 1, are put in, which
-makes most terms linear. B(a, b) is then only the bilinear part, which is all there is of it where a and b hold no
-constant: steps, tangents and terms of a series.
+with Q, L and J matrices of small whole numbers that all members share, so that a row is rounded no more than
+in the plain form (see `quadratic`). Coordinates that are constants of every mechanism, 0 and 1, are put in,
+which makes most terms linear. B(a, b) is then only the bilinear part, which is all there is of it where a and
+b hold no constant: steps, tangents and terms of a series.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -20,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.quadratic import Product, QuadraticMap
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -174,6 +174,24 @@ class ColumnMap:
     def jacobian_along(self, e: Array) -> Array:
         """The entries of C_u(h) of what holds no constant, from its differences."""
         return np.asarray(self._jacobian[1] @ e)
+
+    def uncertainty(self, d: Array, data: Array) -> Array:
+        """How far the computed C(y) may be from the exact one, shape (rows, members); see `quadratic`.
+
+        Args:
+            d: differences. data: uncertainty of every coordinate, shape (size,).
+        """
+        first, second = self.ends
+        left, right = self._factors
+        q, linear = self._sums
+        gamma = (max(len(row) for row in self.system.rows) + 3) * UNIT_ROUNDOFF
+        size = np.abs(d)
+        own = (data[first] + data[second])[:, None]
+        doubt = UNIT_ROUNDOFF * size + own
+        one, other = size.take(left, axis=0), size.take(right, axis=0)
+        spread = one * (gamma * other + doubt.take(right, axis=0))
+        spread += doubt.take(left, axis=0) * (other + doubt.take(right, axis=0))
+        return np.asarray(np.abs(q) @ spread + np.abs(linear) @ (gamma * size + doubt))
 
     @cached_property
     def convolution(self) -> Convolution:

@@ -1,15 +1,15 @@
 r"""Gaussian elimination of many small sparse matrices at once, a member a column.
 
-The pattern of the matrix is the same for all members, so the pivots are chosen once, by one member's numbers: of
-the entries that are at least a tenth of the largest of their column, the one that fills in least (Markowitz). What
-is left is a list of operations on rows of members, each one numpy call. By a block triangular pattern it stays
-block triangular: no multiplier joins two blocks but those that do.
+The pattern of the matrix is the same for all members, so the pivots are chosen once, by one member's numbers:
+of the entries that are at least a tenth of the largest of their column, the one that fills in least
+(Markowitz). What is left is a list of operations on rows of members, each one numpy call. By a block
+triangular pattern it stays block triangular: no multiplier joins two blocks but those that do.
 
-Nothing keeps another member's pivots large. Its multipliers show it: they are at most 10 for the member that the
-pivots were chosen by, and whoever has one beyond `LARGEST_MULTIPLIER`, or a pivot of zero, is marked and must be
-solved by LAPACK. Up to there elimination loses at most some three digits more than by the best pivots (Higham,
-Accuracy and Stability of Numerical Algorithms, ch. 9: the backward error grows with the entries on the way), and
-whatever it gives is checked by the residual of what was solved for.
+Nothing keeps another member's pivots large. Its multipliers show it: they are at most 10 for the member that
+the pivots were chosen by, and whoever has one beyond `LARGEST_MULTIPLIER`, or a pivot of zero, is marked and
+must be solved by LAPACK. Up to there elimination loses at most some three digits more than by the best pivots
+(Higham, Accuracy and Stability of Numerical Algorithms, ch. 9: the backward error grows with the entries on
+the way), and whatever it gives is checked by the residual of what was solved for.
 """
 
 from __future__ import annotations
@@ -38,6 +38,27 @@ class Pivot:
     column: int
     below: tuple[int, ...]
     across: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Level:
+    """Blocks that can be solved at once, after those of earlier levels.
+
+    Attributes:
+        rows, unknowns: of the blocks. inverse: which entries of the inverse are theirs, and their row,
+            counted among the rows; sums: 1 where one is of an unknown, (unknowns, entries).
+        outside: entries of the matrix that the rows have in earlier unknowns, and these; taken: 1 where such
+            an entry is of a row, (rows, entries).
+    """
+
+    rows: NDArray[np.intp]
+    unknowns: NDArray[np.intp]
+    inverse: NDArray[np.intp]
+    inverse_rows: NDArray[np.intp]
+    sums: Array
+    outside: NDArray[np.intp]
+    earlier: NDArray[np.intp]
+    taken: Array
 
 
 @dataclass(frozen=True)
@@ -118,17 +139,47 @@ class Elimination:
         return Eliminated(self, entries, work, inverse, sound)
 
     @cached_property
-    def _solving(self) -> tuple[tuple[tuple[int, int, int], ...], tuple[tuple[int, int, int], ...]]:
-        """Updates of a right-hand side: row, multiplier, pivot row; then pivot, place and column of the rest."""
-        place = self.places
-        down = tuple((row, place[row, p.column], p.row) for p in self.pivots for row in p.below)
-        up = tuple(
-            (number, place[p.row, column], column)
-            for number, p in reversed(list(enumerate(self.pivots)))
-            for column in (*p.across, -1)
-            if column >= 0
-        )
-        return down, up
+    def _down(self) -> tuple[tuple[int, int, int], ...]:
+        """Updates of a right-hand side: row, multiplier, pivot row."""
+        return tuple((row, self.places[row, p.column], p.row) for p in self.pivots for row in p.below)
+
+    @cached_property
+    def levels(self) -> tuple[Level, ...]:
+        """Blocks that hang on earlier ones only, level after level."""
+        block_of = {unknown: number for number, block in enumerate(self.blocks) for unknown in block}
+        row_block = {pivot.row: block_of[pivot.column] for pivot in self.pivots}
+        depth = [0] * len(self.blocks)
+        for number in range(len(self.blocks)):
+            hangs = [block_of[j] for i, j in self.entries if row_block[i] == number and block_of[j] != number]
+            depth[number] = max((depth[other] + 1 for other in hangs), default=0)
+        inverse = self.inverse_program.entries
+        found = []
+        for level in range(max(depth) + 1):
+            rows = [pivot.row for pivot in self.pivots if depth[row_block[pivot.row]] == level]
+            unknowns = [unknown for unknown in range(self.size) if depth[block_of[unknown]] == level]
+            own = [place for place, (i, _) in enumerate(inverse) if i in unknowns]
+            outside = [
+                place
+                for place, (i, j) in enumerate(self.entries)
+                if i in rows and block_of[j] != row_block[i]
+            ]
+            sums = np.zeros((len(unknowns), len(own)))
+            sums[[unknowns.index(inverse[place][0]) for place in own], np.arange(len(own))] = 1.0
+            taken = np.zeros((len(rows), len(outside)))
+            taken[[rows.index(self.entries[place][0]) for place in outside], np.arange(len(outside))] = 1.0
+            found.append(
+                Level(
+                    np.array(rows, dtype=np.intp),
+                    np.array(unknowns, dtype=np.intp),
+                    np.array(own, dtype=np.intp),
+                    np.array([rows.index(inverse[place][1]) for place in own], dtype=np.intp),
+                    sums,
+                    np.array(outside, dtype=np.intp),
+                    np.array([self.entries[place][1] for place in outside], dtype=np.intp),
+                    taken,
+                )
+            )
+        return tuple(found)
 
     @cached_property
     def inverse_program(self) -> InverseProgram:
@@ -168,9 +219,8 @@ class Eliminated:
         x = np.empty_like(right) if out is None else out
         factors, rows, columns = self._views, list(right), list(x)
         spare = np.empty(right.shape[-1])
-        down, _ = self.plan._solving
         with np.errstate(all="ignore"):
-            for changed, multiplier, other in down:
+            for changed, multiplier, other in self.plan._down:
                 np.multiply(factors[multiplier], rows[other], out=spare)
                 np.subtract(rows[changed], spare, out=rows[changed])
             places = self.plan.places
@@ -186,6 +236,43 @@ class Eliminated:
     def inverse(self) -> Array:
         """The entries of the inverses of the diagonal blocks, as the plan's program has them."""
         return self.plan.inverse_program.run(self)
+
+
+@dataclass(frozen=True)
+class BlockSolver:
+    """The inverses of the diagonal blocks, for many right-hand sides: a few operations on all blocks of a
+    level.
+
+    Attributes:
+        inverse, outside: by level, entries of the inverses and of the matrix in earlier unknowns.
+    """
+
+    plan: Elimination
+    inverse: tuple[Array, ...]
+    outside: tuple[Array, ...]
+
+    @classmethod
+    def of(cls, factors: Eliminated) -> BlockSolver:
+        """Of factors."""
+        inverse, levels = factors.inverse(), factors.plan.levels
+        return cls(
+            factors.plan,
+            tuple(inverse.take(level.inverse, axis=0) for level in levels),
+            tuple(factors.entries.take(level.outside, axis=0) for level in levels),
+        )
+
+    def solve(self, right: Array, out: Array) -> Array:
+        """x with matrix x = right, shapes (size, members)."""
+        for level, inverse, outside in zip(self.plan.levels, self.inverse, self.outside, strict=True):
+            rows = right.take(level.rows, axis=0)
+            if len(level.outside):
+                known = out.take(level.earlier, axis=0)
+                known *= outside
+                rows -= level.taken @ known
+            products = rows.take(level.inverse_rows, axis=0)
+            products *= inverse
+            out[level.unknowns] = level.sums @ products
+        return out
 
 
 def eliminate_like(matrix: Array, entries: Sequence[Entry], blocks: Sequence[Block]) -> Elimination | None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.batch_last.column_map import ColumnMap, Convolution
-from pointcoord.numerics.batch_last.elimination import Eliminated
+from pointcoord.numerics.batch_last.elimination import BlockSolver, Eliminated
 
 Array = NDArray[np.float64]
 
@@ -25,15 +25,15 @@ class ColumnSeries:
     Attributes:
         rows: the map. convolution: its terms of which both factors move.
         factors: of C_u at the pose.
-        driving: rows of C_w for each coordinate that is driven, each (rows, members).
+        driving: by coordinate that is driven which rows of C_w it enters, and these, each (rows, members).
         y: coefficients, shape (orders, size, members), of which `count` are known.
         squares, left, right: differences of them, by term.
     """
 
     rows: ColumnMap
     convolution: Convolution
-    factors: Eliminated
-    driving: list[tuple[int, Array]]
+    factors: BlockSolver
+    driving: list[tuple[int, NDArray[np.intp], Array]]
     y: Array
     squares: Array
     left: Array
@@ -42,12 +42,19 @@ class ColumnSeries:
 
     @classmethod
     def begin(
-        cls, rows: ColumnMap, factors: Eliminated, y: Array, driven: list[int], most: int
+        cls,
+        rows: ColumnMap,
+        factors: Eliminated,
+        y: Array,
+        driven: list[int],
+        most: int,
+        spare: ColumnSeries | None = None,
     ) -> ColumnSeries:
         """The pose itself, with room for so many orders.
 
         Args:
             y: coordinates, shape (size, members). driven: the known coordinates that move.
+            spare: a series that is not carried on any more; its room is used again if it suits.
         """
         size, members = y.shape
         first, second = rows.ends
@@ -60,15 +67,35 @@ class ColumnSeries:
         for coordinate in driven:
             unit = np.zeros((size, 1))
             unit[coordinate] = 1.0
-            driving.append((coordinate, rows.derivative(d, np.broadcast_to(rows.differences(unit), d.shape))))
+            along = rows.derivative(d, np.broadcast_to(rows.differences(unit), d.shape))
+            enters = np.flatnonzero(along.any(axis=-1))
+            driving.append((coordinate, enters, along[enters]))
         series = np.zeros((most + 1, size, members))
         series[0] = y
         shapes = (len(convolution.squares), len(convolution.left), len(convolution.left))
-        squares, left, right = (np.empty((most + 1, count, members)) for count in shapes)
-        return cls(rows, convolution, factors, driving, series, squares, left, right, 1)
+        rooms = (None,) * 3 if spare is None else (spare.squares, spare.left, spare.right)
+        squares, left, right = (
+            room
+            if room is not None and room.shape[0] > most and room.shape[1:] == (count, members)
+            else np.empty((most + 1, count, members))
+            for count, room in zip(shapes, rooms, strict=True)
+        )
+        return cls(rows, convolution, BlockSolver.of(factors), driving, series, squares, left, right, 1)
+
+    def longer(self, most: int) -> None:
+        """Make room for more orders."""
+        more = most + 1 - len(self.y)
+        if more > 0:
+            self.y = np.concatenate([self.y, np.zeros((more, *self.y.shape[1:]))])
+        self.squares, self.left, self.right = (
+            room
+            if len(room) > most
+            else np.concatenate([room, np.empty((most + 1 - len(room), *room.shape[1:]))])
+            for room in (self.squares, self.left, self.right)
+        )
 
     def sums(self, k: int) -> Array:
-        """sum B(y_i, y_{k-i}) over 0 < i < k with i and k - i among the known orders, shape (rows, members)."""
+        """sum B(y_i, y_{k-i}) over 0 < i < k, i and k - i among the known orders, shape (rows, members)."""
         low, high = max(1, k - self.count + 1), min(self.count - 1, k - 1)
         count = len(self.convolution.squares)
         products = np.empty((count + len(self.convolution.left), self.y.shape[-1]))
@@ -98,14 +125,12 @@ class ColumnSeries:
         """
         k, n = self.count, self.rows.unknowns
         right = np.zeros((n, self.y.shape[-1])) if k == 1 else self.sums(k)
-        for (coordinate, rows), value in zip(self.driving, known, strict=True):
+        for (coordinate, enters, rows), value in zip(self.driving, known, strict=True):
             self.y[k, coordinate] = value
-            if np.any(value):
-                right += rows * value
+            right[enters] += rows * value
         if extra is not None:
             right -= extra
-        u = self.factors.solve(right)
-        np.negative(u, out=self.y[k, :n])
+        self.factors.solve(np.negative(right, out=right), self.y[k, :n])
         self._remember(k)
         self.count = k + 1
 

@@ -16,6 +16,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS
 from pointcoord.numerics import newton
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.patches import flood
 from pointcoord.solve import assembly
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.paper_car import PAPER
@@ -56,11 +57,11 @@ def test_only_the_derivatives_that_are_asked_for_are_evaluated(
     everything = of_every_point(effects)
     assert motion.work.derivatives_evaluated == highest + 1
     # Positions always; then each derivative of every point, or of the knuckle's three points only.
-    points = MOVING if method == "series" else len(POINTS)
+    points = MOVING if METHODS[method].dense else len(POINTS)
     wanted = 3 * points * (everything + 1)
     more = 3 * KNUCKLE * (highest - everything)
     # One product gives all derivatives of a group of points, so the series sum the knuckle's from position.
-    spare = 3 * KNUCKLE * (everything + 1) if more and method == "series" else 0
+    spare = 3 * KNUCKLE * (everything + 1) if more and METHODS[method].dense else 0
     assert wanted + more <= motion.work.coordinates_evaluated <= wanted + more + spare
 
 
@@ -101,7 +102,8 @@ def test_counts_are_what_was_done(
 
     solving = pointcoord.solve
     ways = (solving.taylor, solving.pointwise, solving.chord)
-    for module in (newton, assembly, solving.standing_still, *ways):
+    own = (newton, assembly, solving.standing_still, solving.proven_path, flood)
+    for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0

@@ -1,6 +1,8 @@
 """Every way into a scene is checked, ends, and shows what a user called things as text."""
 
+import copy
 import io
+import json
 import os
 import pickle
 import socket
@@ -318,3 +320,33 @@ def test_steering_characters_are_spelled_out() -> None:
 
 def test_names_that_exist_are_offered_in_visible_text() -> None:
     assert r"\x1b" in str(UnknownName("point", "a", ["b\x1b"]))
+
+
+def test_a_scene_that_nobody_wrote_into_is_not_checked_again_and_one_that_was_is() -> None:
+    scene = Scene.from_mapping(CONTENT)
+    assert scene.unchanged
+    assert Scene.checked(scene, "same") is scene
+    scene.inputs["heave"] = scene.inputs["rack"]
+    assert not scene.unchanged
+    again = Scene.checked(scene, "written")
+    assert again is not scene
+    assert again.unchanged
+    assert again == scene
+    scene.mechanism.points["strut_top"] = (460.0, -180.0, float("inf"))
+    with pytest.raises(SceneError, match=r"mechanism\.points\.strut_top\.2: .*finite number, not inf"):
+        Scene.checked(scene, "written")
+
+
+def test_a_scene_does_not_change_but_comes_back_from_a_copy_a_pickle_and_its_plain_data() -> None:
+    with pytest.raises(AttributeError, match="does not change"):
+        BOUNCE.time.samples = 3  # as one line by itself it does not pass a checker of types
+    for again in (
+        copy.deepcopy(BOUNCE),
+        pickle.loads(pickle.dumps(BOUNCE)),
+        Scene.from_mapping(BOUNCE.model_dump()),
+        Scene.from_mapping(json.loads(BOUNCE.model_dump_json())),
+    ):
+        assert again == BOUNCE
+        assert again.unchanged
+    assert BOUNCE.model_copy(deep=True).mechanism.points is not BOUNCE.mechanism.points
+    assert hash(BOUNCE.time) == hash(BOUNCE.time.model_copy())

@@ -42,7 +42,8 @@ def test_a_motion_too_long_is_solved_by_newton_or_slower_or_shorter(
         return make_scene(law, samples=5, stop=stop)
 
     with pytest.raises(MotionTooLong, match=r"shorten the time, slow the inputs down, or use .* 'newton'"):
-        simulate(scene(40.0, 2.0))
+        simulate(scene(40.0, 2.0), "series")
+    assert simulate(scene(40.0, 2.0)).method == "map"
     assert simulate(scene(40.0, 2.0), "newton").proof().bound.max() < 1e-10
     assert len(simulate(scene(1.0, 2.0)).times) == len(simulate(scene(40.0, 0.05)).times) == 5
 
@@ -50,7 +51,9 @@ def test_a_motion_too_long_is_solved_by_newton_or_slower_or_shorter(
 def test_a_motion_too_rough_is_solved_by_newton_or_smoother_or_more_coarsely(make_scene: Make) -> None:
     rough = make_scene(JUMP, start=0.5 - 2e-8, stop=0.5 + 2e-9)
     with pytest.raises(MotionTooRough, match=r"smooth it there, allow a larger tolerance, or use .*'newton'"):
-        simulate(rough)
+        simulate(rough, "series")
+    assert simulate(rough).method == "map"
+    assert np.isfinite(simulate(rough).proof().bound).all()
     assert np.isfinite(simulate(rough, "newton").proof().bound).all()
     assert len(simulate(rough.model_copy(update={"tolerance": 1e-3})).times) == 9
     smooth = {"table": {**JUMP["table"], "times": (0.0, 0.2, 0.5, 0.6, 0.8, 1.0)}}
@@ -63,7 +66,7 @@ def test_a_larger_tolerance_is_no_advice_where_none_is_left(
     rough = make_scene(JUMP, start=0.5 - 2e-8, stop=0.5 + 2e-9)
     monkeypatch.setattr("pointcoord.solve.taylor.COARSEST", 1e-14)
     with pytest.raises(MotionTooRough, match=r"smooth it there, or use the method 'newton'"):
-        simulate(rough)
+        simulate(rough, "series")
 
 
 @pytest.mark.parametrize(("arm", "rack"), [([1.6], [0.0, 100.0]), ([1.6, 0.6], [0.0]), ([1.5], [0.0, -80.0])])

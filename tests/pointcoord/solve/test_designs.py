@@ -8,8 +8,9 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
 from pointcoord.simulation import chain_settings, pose_tolerance, prepare_task
+from pointcoord.solve import designs
 from pointcoord.solve.dense_output import evaluate
-from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
 from pointcoord.solve.taylor import Chain, build_chain
 
 WISHBONE = Scene.load("double-wishbone")
@@ -94,3 +95,67 @@ def test_no_designs_are_no_error_and_none_that_moves_leaves_no_chain() -> None:
     assert solved.start is None
     assert not len(solved.alive)
     assert set(solved.failures) == {0, 1}
+
+
+MANY = tuple(np.linspace(-20.0, 150.0, 24).tolist())
+
+
+def test_designs_as_columns_are_those_of_the_plain_form() -> None:
+    mechanism, solved = together(WISHBONE, MANY)
+    assert solved.chain is not None
+    functions = {name: WISHBONE.functions[name] for name in mechanism.topology.required_inputs}
+    settings, allowed = chain_settings(WISHBONE, mechanism, 0), pose_tolerance(WISHBONE, SERIES, mechanism)
+    start, stop = WISHBONE.time.start, WISHBONE.time.stop
+    plain = solve_plainly(mechanism, Follow(functions, start, stop, settings, allowed))
+    assert plain.chain is not None
+    np.testing.assert_array_equal(solved.alive, plain.alive)
+    assert 0 < len(solved.failures) < len(MANY)
+    assert set(solved.failures) == set(plain.failures)
+    for number, status in solved.failures.items():
+        mine, theirs = status.error(), plain.failures[number].error()
+        assert isinstance(mine, AssemblyError)
+        assert isinstance(theirs, AssemblyError)
+        assert (mine.problem, mine.limits, mine.reduce) == (theirs.problem, theirs.limits, theirs.reduce)
+    np.testing.assert_allclose(solved.closed, plain.closed, rtol=0, atol=1e-13)
+    found = unknowns(mechanism.taken(solved.alive), solved.chain, WISHBONE.instants)
+    wanted = unknowns(mechanism.taken(plain.alive), plain.chain, WISHBONE.instants)
+    difference = mechanism.unit[solved.alive, None, None] * np.abs(found - wanted)
+    assert difference.max() <= 2.0 * 0.1 * WISHBONE.tolerance
+
+
+def test_designs_as_columns_take_no_plain_form_where_all_goes_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    def plainly(*_: object) -> SolvedDesigns:
+        raise AssertionError("solved plainly")
+
+    monkeypatch.setattr(designs, "solve_plainly", plainly)
+    monkeypatch.setattr(Follow, "begun", plainly)
+    for name in ("bounce", "steer", "off-axis-strut", "double-wishbone"):
+        scene = Scene.load(name)
+        points = {
+            point: np.array(place) + np.random.default_rng(4).uniform(-1.0, 1.0, (12, 3))
+            for point, place in scene.mechanism.points.items()
+        }
+        part = scene.mechanism
+        mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
+        functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+        settings, allowed = chain_settings(scene, mechanism, 2), pose_tolerance(scene, SERIES, mechanism)
+        start, stop = scene.time.start, scene.time.stop
+        solved = solve_designs(mechanism, functions, start, stop, settings, allowed)
+        assert len(solved.alive) == 12
+
+
+def test_a_design_that_asks_for_shorter_segments_is_solved_or_dropped_for_its_own_reason() -> None:
+    # The last of these nearly locks on the way, and asks for more segments than all others.
+    edge = max(height for height in np.linspace(100.0, 150.0, 26).tolist() if height not in failing())
+    mechanism, solved = together(WISHBONE, (*np.linspace(-20.0, 20.0, 9).tolist(), edge))
+    assert solved.chain is not None
+    np.testing.assert_array_equal(solved.alive, np.arange(10))
+    own, chain = alone(moved(WISHBONE, edge))
+    found = unknowns(mechanism, solved.chain, WISHBONE.instants)[9]
+    difference = float(mechanism.unit[9]) * np.abs(found - unknowns(own, chain, WISHBONE.instants))
+    assert difference.max() <= 2.0 * 0.1 * WISHBONE.tolerance
+
+
+def failing() -> set[float]:
+    heights = tuple(np.linspace(100.0, 150.0, 26).tolist())
+    return {heights[number] for number in together(WISHBONE, heights)[1].failures}

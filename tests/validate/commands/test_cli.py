@@ -263,7 +263,7 @@ def test_parquet_without_pyarrow_is_refused_before_anything_is_solved(
 
 def test_other_instants_than_the_scenes_need_series(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "steer", "--method", "newton", "--instants", "10"]) == 2
-    assert "--instants needs the method series" in capsys.readouterr().err
+    assert "--instants needs the method auto, series or map" in capsys.readouterr().err
     assert main(["simulate", "steer", "--instants", "0"]) == 2
     assert "allowed: 1 or more" in capsys.readouterr().err
     assert main(["simulate", "steer", "--instants", "3", "-q"]) == 0

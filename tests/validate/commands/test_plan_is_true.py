@@ -14,6 +14,7 @@ from validate.cli import main
 
 TAKES = re.compile(
     r"accuracy: positions to (?P<tolerance>\S+) mm, rates to (?P<part>\S+) of their size\n"
+    r"solved at each step: .*\n"
     r"takes: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
     r"(?P<orders>\d+) orders in all; (?P<all>\d+) factorisations, (?P<start>\d+) of them to assemble "
     r"the start\n"
@@ -50,6 +51,26 @@ def test_plan_prints_the_effort(name: str, capsys: pytest.CaptureFixture[str]) -
     assert int(told["all"]) == work.factorisations
     assert float(told["tolerance"]) == scene.tolerance
     assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
+
+
+def test_a_long_table_is_planned_by_a_map_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
+    times = np.linspace(0.0, 0.4, 2100)
+    content["inputs"]["rack"] = {"table": {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}}
+    scene = Scene.from_mapping(content)
+    planned, motion = effort(scene), simulate(scene)
+    assert planned.method == motion.method == "map"
+    assert planned.why in motion.notes
+    work = motion.work
+    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert planned.work.factorisations == work.factorisations
+    monkeypatch.setattr("validate.commands.scenes.load_scene", lambda _: scene)
+    assert main(["plan", "steer"]) == 0
+    told = capsys.readouterr().out
+    assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in told
+    assert "in the inputs, each proven on a patch of their way, of order" in told
 
 
 @pytest.mark.parametrize(("tolerance", "kept"), [(1e-30, FINEST), (1e30, COARSEST)])

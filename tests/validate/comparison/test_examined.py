@@ -71,8 +71,9 @@ def test_an_input_out_of_range_is_told_with_what_is_allowed(
 def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A motion of too many series: the other model and Newton's method take the instants alone."""
+    """Too many series, and no map: the other model and Newton's method take the instants alone."""
     monkeypatch.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 2)
+    monkeypatch.setattr("pointcoord.patches.way_map.ENOUGH", 0)
     path = short_scene(tmp_path)
     assert main(["validate", path]) == 3
     out, err = capsys.readouterr()

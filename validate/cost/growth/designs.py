@@ -10,6 +10,7 @@ all at each instant. They are solved in blocks: what lies between a block's oper
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -25,10 +26,11 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.simulation import TRUNCATION_SHARE
-from pointcoord.solve.assembly import Path, assemble, blocked, close_drawing, follow
+from pointcoord.solve.assembly import Path, blocked, close_drawing, follow
 from pointcoord.solve.dense_output import evaluate
+from pointcoord.solve.designs import solve_designs
 from pointcoord.solve.status import Status
-from pointcoord.solve.taylor import COARSEST, SOLVED, Settings, build_chain
+from pointcoord.solve.taylor import COARSEST, SOLVED, Settings
 from validate.cost.growth.instants import ReadyRun, some_of
 from validate.cost.growth.task import WrongNumber
 from validate.cost.instants import study_instants
@@ -42,8 +44,8 @@ Points = Mapping[str, Array]
 INSTANTS = 101
 MOVED = 2.0  # mm, at most, along each axis: what a designer tries, and no drawing turns into another one
 SEED = 2026
-BLOCK = 256  # designs
-"""Of 64 to 2048 tried, the quickest or near it for series and Newton, struts and wishbones."""
+BLOCK = 512  # designs
+"""So many that an operation on all costs little beside its numbers, and their matrices fit in a cache."""
 
 
 @lru_cache(maxsize=2)
@@ -245,7 +247,7 @@ class BatchRun:
 
 @lru_cache(maxsize=2)
 def _of_text(text: str, count: int) -> dict[str, Array]:
-    return designs_of(Scene.model_validate_json(text), count)
+    return designs_of(Scene.from_mapping(json.loads(text)), count)
 
 
 def _kept_designs(scene: Scene, count: int) -> dict[str, Array]:
@@ -278,17 +280,18 @@ def allowed_of_a_pose(method: str, settings: Settings) -> float:
 
 
 def _by_series(block: Block, scene: Scene, instants: Array) -> tuple[Array, Work]:
-    """Unknowns at instants, (designs, N, unknowns), as `simulate` finds them of one design."""
+    """Unknowns at instants, (designs, N, unknowns), as `sweep` finds them."""
     mechanism = block.mechanism
     start, stop = scene.time.start, scene.time.stop
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    values = {name: series[..., 0] for name, series in _inputs(mechanism, scene, start, 0).items()}
-    pose = assemble(mechanism, values, start, block.closed, block.allowed)
-    chain = build_chain(mechanism, functions, pose, start, stop, block.settings)
-    _require_whole(chain.status)
+    solved = solve_designs(mechanism, functions, start, stop, block.settings, block.allowed)
+    for status in solved.failures.values():
+        _require_whole(status)
+    if solved.chain is None:
+        raise ValueError("no designs")
     n = mechanism.map.unknowns
-    pieces = [segment.coefficients[..., :n] for segment in chain.segments]
-    return evaluate(chain, pieces, instants, 0)[0], pose.work + chain.work
+    pieces = [segment.coefficients[..., :n] for segment in solved.chain.segments]
+    return evaluate(solved.chain, pieces, instants, 0)[0], solved.chain.work
 
 
 def _by_newton(block: Block, scene: Scene, instants: Array) -> tuple[Array, Work]:

@@ -19,12 +19,20 @@ from pointcoord import Scene
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan
 from pointcoord.effects.registry import ALWAYS
-from pointcoord.method import CHORD, NEWTON, NEWTON_COLD, SERIES, Method
+from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout, States
 from pointcoord.results.samples import Samples
 from pointcoord.results.states import SolvedStates, StatesAtInstants, StatesOfChain
-from pointcoord.simulation import Task, finest_tolerance, pose_tolerance, prepare_task, solve_by_series
+from pointcoord.results.states_of_map import StatesOfMap
+from pointcoord.simulation import (
+    Task,
+    finest_tolerance,
+    pose_tolerance,
+    prepare_task,
+    solve_by_map,
+    solve_by_series,
+)
 from pointcoord.solve.pointwise import Solved, with_rates
 from validate.cost.way import LeftOut, Ready, Setting
 from validate.formulations.protocol import Numbers
@@ -62,6 +70,29 @@ class Series:
             PointcoordError: the library refuses the scene.
         """
         return ReadyChain(prepared(scene, SERIES, setting))
+
+
+@dataclass(frozen=True)
+class ThroughMap:
+    """A map of the inputs along their way, dense in time; making it is set-up, as any law can be composed."""
+
+    name: str = "map"
+    words: str = "point coordinates, by series in the inputs on patches, made beforehand"
+    package: str | None = None
+    settings: tuple[Setting, ...] = tolerance_settings()
+    dense: bool = True
+
+    def prepare(self, scene: Scene, setting: Setting) -> Ready:
+        """Assemble the start and make the map.
+
+        Raises:
+            PointcoordError: the library refuses the scene, or no map covers the way of its inputs.
+        """
+        task = prepared(scene, MAP, setting)
+        states = solve_by_map(task).states
+        assert isinstance(states, StatesOfMap)
+        require_complete(states)
+        return ReadyMap(task, states)
 
 
 @dataclass(frozen=True)
@@ -204,6 +235,37 @@ class ReadyChain:
 
 
 @dataclass(frozen=True)
+class ReadyMap:
+    """A scene whose map is made."""
+
+    task: Task
+    states: StatesOfMap
+
+    def solve(self, instants: Array) -> Progress:
+        """Sum positions."""
+        parts = Parts.of(self.task.readout)
+        places = replace(self.states, readout=parts.positions).states(instants)
+        samples = parts.positions.samples(instants, places)
+        return Progress(self.states, instants, places, (samples,), Work())
+
+    def rates(self, solved: Progress) -> Progress:
+        """Sum the derivatives."""
+        readout = Parts.of(self.task.readout).rates
+        if not readout.plan.computed:
+            return solved
+        states = replace(self.states, readout=readout).states(solved.instants)
+        return replace(solved, found=(*solved.found, readout.samples(solved.instants, states)))
+
+    def output(self, solved: Progress) -> Numbers:
+        """All arrays."""
+        return told(Parts.of(self.task.readout), solved)
+
+    def counts(self, solved: Progress) -> Mapping[str, int]:
+        """None: what the map took is set-up."""
+        return counted(solved.work)
+
+
+@dataclass(frozen=True)
 class ReadyInstants:
     """A scene to be solved at each instant by itself."""
 
@@ -284,8 +346,9 @@ def require_complete(states: SolvedStates) -> None:
         raise error
 
 
-WAYS: tuple[Series | AtInstants, ...] = (
+WAYS: tuple[Series | ThroughMap | AtInstants, ...] = (
     Series(),
+    ThroughMap(),
     *(
         AtInstants(method.name, f"point coordinates, by {words}", method, tolerance_settings())
         for method, words in (

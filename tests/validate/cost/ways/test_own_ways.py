@@ -43,7 +43,7 @@ def errors(name: str, scene: Scene, value: float | None = None, count: int = 9) 
 
 @pytest.mark.parametrize("name", STUDY_SCENES)
 @pytest.mark.parametrize("setting", way("series").settings[::4], ids=lambda setting: setting.words)
-@pytest.mark.parametrize("who", ["series", "newton", "newton-cold", "chord"])
+@pytest.mark.parametrize("who", ["series", "map", "newton", "newton-cold", "chord"])
 def test_no_position_is_farther_off_than_it_was_asked_to_be(name: str, setting: Setting, who: str) -> None:
     # Beside it there is rounding: 1e-16 of 1000 mm, times a condition number of 1e4 near the toggle.
     assert setting.value is not None

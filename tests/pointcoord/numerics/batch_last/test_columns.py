@@ -1,0 +1,153 @@
+"""Members as columns give what the plain form gives them one by one."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.batch_last.block_proof import block_proof
+from pointcoord.numerics.batch_last.column_map import ColumnMap, column_map
+from pointcoord.numerics.batch_last.elimination import Elimination, eliminate_like
+from pointcoord.numerics.batch_last.series import ColumnSeries
+from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.power_series import expand
+from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import close_drawing
+
+Array = NDArray[np.float64]
+
+SCENES = ("bounce", "off-axis-strut", "double-wishbone")
+MEMBERS = 7
+
+
+def case(name: str) -> tuple[Mechanism, ColumnMap, Elimination, Array]:
+    """A mechanism as columns, and poses near its drawing, members first."""
+    mechanism = scene_mechanism(Scene.load(name))
+    system, layout = mechanism.map, mechanism.layout
+    drawn = close_drawing(mechanism).y
+    columns = column_map(system, ((layout.zero, 0.0), (layout.one, 1.0)))
+    plan = eliminate_like(system.jacobian(drawn), columns.entries, system.structure.blocks)
+    assert plan is not None
+    noise = np.random.default_rng(5).uniform(-1e-2, 1e-2, (MEMBERS, system.size))
+    noise[:, [layout.zero, layout.one]] = 0.0
+    return mechanism, columns, plan, drawn + noise
+
+
+def full(entries: tuple[tuple[int, int], ...], values: Array, size: int) -> Array:
+    """Matrices, members first, from their entries."""
+    matrices = np.zeros((values.shape[-1], size, size))
+    for (row, column), value in zip(entries, values, strict=True):
+        matrices[:, row, column] = value
+    return matrices
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_rows_and_jacobian_are_those_of_the_plain_form(name: str) -> None:
+    mechanism, columns, _, y = case(name)
+    system, n = mechanism.map, mechanism.map.unknowns
+    d = columns.differences(y.T)
+    np.testing.assert_allclose(columns.residual(d).T, system.residual(y), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        full(columns.entries, columns.jacobian(d), n), system.jacobian(y), rtol=0, atol=0
+    )
+    step = np.random.default_rng(6).uniform(-1.0, 1.0, y.shape)
+    step[:, [mechanism.layout.zero, mechanism.layout.one]] = 0.0
+    e = columns.differences(step.T)
+    np.testing.assert_allclose(columns.derivative(d, e).T, 2.0 * system.polar(y, step), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(columns.bilinear(e).T, system.residual(step), rtol=0, atol=1e-14)
+    along = full(columns.entries, columns.jacobian_along(e), n)
+    np.testing.assert_allclose(along, system.jacobian(step), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_uncertainty_of_rows_is_at_least_that_of_the_plain_form(name: str) -> None:
+    mechanism, columns, _, y = case(name)
+    data = mechanism.drawn_doubt + np.abs(mechanism.drawn_lacks)
+    mine = columns.uncertainty(columns.differences(y.T), data).T
+    # A linear term's factor 1 has no rounding, which the plain form counts as a product's.
+    plain = mechanism.map.uncertainty(y, np.broadcast_to(data, y.shape))
+    assert (mine >= 0.4 * plain).all()
+    assert (mine <= 3.0 * plain + 1e-300).all()
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_elimination_solves_as_lapack_does(name: str) -> None:
+    mechanism, columns, plan, y = case(name)
+    system, n = mechanism.map, mechanism.map.unknowns
+    factors = plan.factorise(columns.jacobian(columns.differences(y.T)))
+    assert factors.sound.all()
+    right = np.random.default_rng(7).uniform(-1.0, 1.0, (MEMBERS, n))
+    matrices = system.jacobian(y)
+    wanted = np.linalg.solve(matrices, right[..., None])[..., 0]
+    np.testing.assert_allclose(factors.solve(right.T.copy()).T, wanted, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(factors.orientation, np.linalg.slogdet(matrices)[0])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_inverse_of_a_block_is_that_of_the_blocks_own_matrix(name: str) -> None:
+    mechanism, columns, plan, y = case(name)
+    system, n = mechanism.map, mechanism.map.unknowns
+    factors = plan.factorise(columns.jacobian(columns.differences(y.T)))
+    found = full(plan.inverse_program.entries, factors.inverse(), n)
+    for block in system.structure.blocks:
+        own = system.jacobian(y)[:, list(block.rows)][..., list(block.unknowns)]
+        mine = found[:, list(block.unknowns)][..., list(block.rows)]
+        np.testing.assert_allclose(mine, np.linalg.inv(own), rtol=0, atol=1e-11)
+
+
+def test_a_member_whose_pivots_are_bad_is_marked_and_no_other() -> None:
+    _, columns, plan, y = case("bounce")
+    entries = columns.jacobian(columns.differences(y.T))
+    pivot = next(pivot for pivot in plan.pivots if pivot.below)
+    entries[plan.places[pivot.row, pivot.column], 3] *= 1e-9
+    entries[plan.places[pivot.row, pivot.column], 5] = 0.0
+    sound = plan.factorise(entries).sound
+    np.testing.assert_array_equal(np.flatnonzero(~sound), [3, 5])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_series_is_that_of_the_plain_form(name: str) -> None:
+    mechanism, columns, plan, _ = case(name)
+    system, n, order = mechanism.map, mechanism.map.unknowns, 9
+    closed = close_drawing(mechanism).y
+    y = np.repeat(closed[None], MEMBERS, axis=0)
+    driven = [mechanism.layout.scalar(drive.coordinate) for drive in mechanism.topology.drives]
+    laws = np.random.default_rng(8).uniform(-0.3, 0.3, (order + 1, len(driven), MEMBERS))
+    known = np.zeros((MEMBERS, order + 1, system.size - n))
+    known[..., [place - n for place in driven]] = laws.transpose(2, 0, 1)
+    known[:, 0] = closed[n:]
+    wanted = expand(system, factorise(system.jacobian(y)), y, known)
+    factors = plan.factorise(columns.jacobian(columns.differences(y.T)))
+    series = ColumnSeries.begin(columns, factors, np.ascontiguousarray(y.T), driven, order)
+    for k in range(1, order + 1):
+        series.carry_on(laws[k])
+    size = np.abs(wanted).max(axis=(0, 2))
+    off = np.abs(series.y.transpose(2, 0, 1) - wanted).max(axis=(0, 2))
+    assert (off <= 1e-12 * size).all()
+    # The rows of the orders that the series leaves out are those of its own residual.
+    s = 0.25
+    residual = system.residual(series.at(s).T).T
+    sums = sum(series.sums(k) * s**k for k in range(order + 1, 2 * order + 1))
+    np.testing.assert_allclose(residual, sums, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_omega_of_a_block_bounds_how_far_its_jacobian_turns(name: str) -> None:
+    mechanism, columns, plan, y = case(name)
+    system, n = mechanism.map, mechanism.map.unknowns
+    weights = np.random.default_rng(9).uniform(0.3, 1.0, n)
+    proof = block_proof(columns, plan, system.structure, weights)
+    factors = plan.factorise(columns.jacobian(columns.differences(y.T)))
+    inverse = factors.inverse()
+    omega = proof.lipschitz(np.abs(inverse))
+    for number, block in enumerate(system.structure.blocks):
+        own, rows = list(block.unknowns), list(block.rows)
+        step = np.zeros_like(y)
+        step[:, own] = weights[own] * np.random.default_rng(10).choice((-1.0, 1.0), (MEMBERS, len(own)))
+        turned = system.jacobian(step)[:, rows][..., own]
+        x = np.linalg.inv(system.jacobian(y)[:, rows][..., own])
+        norm = (np.abs(x @ turned) * weights[own] / weights[own][:, None]).sum(axis=-1).max(axis=-1)
+        assert (norm <= omega[number] * (1.0 + 1e-12)).all()
+        along = columns.jacobian_along(columns.differences(step.T))
+        np.testing.assert_allclose(proof.turns(inverse, along)[number], norm, rtol=1e-9, atol=1e-12)

@@ -1,0 +1,47 @@
+"""What rides on a body is put together at each instant as its series says."""
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, designs_of
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.method import SERIES
+from pointcoord.numerics.rounding import EPS
+from pointcoord.results.readout import Readout
+from pointcoord.results.states import StatesOfChain
+from pointcoord.results.states_of_designs import StatesOfDesigns
+from pointcoord.simulation import chain_settings, pose_tolerance
+from pointcoord.solve.designs import solve_designs
+from pointcoord.sweeping.solving import Course
+
+
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut", "steer"])
+@pytest.mark.parametrize("effects", [("velocity", "acceleration", "knuckle_rates", "wheel_angles"), ("toe",)])
+@pytest.mark.parametrize("points", [None, ("wheel_centre", "lower_arm_front")])
+def test_states_of_designs_are_those_of_their_series(
+    name: str, effects: tuple[str, ...], points: tuple[str, ...] | None
+) -> None:
+    scene = Scene.load(name).model_copy(update={"effects": effects, "points": points})
+    designs = designs_of(scene, offsets={"tie_rod_outer.z": [-3.0, 0.0, 2.0]})
+    part, time = scene.mechanism, scene.time
+    directions = {"up": part.up, "right": part.right}
+    mechanism = build_mechanism(part.topology, designs.points(np.arange(3)), directions)
+    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+    course = Course.of(designs)
+    settings = chain_settings(scene, mechanism, course.plan.derivative)
+    allowed = pose_tolerance(scene, SERIES, mechanism)
+    chain = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed).chain
+    assert chain is not None
+    readout = Readout(mechanism, course.plan, ChassisMotion.of(mechanism, scene.functions), course.axes)
+    quick, plain = (
+        kind(readout, functions, chain, time.start).states(scene.instants)
+        for kind in (StatesOfDesigns, StatesOfChain)
+    )
+    largest = [max(float(np.abs(state).max()) for state in each.values()) for each in plain]
+    for order, (one, other) in enumerate(zip(quick, plain, strict=True)):
+        for point, state in other.items():
+            # Sums of some ten rounded terms of the size of a state, or of products of two lower ones, which
+            # lie within the size of the car: 1000 roundings cover series of 40 orders.
+            size = largest[order] + mechanism.unit.max() * (order == 2)
+            assert np.abs(one[point] - state).max() <= 1000.0 * EPS * size

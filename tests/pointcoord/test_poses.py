@@ -1,0 +1,106 @@
+"""Unrelated poses are each the pose that the drawing leads to, and their bounds hold."""
+
+import numpy as np
+import pytest
+
+from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, simulate, solve_poses
+from pointcoord.simulation import scene_mechanism
+from pointcoord.solve import unrelated_poses
+from pointcoord.solve.assembly import assemble
+
+CARS = {"bounce": 1.6, "off-axis-strut": 1.6, "double-wishbone": 1.55}
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_a_pose_is_the_assembled_one_within_both_bounds(name: str) -> None:
+    scene = Scene.load(name)
+    mechanism = scene_mechanism(scene)
+    rng = np.random.default_rng(11)
+    inputs = {"arm_angle": CARS[name] + rng.uniform(-0.15, 0.15, 400), "rack": rng.uniform(-25.0, 25.0, 400)}
+    found = solve_poses(scene, inputs, tolerance=1e-9)
+    assert not found.failures
+    assert (found.bound <= 1e-9).all()
+    some = slice(0, 400, 25)
+    pose = assemble(mechanism, {name: value[some] for name, value in inputs.items()})
+    for point in mechanism.topology.moving:
+        own = mechanism.origin + mechanism.unit * pose.y[:, list(mechanism.layout.vector(point))]
+        off = np.abs(found.position[point][some] - own).max(axis=-1)
+        assert (off <= found.bound[some] + pose.bound).all()
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_poses_from_boxes_are_those_from_paths_of_their_own(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene, rng = Scene.load(name), np.random.default_rng(12)
+    inputs = {"arm_angle": CARS[name] + rng.uniform(-0.05, 0.05, 3000), "rack": rng.uniform(-5.0, 5.0, 3000)}
+    from_boxes = solve_poses(scene, inputs, tolerance=1e-9)
+    left: list[int] = []
+
+    def no_boxes(_: object, rest: np.ndarray) -> np.ndarray:
+        return rest
+
+    by_paths = unrelated_poses._Solver.by_paths
+
+    def counted(solver: unrelated_poses._Solver, rest: np.ndarray) -> np.ndarray:
+        left.append(len(rest))
+        return by_paths(solver, rest)
+
+    monkeypatch.setattr(unrelated_poses._Solver, "by_paths", counted)
+    solve_poses(scene, inputs, tolerance=1e-9)
+    assert left[0] < 300
+    monkeypatch.setattr(unrelated_poses._Solver, "by_boxes", no_boxes)
+    from_paths = solve_poses(scene, inputs, tolerance=1e-9)
+    assert left[1] == 3000
+    allowed = from_boxes.bound + from_paths.bound
+    for point in scene_mechanism(scene).topology.moving:
+        off = np.abs(from_boxes.position[point] - from_paths.position[point]).max(axis=-1)
+        assert (off <= allowed).all()
+    assert (from_boxes.bound <= 1e-9).all()
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_carried_and_chassis_points_are_those_of_the_motion(name: str) -> None:
+    scene = Scene.load(name)
+    motion, mechanism = simulate(scene), scene_mechanism(scene)
+    inputs = {
+        n: scene.functions[n].series(scene.instants, 0)[..., 0] for n in mechanism.topology.required_inputs
+    }
+    found = solve_poses(scene, inputs, tolerance=1e-9)
+    for point, place in motion.position.items():
+        assert (
+            np.abs(found.position[point] - place).max() <= 2.0 * scene.tolerance + found.carried_bound.max()
+        )
+
+
+def test_a_pose_that_cannot_be_says_why_and_has_no_number() -> None:
+    scene = Scene.load("bounce")
+    angles = np.array([[1.6, 0.05], [1.5, 3.1]])
+    found = solve_poses(scene, {"arm_angle": angles, "rack": 0.0})
+    np.testing.assert_array_equal(found.solved, [[True, False], [True, False]])
+    assert set(found.failures) == {1, 3}
+    with pytest.raises(AssemblyError) as alone:
+        assemble(scene_mechanism(scene), {"arm_angle": np.array(0.05), "rack": np.array(0.0)})
+    assert str(found.failures[1]) == str(alone.value)
+    assert np.isnan(found.position["wheel_centre"][0, 1]).all()
+    assert np.isfinite(found.position["wheel_centre"][:, 0]).all()
+
+
+def test_heave_moves_every_point_alike() -> None:
+    scene = Scene.load("bounce")
+    still = solve_poses(scene, {"arm_angle": 1.6, "rack": 3.0})
+    lifted = solve_poses(scene, {"arm_angle": 1.6, "rack": 3.0, "heave": 40.0})
+    for name, place in still.position.items():
+        np.testing.assert_allclose(lifted.position[name] - place, (0.0, 0.0, 40.0), rtol=0, atol=1e-12)
+
+
+def test_inputs_without_meaning_are_refused() -> None:
+    scene = Scene.load("bounce")
+    with pytest.raises(UnknownName):
+        solve_poses(scene, {"arm_angle": 1.6})
+    with pytest.raises(UnknownName):
+        solve_poses(scene, {"arm_angle": 1.6, "rack": 0.0, "rak": 0.0})
+    with pytest.raises(InputOutOfRange):
+        solve_poses(scene, {"arm_angle": 1.6, "rack": np.nan})
+    with pytest.raises(InputOutOfRange):
+        solve_poses(scene, {"arm_angle": 88.0, "rack": 0.0})
