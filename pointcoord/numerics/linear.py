@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.numerics import block_inverse
 from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.rounding import EPS
 
@@ -112,7 +113,7 @@ class Factors:
 
 def factorise(matrix: Array) -> Factors:
     """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
-    one = _factorise_one(matrix) if matrix.ndim == 2 else None
+    one = _factorise_one(matrix) if matrix.ndim == 2 and len(matrix) < block_inverse.LARGE else None
     return factorise_plainly(matrix) if one is None else one
 
 

@@ -50,6 +50,7 @@ STRETCHES = 3
 ROOM = 0.9
 # What a series may leave out at its end, in parts of 1 / omega, where its length is chosen.
 LEFT_OUT = 1e-2
+SMALLEST = float(np.finfo(float).tiny)
 # Times that weights are brought nearer to those of the smallest norm.
 WEIGHINGS = 3
 
@@ -129,7 +130,8 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset:
     rest = system.gather(np.add.reduceat(left[first] * right[second], starts, axis=0)) * factors.row_scale
     start = (system.residual(series[0]) - offset) * factors.row_scale
     # As far as what is left out stays small, in the plain norm and with the inverse at the start.
-    allowed = LEFT_OUT / float(system.lipschitz(factors.preconditioner))
+    # A map that does not bend has no other assembly at any distance.
+    allowed = LEFT_OUT / max(float(system.lipschitz(factors.preconditioner)), SMALLEST)
     sizes = np.abs(rest @ factors.inverse.T).max(axis=-1)
     powers = np.arange(order + 1.0, 2.0 * order + 1.0)
     reach = min(float(np.min((allowed / sizes) ** (1.0 / powers))), 1.0)

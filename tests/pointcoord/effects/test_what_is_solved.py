@@ -29,7 +29,7 @@ def scene(name: str, points: Sequence[str] | None = None, effects: Sequence[str]
 
 def unknowns_per_order(scene: Scene) -> float:
     """Unknowns of each linear solve for an order of a series."""
-    work = simulate(scene).work
+    work = solve_by_series(prepare_task(scene, METHODS["series"])).states.work
     assert work.rate_solves == work.series_orders > 0
     return work.unknowns_solved / work.rate_solves
 

@@ -70,6 +70,14 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
     assert np.array_equal(replaced.orientation, plain.orientation * [1.0, -1.0, 1.0])
 
 
+def test_one_large_matrix_is_factorised_by_blocks_as_a_batch_is() -> None:
+    matrix = hidden_triangle(np.random.default_rng(8))
+    alone, batch = factorise(matrix), factorise(matrix[None])
+    assert alone.sign is not None
+    assert alone.sign == batch.orientation[0]
+    assert np.array_equal(alone.inverse, batch.inverse[0])
+
+
 def test_where_blocks_do_not_help_the_matrix_is_inverted_as_a_whole() -> None:
     rng = np.random.default_rng(6)
     circle = np.eye(N) + np.roll(np.eye(N), 1, axis=1) * 0.5
