@@ -47,7 +47,7 @@ MEASURED = (
     "validate/cost/instants.py",
     "validate/cost/accuracy.py",
 )
-PACKAGES = ("numpy", "scipy", "pydantic", "pin", "mujoco", "exudyn")
+PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn")
 THREADS = (
     "OPENBLAS_NUM_THREADS",
     "OMP_NUM_THREADS",

@@ -25,7 +25,7 @@ from validate.output.files import require_writable, write_whole
 
 # Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
 SCHEMA_VERSION = 1
-PACKAGES = ("numpy", "scipy", "pydantic", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
+PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 PAUSE = 9.0  # between two writings of a journal, in times that the first took
