@@ -3,10 +3,10 @@
     OPENBLAS_NUM_THREADS=1 pytest tests/benchmarks/speed.py -n 0 -p benchmark --benchmark-json speed.json
 
 measures every figure at its full size; with SPEED=small before it, at a size of some seconds in all. Before
-each round the yardstick is timed that the round is compared with, so that a busy machine slows both. `extra_info`
-of each benchmark in the JSON file holds the ratio, what it is a ratio of, and the ratio that is aimed at. A
-benchmark fails only where its ratio is FACTOR times the one that was reached when it was written down: noise is
-less.
+each round the yardstick is timed that the round is compared with, so that a busy machine slows both. In
+the JSON file `extra_info` of each benchmark holds the ratio, what it is a ratio of, and the ratio that is
+aimed at. A benchmark fails only where its ratio is FACTOR times the one that was reached when it was written
+down: noise is less.
 """
 
 from __future__ import annotations
