@@ -75,8 +75,8 @@ SPARE, CARRIED_ON = 1, 3
 # What a segment costs beside its orders, in orders: fitted to the times of thirty chains of 3 to 100 segments
 # and of orders from 8 to 40.
 SEGMENT = 25.0
-# Where an input begins as t^n only every n-th term of the motion exists, or others hardly: a polynomial of more
-# than the third degree is followed to its own third power at least.
+# Where an input begins as t^n only every n-th term of the motion exists, or others hardly: a polynomial of
+# more than the third degree is followed to its own third power at least.
 POWERS, CUBIC = 3, 3
 # Last terms that are looked at for what follows, at least.
 WINDOW = 5
@@ -535,9 +535,9 @@ def _gone_on(logs: Array) -> Array:
     """Logarithms of the last two coefficients, at least what the ones before them come to, (members, 2).
 
     Every other term is missing where an input is at rest, two of three where it begins as t^3, and close to
-    such a place they are small: the last two then tell nothing of those that follow. So the largest of the last
-    WINDOW terms, or of more where more were missing at once, goes on as terms fell since the window before.
-    Terms that end for good, of which the last window has none, stay missing.
+    such a place they are small: the last two then tell nothing of those that follow. So the largest of the
+    last WINDOW terms, or of more where more were missing at once, goes on as terms fell since the window
+    before. Terms that end for good, of which the last window has none, stay missing.
     """
     window, fall = _fall(logs)
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
