@@ -19,6 +19,8 @@ BASES = {
     "absolute.errors.AbsoluteError",
     "absolute.errors.PoseError",
 } | {"validate.relative.errors.RelativeError"}
+# Says inside the solver that members take another form; it is caught there.
+CAUGHT = {"pointcoord.solve.chains_together.NotTogether"}
 
 
 def every_error_class() -> dict[str, type[BaseException]]:
@@ -36,7 +38,7 @@ CLASSES = every_error_class()
 
 
 def test_every_error_class_has_a_recipe_and_every_recipe_a_class() -> None:
-    assert set(CLASSES) - BASES == set(RECIPES)
+    assert set(CLASSES) - BASES - CAUGHT == set(RECIPES)
 
 
 @pytest.mark.parametrize("name", RECIPES)

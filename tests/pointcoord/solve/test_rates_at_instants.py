@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, UnknownName, simulate
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.method import CHORD, METHODS, NEWTON, NEWTON_COLD, SERIES, Method
+from pointcoord.method import CHORD, MAP, METHODS, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.solve.pointwise import square_velocity_term
 from validate.paper.printed import PRINTED
@@ -16,7 +16,7 @@ from validate.paper.printed import PRINTED
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
 EPS = np.finfo(float).eps
-ALL = (SERIES, NEWTON, NEWTON_COLD, CHORD, PRINTED)
+ALL = (SERIES, MAP, NEWTON, NEWTON_COLD, CHORD, PRINTED)
 STEER = {"arm_angle": (np.pi / 2,), "rack": (0.0, 150.0, 25.0), "stop": 0.4}
 
 
@@ -54,8 +54,8 @@ def test_acceleration_is_the_derivative_of_the_velocity_and_the_printed_one_is_n
     # Velocities up to 400 mm/s with the rounding of two solves, condition number below 100 and 4000 for the
     # two formulations, over h; no truncation is left.
     tolerance = 2.1 * 64 * EPS * 400.0 * 4000.0 / h
-    for method in METHODS:
-        assert gaps[method] <= tolerance
+    for method in ALL[:-1]:
+        assert gaps[method.name] <= tolerance
     # Eq. (23) lacks a factor of two and repeats a row: off by more than any rounding.
     assert gaps[PRINTED.name] > 1e3 * tolerance
     assert gaps[PRINTED.name] > 1.0  # mm/s^2
@@ -70,7 +70,7 @@ def test_square_velocity_term_is_the_second_difference_of_the_constraints(strut:
 
 
 def test_unknown_method_is_refused_with_the_methods_that_exist(make_scene: Callable[..., Scene]) -> None:
-    with pytest.raises(UnknownName, match="series, newton"):
+    with pytest.raises(UnknownName, match="series, map, newton"):
         simulate(make_scene(), "newtom")
 
 
@@ -83,7 +83,8 @@ def test_newton_at_every_instant_ends_at_rounding(make_scene: Callable[..., Scen
     assert again.first_step <= motion.start.bound
 
 
-@pytest.mark.parametrize("method", METHODS)
+# So near a fold no patch of a map can be proven.
+@pytest.mark.parametrize("method", [name for name in METHODS if name != MAP.name])
 @pytest.mark.parametrize("short", [1e-5, 1e-8])
 def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
     make_scene: Callable[..., Scene], strut: Mechanism, method: Method, short: float
