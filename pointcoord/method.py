@@ -30,6 +30,7 @@ class Method:
         by_map: series in the inputs along their way, dense in time as well; beside `by_series`, only where a
             chain is too long or no step of it follows an input.
         at_instants: how these are solved for.
+        map_effort: factorisations that a map may take at most; as `patches.way_map` has it if not given.
         suspensions: those that it can solve, by type, with the closures that it can.
         only: why there are no others, in words.
         square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
@@ -41,6 +42,7 @@ class Method:
     by_series: bool = False
     by_map: bool = False
     at_instants: InstantSolver = solve_instants
+    map_effort: int | None = None
     suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
     only: str = ""
     square_velocity_term: SquareVelocityTerm = square_velocity_term

@@ -233,7 +233,8 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     readout, time = task.readout, task.scene.time
     mechanism = readout.mechanism
     limits = map_limits(task.scene, mechanism, readout.plan.derivative)
-    way = map_way(mechanism, task.functions, task.start, time.start, time.stop, limits)
+    span, effort = (time.start, time.stop), task.method.map_effort
+    way = map_way(mechanism, task.functions, task.start, *span, limits, effort)
     notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
     states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
     if way.reason:

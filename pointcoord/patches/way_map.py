@@ -94,12 +94,14 @@ def map_way(
     start: float,
     stop: float,
     limits: Limits,
+    effort: int | None = None,
 ) -> WayMap:
     """Cover the way of the inputs from an assembled pose on.
 
     Args:
         functions: of the inputs that drive the mechanism.
         pose: assembled at `start`.
+        effort: factorisations after which nothing more is tried; `ENOUGH` if not given.
     Raises:
         InputOutOfRange: an input that on its way leaves the values for which it has a meaning.
     """
@@ -126,7 +128,15 @@ def map_way(
     first = np.array([float(functions[name].series(start, 0)[..., 0]) for name in domain.free])
     least, most = domain.ends
     twice = np.clip(np.round((first - least) / (most - least) * 2 * domain.parts), 0, 2 * domain.parts)
-    cover = flood(domain, order, limits, (twice.astype(np.int64), pose.y), MOST, wanted, ENOUGH)
+    cover = flood(
+        domain,
+        order,
+        limits,
+        (twice.astype(np.int64), pose.y),
+        MOST,
+        wanted,
+        ENOUGH if effort is None else effort,
+    )
     reasons = tuple(dict.fromkeys(reason for _, reason in cover.given_up))
     patches = cover.patches
     if patches is None:

@@ -41,11 +41,14 @@ class Trial:
 
     Attributes:
         facts: what else was measured there, by name with its unit.
+        judge: holds the answer of another formulation for the same scene to the same reference; None where
+            there is no one scene, or nothing to hold an answer to.
     """
 
     value: float
     answers: tuple[Answer, ...]
     facts: Mapping[str, float | str] = field(default_factory=dict)
+    judge: Callable[[str], Answer] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,13 @@ from dataclasses import asdict
 from typing import Any, get_args
 
 from validate.hard.case import Answer, Case, Expected, Outcome
-from validate.hard.run import Examined, as_expected, counts
+from validate.hard.run import MAP, OURS, Examined, as_expected, counts, refusals
 from validate.output.report import table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
-# The formulation that is held against the others where they give up.
-OURS, OTHERS = "pointcoord", ("absolute", "relative")
+# Those that are held against ours where they give up.
+OTHERS = ("absolute", "relative")
 
 
 # What nothing has to be said of.
@@ -143,6 +143,10 @@ def summary_text(results: Sequence[Examined]) -> str:
         f"{numbered(len(results), 'case')}, {numbered(trials, 'scene')}:",
         table(("formulation", "answers", *OUTCOMES), rows),
     ]
+    refused = refusals(results, MAP)
+    if refused:
+        kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
+        lines.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
     wrong = sum(len(result.wrong) for result in results)
     other = [result for result in results if result.unexpected or result.wrong]
     if as_expected(results):

@@ -5,10 +5,22 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
-from validate.hard.case import Answer, Case, Trial, unexpected, wrong_without_warning
+from validate.hard.case import (
+    REFUSED,
+    RIGHT_OR_REFUSED,
+    Answer,
+    Case,
+    Expected,
+    Trial,
+    unexpected,
+    wrong_without_warning,
+)
+
+# Every case that pointcoord has to solve is tried by a map of the inputs too.
+OURS, MAP = "pointcoord", "pointcoord-map"
 
 
 @dataclass(frozen=True)
@@ -44,14 +56,34 @@ class Examined:
 
 
 def examine(case: Case) -> Examined:
-    """Try all values of a case.
+    """Try all values of a case; a few of them by a map of the inputs too, whatever the case itself tries.
 
     Raises:
         MissingPackage: a formulation of the case is not installed.
     """
     began = time.perf_counter()
-    trials = tuple(_tried(case, value) for value in case.values)
+    chosen = _few(case.values)
+    trials = tuple(_also_by_map(case, _tried(case, value), value in chosen) for value in case.values)
+    if any(answer.formulation == MAP for trial in trials for answer in trial.answers):
+        case = replace(case, expected={**case.expected, MAP: _of_map(case)})
     return Examined(case, trials, time.perf_counter() - began)
+
+
+def _few(values: Sequence[float]) -> tuple[float, ...]:
+    """The first, the middle and the last."""
+    return (values[0], values[len(values) // 2], values[-1])
+
+
+def _of_map(case: Case) -> Expected:
+    """A map may be refused, its effort being bounded; it answers only where the other method may."""
+    return RIGHT_OR_REFUSED if "right" in case.expected[OURS].outcomes else REFUSED
+
+
+def _also_by_map(case: Case, trial: Trial, chosen: bool) -> Trial:
+    """The trial with what a map of the inputs answers, where that is to be tried and can be judged."""
+    if not chosen or trial.judge is None or OURS not in case.expected or MAP in case.expected:
+        return trial
+    return replace(trial, answers=(*trial.answers, trial.judge(MAP)))
 
 
 def _tried(case: Case, value: float) -> Trial:
@@ -83,6 +115,12 @@ def counts(results: Iterable[Examined]) -> dict[str, Counter[str]]:
             for answer in trial.answers:
                 found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
     return found
+
+
+def refusals(results: Iterable[Examined], formulation: str) -> Counter[str]:
+    """How often a formulation refused, by the kind of error that its reason begins with."""
+    given = (answer for result in results for _, answer in result.answers(formulation))
+    return Counter(answer.reason.partition(":")[0] for answer in given if answer.outcome == "refused")
 
 
 def as_expected(results: Iterable[Examined]) -> bool:

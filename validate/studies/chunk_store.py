@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+OURS = "pointcoord"
 CHUNK = 20  # scenes: a few seconds of work, which is all that a kill can cost
 
 
@@ -65,11 +66,16 @@ class Record:
 
 
 class Store:
-    """A file of JSON lines; several processes may append to it at once."""
+    """A file of JSON lines; several processes may append to it at once.
 
-    def __init__(self, path: Path, seed: int) -> None:
+    Attributes:
+        seed: of the scenes. ours: pointcoord's method that they are solved by.
+    """
+
+    def __init__(self, path: Path, seed: int, ours: str = OURS) -> None:
         self.path = path
         self.seed = seed
+        self.ours = ours
 
     def append(self, line: Mapping[str, Any]) -> None:
         """Write one line by a single write at the end of the file.
@@ -102,6 +108,7 @@ class Store:
             {
                 "chunk": chunk.number,
                 "seed": self.seed,
+                "ours": self.ours,
                 "outcomes": dict(chunk.outcomes),
                 "shares": {name: list(share) for name, share in chunk.shares.items()},
                 "found": list(chunk.found),
@@ -136,6 +143,12 @@ class Store:
                     raise StoreError(
                         f"{self.path}: line {number} has scenes of seed {line['seed']}, this program makes "
                         f"those of seed {self.seed}; give another file"
+                    )
+                # Older stores do not say: there was one method.
+                if (ours := line.get("ours", OURS)) != self.ours:
+                    raise StoreError(
+                        f"{self.path}: line {number} has scenes solved by {ours}, not by {self.ours}; "
+                        "give another file"
                     )
                 record.chunks[chunk.number] = chunk
             elif isinstance(line, dict) and "scene" in line:

@@ -1,13 +1,14 @@
 """Random scenes by the hundred thousand through both models.
 
     python -m validate.studies.random_runs --store FILE
+    python -m validate.studies.random_runs --store FILE --ours pointcoord-map --count 60
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
 in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
 to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
 
 The store goes on where it ended, whatever ended it. It belongs to one state of the models: after a change to
-them give another file.
+them, or for another of pointcoord's methods, give another file.
 """
 
 from __future__ import annotations
@@ -41,9 +42,10 @@ from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
 from validate.output.report import table
-from validate.studies.chunk_store import CHUNK, Chunk, Record, Store, StoreError
+from validate.studies.chunk_store import CHUNK, OURS, Chunk, Record, Store, StoreError
 
-MODELS = ("pointcoord", "absolute")
+OTHER = "absolute"
+METHODS = (OURS, "pointcoord-map", "pointcoord-newton")
 ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 HELD = 20  # every so many scenes are held to the reference although both models agree
 # What makes the status 1; an answer that stands alone and is wrong is one of them.
@@ -78,10 +80,14 @@ class Result:
     kept: bool
 
 
-def examine(car: RandomScene) -> Result:
-    """Solve one scene by both models and say what came of it."""
+def examine(car: RandomScene, ours: str = OURS) -> Result:
+    """Solve one scene by both models and say what came of it.
+
+    Args:
+        ours: by which of pointcoord's methods.
+    """
     answers: list[Solution | FormulationError] = []
-    for name in MODELS:
+    for name in (ours, OTHER):
         try:
             answers.append(_solved(name, car))
         except FormulationError as error:
@@ -167,7 +173,7 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
     found = []
     for index in range(number * CHUNK, (number + 1) * CHUNK):
         car = random_scene(index)
-        result = examine(car)
+        result = examine(car, store.ours)
         outcomes[f"{car.variant.words}/{car.kind}/{result.outcome}"] += 1
         for quantity, share in result.shares.items():
             shares[quantity] = max(shares.get(quantity, (share, index)), (share, index))
@@ -188,21 +194,23 @@ def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
     return chunk
 
 
-def _work(numbers: Sequence[int], path: Path, known: frozenset[int], parent: int) -> None:
+def _work(numbers: Sequence[int], path: Path, known: frozenset[int], parent: int, ours: str) -> None:
     for number in numbers:
-        run_chunk(number, Store(path, SEED), known)
+        run_chunk(number, Store(path, SEED, ours), known)
         # A worker whose parent was killed would go on unseen, beside the run that is started next.
         if os.getppid() != parent:
             return
 
 
-def run(count: int, path: Path, workers: int = 1) -> int:
+def run(count: int, path: Path, workers: int = 1, ours: str = OURS) -> int:
     """Do what is missing of the first `count` scenes, print the table, return the exit status.
 
+    Args:
+        ours: by which of pointcoord's methods; a store holds the scenes of one.
     Raises:
         StoreError: the store cannot be used, or a worker died.
     """
-    store = Store(path, SEED)
+    store = Store(path, SEED, ours)
     record = store.read()
     wanted = range(-(-count // CHUNK))
     missing = [n for n in wanted if n not in record.chunks]
@@ -213,7 +221,9 @@ def run(count: int, path: Path, workers: int = 1) -> int:
     else:
         context = multiprocessing.get_context("spawn")
         crew = [
-            context.Process(target=_work, args=(missing[i::workers], path, known, os.getpid()), daemon=True)
+            context.Process(
+                target=_work, args=(missing[i::workers], path, known, os.getpid(), ours), daemon=True
+            )
             for i in range(workers)
         ]
         for process in crew:
@@ -280,12 +290,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--count", type=int, default=100_000, help=f"scenes, rounded up to {CHUNK}s; 0: the table only"
     )
     parser.add_argument("--store", type=Path, required=True, help="file of JSON lines; goes on where it ends")
+    parser.add_argument("--ours", choices=METHODS, default=OURS, help="by which of pointcoord's methods")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     options = parser.parse_args(arguments)
     if options.count < 0 or options.workers < 1:
         parser.error(f"--count {options.count} --workers {options.workers}: allowed: from 0, from 1")
     try:
-        return run(options.count, options.store, options.workers)
+        return run(options.count, options.store, options.workers, options.ours)
     except StoreError as error:
         print(f"validate.studies.random_runs: {error}", file=sys.stderr)
         return 2

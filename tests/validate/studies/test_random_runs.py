@@ -87,7 +87,7 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
     scene = Scene.load("bounce-and-steer")
     time = scene.time.model_copy(update={"samples": 3})
     scene = scene.model_copy(update={"time": time, "effects": ("velocity", "acceleration", "knuckle_rates")})
-    solutions = {name: formulation(name).solve(scene) for name in deep.MODELS}
+    solutions = {name: formulation(name).solve(scene) for name in (deep.OURS, deep.OTHER)}
     faulty = dict(solutions[model].numbers[quantity])
     name = next(iter(faulty))
     faulty[name] = faulty[name] + 1e-3
@@ -180,6 +180,34 @@ def test_results_of_another_recipe_are_not_mixed_in(tmp_path: Path) -> None:
     Store(path, SEED + 1).chunk(chunk(0))
     with pytest.raises(StoreError, match="seed"):
         Store(path, SEED).read()
+
+
+def test_results_of_another_method_are_not_mixed_in(tmp_path: Path) -> None:
+    path = tmp_path / "store.jsonl"
+    Store(path, SEED, "pointcoord-map").chunk(chunk(0))
+    assert Store(path, SEED, "pointcoord-map").read().chunks
+    with pytest.raises(StoreError, match=r"solved by pointcoord-map, not by pointcoord; give another file"):
+        Store(path, SEED).read()
+
+
+def test_scenes_can_be_solved_through_the_map_and_its_faults_are_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    car = next(c for c in map(random_scene, range(20)) if deep.examine(c).outcome.startswith("agreed"))
+    assert deep.examine(car, "pointcoord-map").outcome.startswith("agreed")
+    honest = deep._solved
+
+    def off(name: str, car: RandomScene) -> Solution:
+        solution = honest(name, car)
+        if name != "pointcoord-map":
+            return solution
+        moved = solution.position["wheel_centre"] + 1e-3
+        return solution.with_numbers({"position": {**solution.position, "wheel_centre": moved}})
+
+    monkeypatch.setattr(deep, "_solved", off)
+    found = deep.examine(car, "pointcoord-map")
+    assert found.outcome == "disagreed in position: pointcoord-map wrong"
+    assert deep.examine(car).outcome.startswith("agreed")
 
 
 def test_the_status_says_whether_any_disagreed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,7 +7,7 @@ exist. The literature reduces this strut to a polynomial of degree 64, which bou
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from functools import cache, partial
 
 import numpy as np
@@ -90,7 +90,7 @@ def counted(share: float, pose: Callable[[float, str], tuple[float, float]], car
         "starts": float(listed.starts),
         "signs of their choices": "; ".join(signs(one.choices) for one in listed.found),
     }
-    return Trial(share, trial.answers, {**trial.facts, **facts})
+    return replace(trial, facts={**trial.facts, **facts})
 
 
 def signs(choices: Choices) -> str:

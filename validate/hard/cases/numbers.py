@@ -74,7 +74,7 @@ def everywhere(number: object, car: str = "paper") -> Callable[[float], Trial]:
     def examine(value: float) -> Trial:
         place = places(car)[int(value) - 1]
         trial = try_scene(value, with_number(place, number, car), SOLVERS)
-        return Trial(value, trial.answers, {**trial.facts, "place": told(place)})
+        return replace(trial, facts={**trial.facts, "place": told(place)})
 
     return examine
 
@@ -99,7 +99,7 @@ def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Call
         onto, moved = pairs[int(value) - 1]
         there = replace(car, points={**car.points, moved: car.points[onto]})
         trial = try_scene(value, scene_content(there, 1.65), SOLVERS)
-        return Trial(value, trial.answers, {**trial.facts, "place": f"{moved} on {onto}"})
+        return replace(trial, facts={**trial.facts, "place": f"{moved} on {onto}"})
 
     return examine
 

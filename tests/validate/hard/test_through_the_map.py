@@ -1,0 +1,104 @@
+"""Hard cases go through the map of the inputs too, with bounded effort, and its wrong numbers are found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.hard import trial
+from validate.hard.cars import paper_car
+from validate.hard.case import REFUSED, RIGHT, Case, decades
+from validate.hard.report import summary_text
+from validate.hard.run import MAP, OURS, as_expected, examine
+from validate.hard.trial import scene_case
+
+
+def steered(far: Callable[[float], float], expected: str = OURS) -> Case:
+    """A case that holds the rack somewhere while the arm turns."""
+    return scene_case(
+        name="steered",
+        group="0. Made",
+        why="it is made",
+        parameter="rack travel, mm",
+        values=decades(-6),
+        scene=lambda value: paper_car([1.5, 0.1], far(value), stop=0.2, samples=2),
+        expected={expected: RIGHT},
+        behaviour="right",
+    )
+
+
+def map_instead(monkeypatch: pytest.MonkeyPatch, change: Callable[[Solution], Solution]) -> None:
+    """Put something in the place of the map, and leave the others."""
+
+    class Stand:
+        name = MAP
+
+        def solve(self, scene: Scene) -> Solution:
+            return change(replace(formulation(OURS).solve(scene), formulation=MAP))
+
+    monkeypatch.setattr(trial, "formulation", lambda name: Stand() if name == MAP else formulation(name))
+
+
+def test_the_first_the_middle_and_the_last_value_are_tried_and_are_right() -> None:
+    result = examine(steered(lambda value: value))
+    assert [(value, a.outcome) for value, a in result.answers(MAP)] == [
+        (1.0, "right"),
+        (1e-3, "right"),
+        (1e-6, "right"),
+    ]
+    assert len(result.answers(OURS)) == 7
+    assert as_expected([result])
+
+
+def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def off(solution: Solution) -> Solution:
+        moved = {n: np.array(a) for n, a in solution.numbers["acceleration"].items()}
+        moved["wheel_centre"][-1, 2] += 1e-6
+        return solution.with_numbers({"acceleration": moved})
+
+    map_instead(monkeypatch, off)
+    result = examine(steered(lambda value: value))
+    assert {(a.formulation, a.outcome) for _, a in result.unexpected} == {(MAP, "wrong")}
+    assert len(result.wrong) == 3
+    assert not as_expected([result])
+
+
+def test_what_the_map_answers_where_there_is_no_pose_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    beyond = replace(steered(lambda value: 131.0 + value), expected={OURS: REFUSED})
+    honest = examine(beyond)
+    assert {a.outcome for _, a in honest.answers(MAP)} == {"refused"}
+    assert as_expected([honest])
+    drawn = formulation(OURS).solve(Scene.from_mapping(paper_car([1.5, 0.1], stop=0.2, samples=2)))
+
+    class MadeUp:
+        def solve(self, scene: Scene) -> Solution:
+            return drawn
+
+    monkeypatch.setattr(trial, "formulation", lambda name: MadeUp() if name == MAP else formulation(name))
+    made_up = examine(beyond)
+    assert {a.outcome for _, a in made_up.answers(MAP)} == {"wrong"}
+    assert not as_expected([made_up])
+
+
+def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(trial, "MAP_EFFORT", 0)
+    result = examine(steered(lambda value: value))
+    assert {a.outcome for _, a in result.answers(MAP)} == {"refused"}
+    assert as_expected([result])
+    assert "Refused by the map, whose effort is bounded here: 3 MotionNotMapped." in summary_text([result])
+
+
+def test_a_case_that_pointcoord_does_not_try_is_not_tried_by_the_map() -> None:
+    result = examine(replace(steered(lambda value: value, "absolute"), values=(1.0,)))
+    assert not result.answers(MAP)
+    assert MAP not in result.case.expected
