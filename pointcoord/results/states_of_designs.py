@@ -82,18 +82,16 @@ class StatesOfDesigns(StatesOfChain):
         for segment, low, high in zip(segments, edges[:-1], edges[1:], strict=True):
             if low == high:
                 continue
-            # Coordinate, designs, orders; the designs side by side in memory.
-            scaled = np.multiply(segment.coefficients.transpose(1, 2, 0), mechanism.unit, order="C")
-            series = scaled.transpose(1, 2, 0)
             s = (instants[low:high] - segment.start) / segment.scale
-            powers = _powers(s, segment.scale, series.shape[-1], len(orders))
+            powers = _powers(s, segment.scale, segment.order + 1, len(orders))
+            series: dict[str, Array] = {}
             for (order, name), place in wanted.items():
-                first = mechanism.layout.vector(name)[0]
-                np.matmul(
-                    series[first : first + 3],
-                    powers[order],
-                    out=place[:, :, low:high].swapaxes(0, 1),
-                )
+                if name not in series:
+                    first = mechanism.layout.vector(name)[0]
+                    own = segment.coefficients[..., first : first + 3].transpose(1, 2, 0)
+                    # Axis, designs, orders; the designs side by side in memory.
+                    series[name] = np.multiply(own, mechanism.unit, order="C").transpose(1, 2, 0)
+                np.matmul(series[name], powers[order], out=place[..., low:high].swapaxes(0, 1))
 
     def _carry(self, part: slice, found: Mapping[State, Array]) -> None:
         """Put together carried states of some designs from those of their carriers, (designs, 3, N), mm."""
