@@ -1,5 +1,11 @@
 """States of the points of many designs, at few instants each.
 
+The series of many designs lie with the designs side by side, so that one matrix product for each coordinate
+sums it for all designs, where it belongs in their tables. Powers of time differ by derivative, and the
+coefficients do not:
+
+    d^n/dt^n sum_k c_k s^k = sum_k c_k k! / (k - n)! s^(k-n) / scale^n,      s = (t - start) / scale.
+
 The series of a carried point takes as many products as its orders have pairs, in each segment of each design.
 At a hundred instants it is less to sum the series of its carriers, which are wanted anyway, and to put
 together at each instant what rides on them,
@@ -10,6 +16,7 @@ together at each instant what rides on them,
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
@@ -18,10 +25,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.results.states import StatesOfChain
-from pointcoord.results.table import vectors
-from pointcoord.solve.dense_output import SeriesRows
+from pointcoord.results.table import State, vectors
 
 Array = NDArray[np.float64]
+
+# Designs whose carried points are put together at a time: at a hundred instants what lies between stays in a
+# second-level cache.
+CARRIED = 32
 
 
 @dataclass(frozen=True)
@@ -30,70 +40,111 @@ class StatesOfDesigns(StatesOfChain):
 
     def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
         """States at instants of the chain, shape (N,), that do not decrease."""
-        readout, (series, names) = self.readout, self._solved
-        table, topology, batch = readout.table, readout.mechanism.topology, series.shape[:-1]
+        table, batch, count = self.readout.table, self.chain.segments[0].coefficients.shape[0], len(instants)
         if rows is None:
-            rows = np.empty((*batch, table.height, len(instants)))
-        sums = np.empty((*series.shape, len(instants)))
-        series.sum(instants, sums)
-        found = [dict[str, Array]() for _ in range(readout.plan.derivative + 1)]
-        for i, (order, name) in enumerate(names):
-            found[order][name] = sums[..., 3 * i : 3 * i + 3, :]
-        wanted = {*table.moving, *table.spare}
-        for name in topology.carried:
-            for order in range(len(found)):
-                if (order, name) in wanted:
-                    found[order][name] = self._carried(name, order, found)
-        rows[..., table.first_still :, :] = self.still
-        states: list[dict[str, Array]] = [
-            {name: state.swapaxes(-1, -2) for name, state in each.items()} for each in found
-        ]
-        for first, (order, name) in table.states:
-            if name in found[order]:
-                rows[..., first : first + 3, :] = found[order][name]
-            states[order][name] = vectors(rows, first)
+            rows = np.empty((batch, table.height, count))
+        rows[:, table.first_still :, :] = self.still
+        found = {state: rows[:, first : first + 3, :] for first, state in table.states}
+        solved, carried = self._wanted
+        spare = [state for state in (*solved, *carried) if state not in found]
+        room = np.empty((batch, 3 * len(spare), count))
+        found |= {state: room[:, 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
+        self._sum(instants, {state: found[state] for state in solved})
+        for low in range(0, batch, CARRIED):
+            part = slice(low, low + CARRIED)
+            self._carry(part, {state: place[part] for state, place in found.items()})
+        states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
+        for (order, name), place in found.items():
+            states[order][name] = vectors(place, 0)
         for i, (order, name) in enumerate(table.spare_still):
-            place = self._spare_still[..., i, None, :]
-            states[order][name] = np.broadcast_to(place, (*batch, len(instants), 3))
+            still = self._spare_still[..., i, None, :]
+            states[order][name] = np.broadcast_to(still, (batch, count, 3))
         return states
 
-    def _carried(self, name: str, order: int, found: list[dict[str, Array]]) -> Array:
-        """A derivative of a carried point from those of its carriers, each (designs, 3, N), mm."""
-        mechanism = self.readout.mechanism
-        base, first, second = mechanism.topology.carried[name]
-        a, b, c = (mechanism.carrier_weights[name][:, i, None, None] for i in range(3))
-        edges = [
-            tuple(state[point] - state[base] for point in (first, second)) for state in found[: order + 1]
-        ]
-        normal = np.zeros_like(found[order][base])
-        for i in range(order + 1):
-            _add_cross(normal, float(comb(order, i)), edges[i][0], edges[order - i][1])
-        # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
-        scale = c / mechanism.unit[:, None, None]
-        return np.asarray(found[order][base] + a * edges[order][0] + b * edges[order][1] + scale * normal)
-
     @cached_property
-    def _solved(self) -> tuple[SeriesRows, list[tuple[int, str]]]:
-        """The series of the points that are solved for, and which states they are, mm."""
-        mechanism, table = self.readout.mechanism, self.readout.table
-        layout, topology = mechanism.layout, mechanism.topology
+    def _wanted(self) -> tuple[list[State], list[State]]:
+        """The states that are summed, and those that are carried by them."""
+        table, topology = self.readout.table, self.readout.mechanism.topology
         highest = dict.fromkeys(topology.moving, -1)
         for order, name in (*table.moving, *table.spare):
             for point in topology.carried.get(name, (name,)):
                 highest[point] = max(highest[point], order)
-        orders = range(self.readout.plan.derivative + 1)
-        names = [(d, point) for d in orders for point, most in highest.items() if most >= d]
-        unit = mechanism.unit[:, None, None]
-        places = [place for point in topology.moving for place in layout.vector(point)]
-        first = {point: 3 * i for i, point in enumerate(topology.moving)}
-        wanted = [
-            [first[point] + axis for own, point in names if own == d for axis in range(3)] for d in orders
-        ]
-        columns = [segment.coefficients[..., places] * unit for segment in self.chain.segments]
-        return SeriesRows.of(self.chain, columns, wanted), names
+        solved = [(order, point) for point, most in highest.items() for order in range(most + 1)]
+        carried = [state for state in (*table.moving, *table.spare) if state[1] in topology.carried]
+        return solved, carried
+
+    def _sum(self, instants: Array, wanted: Mapping[State, Array]) -> None:
+        """Sum the series of states of points that are solved for, each into (designs, 3, N), mm."""
+        segments, mechanism = self.chain.segments, self.readout.mechanism
+        orders = range(max((order for order, _ in wanted), default=-1) + 1)
+        starts = [segment.start for segment in segments[1:]]
+        edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
+        for segment, low, high in zip(segments, edges[:-1], edges[1:], strict=True):
+            if low == high:
+                continue
+            s = (instants[low:high] - segment.start) / segment.scale
+            powers = _powers(s, segment.scale, segment.order + 1, len(orders))
+            series: dict[str, Array] = {}
+            for (order, name), place in wanted.items():
+                if name not in series:
+                    first = mechanism.layout.vector(name)[0]
+                    own = segment.coefficients[..., first : first + 3].transpose(1, 2, 0)
+                    # Axis, designs, orders; the designs side by side in memory.
+                    series[name] = np.multiply(own, mechanism.unit, order="C").transpose(1, 2, 0)
+                np.matmul(series[name], powers[order], out=place[..., low:high].swapaxes(0, 1))
+
+    def _carry(self, part: slice, found: Mapping[State, Array]) -> None:
+        """Put together carried states of some designs from those of their carriers, (designs, 3, N), mm."""
+        mechanism, (_, carried) = self.readout.mechanism, self._wanted
+        unit = mechanism.unit[part, None, None]
+        edges: dict[tuple[int, str, str], Array] = {}
+        normals: dict[tuple[int, tuple[str, str, str]], Array] = {}
+
+        def edge(order: int, base: str, point: str) -> Array:
+            key = order, base, point
+            if key not in edges:
+                edges[key] = found[order, point] - found[order, base]
+            return edges[key]
+
+        def normal(order: int, carriers: tuple[str, str, str]) -> Array:
+            key, (base, first, second) = (order, carriers), carriers
+            if key not in normals:
+                total = normals[key] = np.zeros_like(edge(order, base, first))
+                for i in range(order + 1):
+                    crossed = edge(i, base, first), edge(order - i, base, second)
+                    _add_cross(total, float(comb(order, i)), *crossed)
+            return normals[key]
+
+        for order, name in carried:
+            carriers = base, first, second = mechanism.topology.carried[name]
+            a, b, c = (mechanism.carrier_weights[name][part, i, None, None] for i in range(3))
+            place = found[order, name]
+            np.multiply(edge(order, base, first), a, out=place)
+            place += b * edge(order, base, second)
+            # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
+            place += (c / unit) * normal(order, carriers)
+            place += found[order, base]
+
+
+def _powers(s: Array, scale: float, terms: int, derivatives: int) -> list[Array]:
+    """Powers of s, shape (N,), and what becomes of them in each time derivative, each (terms, N)."""
+    powers = np.ones((terms, len(s)))
+    for k in range(1, terms):
+        np.multiply(powers[k - 1], s, out=powers[k])
+    found = [powers]
+    factors = np.arange(1.0, terms)[:, None] / scale
+    for _ in range(derivatives - 1):
+        lower = np.zeros_like(powers)
+        np.multiply(found[-1][:-1], factors, out=lower[1:])
+        found.append(lower)
+    return found
 
 
 def _add_cross(total: Array, factor: float, a: Array, b: Array) -> None:
     """Add factor a x b, all (designs, 3, N)."""
     for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
-        total[:, i] += factor * (a[:, j] * b[:, k] - a[:, k] * b[:, j])
+        crossed = a[:, j] * b[:, k]
+        crossed -= a[:, k] * b[:, j]
+        if factor != 1.0:
+            crossed *= factor
+        total[:, i] += crossed

@@ -58,8 +58,8 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 Points = Mapping[str, Array]
 
-# Designs that are solved together at most: of 64 to 2048 tried, the quickest or near it.
-TOGETHER = 256
+# Designs that are solved together at most: of 128 to 2048 tried, the quickest or near it.
+TOGETHER = 1024
 # Bytes that solving takes on the way: of a design for its matrices, series and their products, and of a
 # number of the results at an instant for what the effects are made of.
 OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
@@ -384,7 +384,12 @@ class _Block:
 
     def _note_missing(self, members: Numbers) -> None:
         """Note which numbers are none, and why."""
-        rows = self.rows[members - self.first]
+        if not len(members):
+            return
+        places = members - self.first
+        # Neighbours are looked at where they are: a copy of all numbers would cost as much as computing them.
+        apart = places[-1] - places[0] != len(places) - 1
+        rows = self.rows[places] if apart else self.rows[places[0] : places[-1] + 1]
         # A sum of numbers may overflow and be looked at for nothing, but none that is no number is missed.
         with np.errstate(over="ignore", invalid="ignore"):
             if np.isfinite(rows.sum()):
