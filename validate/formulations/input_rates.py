@@ -12,7 +12,6 @@ from math import perm
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from pointcoord.scene.scene_file import InputPart, SinePart
 from validate.extras import MissingPackage
@@ -40,6 +39,9 @@ def rates(part: InputPart, times: Array) -> Array:
     """
     instants = np.asarray(times, dtype=float)
     if part.table is not None:
+        # Imported here: it takes several times as long as numpy, and few scenes have a table.
+        from scipy.interpolate import CubicSpline
+
         with np.errstate(over="ignore", invalid="ignore"):
             spline = CubicSpline(part.table.times, part.table.values)
             return np.stack([spline(instants), spline(instants, 1), spline(instants, 2)], axis=-1)
