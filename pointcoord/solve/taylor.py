@@ -540,6 +540,7 @@ def _gone_on(logs: Array) -> Array:
     before. Terms that end for good, of which the last window has none, stay missing.
     """
     window, fall = _fall(logs)
+    window = max(window, 2)  # a series of three terms has but one before these two
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
     last = (later - fall * ahead).max(axis=-1)
     before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
@@ -571,6 +572,7 @@ def last_magnitudes(series: Array) -> Array:
     """
     sizes = np.abs(series)
     window, fall = _fall(_log_sizes(series))
+    window = max(window, 2)  # as in `_gone_on`
     later = sizes[-window:]
     ahead = np.exp(-fall[0] * np.arange(window - 1.0, -1.0, -1.0))[:, None]
     return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])

@@ -70,8 +70,9 @@ def given(solution: Solution, instants: Array) -> Given:
         notes.append(
             f"{who} gives {int(found.sum())} of {len(instants)} instants; the others are not compared"
         )
-    # For each instant found the first place of its time.
-    places = np.array([np.flatnonzero(times == t)[0] for t in instants[found]], dtype=np.intp)
+    # For each instant found the first place of its time: sorting keeps those of one time in their order.
+    order = np.argsort(times, kind="stable")
+    places = order[np.searchsorted(times, instants[found], side="left", sorter=order)]
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
     claims: Arrays = {quantity: {} for quantity in QUANTITIES}
     for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", notes).items():

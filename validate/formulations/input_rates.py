@@ -1,18 +1,18 @@
 """Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
 
-Polynomials and sines are taken in as many digits as they need to be rounded once: their terms may cancel,
-and an angle may be many turns. A table means scipy's cubic spline, for every model and for the reference.
+Polynomials and sines are rounded once, polynomials from fractions and sines from many digits where a longer
+format does not tell: terms may cancel, and an angle may be many turns. A table means scipy's cubic spline,
+for every model and for the reference.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from math import perm
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from pointcoord.scene.scene_file import InputPart, SinePart
 from validate.extras import MissingPackage
@@ -25,8 +25,7 @@ except ModuleNotFoundError as error:
 Array = NDArray[np.float64]
 Long = NDArray[np.longdouble]
 
-DIGITS = 40  # of a sine, beside those that its angle has before the point; half of them of a polynomial
-MOST_DIGITS = 1000  # terms that cancel further than this cancel to zero
+DIGITS = 40  # of a sine, beside those that its angle has before the point
 # Rounding unit of the longer format that numbers are tried in first; without one nothing is sure.
 LONG = float(np.finfo(np.longdouble).eps) / 2.0
 # Of a sine or cosine of that format, in such units: twice what the C library's own tests allow it.
@@ -40,6 +39,9 @@ def rates(part: InputPart, times: Array) -> Array:
     """
     instants = np.asarray(times, dtype=float)
     if part.table is not None:
+        # Imported here: it takes several times as long as numpy, and few scenes have a table.
+        from scipy.interpolate import CubicSpline
+
         with np.errstate(over="ignore", invalid="ignore"):
             spline = CubicSpline(part.table.times, part.table.values)
             return np.stack([spline(instants), spline(instants, 1), spline(instants, 2)], axis=-1)
@@ -80,10 +82,9 @@ def _exact_sine(wave: SinePart, t: float) -> list[float]:
 
 def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
     """A polynomial and its rates by Horner's rule, each rounded once."""
-    derivatives = [[mpmath.mpf(c) for c in coefficients]]
-    with mpmath.workdps(DIGITS):
-        for _ in range(2):
-            derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
+    derivatives = [[Fraction(c) for c in coefficients]]
+    for _ in range(2):
+        derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
     t = instants.astype(np.longdouble)
     sums: list[Long] = []
     sizes: list[Long] = []
@@ -91,7 +92,7 @@ def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
         for d in range(3):
             total, size = (np.zeros(t.shape, np.longdouble) for _ in range(2))
             for k in range(len(coefficients) - 1, d - 1, -1):
-                term = np.longdouble(coefficients[k]) * np.longdouble(perm(k, d))
+                term = np.longdouble(coefficients[k]) * np.longdouble(math.perm(k, d))
                 total, size = total * t + term, size * np.abs(t) + np.abs(term)
             sums.append(total)
             # A product and a sum of each power, and a coefficient, are rounded once each.
@@ -102,12 +103,12 @@ def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
 def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[[int, int], float]) -> Array:
     """Numbers of a longer format as the doubles nearest to what they stand for, shape (N, 3).
 
-    Where a number and what it may be off by could round to two doubles, many digits decide (Ziv, ACM
-    Transactions on Mathematical Software 17, 1991).
+    Where a number and what it may be off by could round to two doubles, many digits or fractions decide
+    (Ziv, ACM Transactions on Mathematical Software 17, 1991).
 
     Args:
-        sums: by derivative, (N,). doubts: how far they may be off. exact: one of them in many digits,
-            by instant and derivative.
+        sums: by derivative, (N,). doubts: how far they may be off. exact: one of them, by instant and
+            derivative.
     """
     total, doubt = np.stack(sums, axis=-1), np.stack(doubts, axis=-1)
     with np.errstate(all="ignore"):
@@ -120,14 +121,12 @@ def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[
     return found
 
 
-def _sum(coefficients: list[mpmath.mpf], t: float) -> float:
-    """Horner's rule with as many digits as the terms cancel, and `DIGITS` more."""
-    digits = DIGITS
-    while True:
-        with mpmath.workdps(digits):
-            total = size = mpmath.mpf(0)
-            for c in reversed(coefficients):
-                total, size = total * t + c, size * abs(t) + abs(c)
-            if digits >= MOST_DIGITS or abs(total) * mpmath.mpf(10) ** (digits - DIGITS // 2) >= size:
-                return float(total)
-            digits *= 2
+def _sum(coefficients: Sequence[Fraction], t: float) -> float:
+    """Horner's rule in fractions: digits, however many, leave a tie undecided that a tiny term decides."""
+    total, instant = Fraction(0), Fraction(t)
+    for c in reversed(coefficients):
+        total = total * instant + c
+    try:
+        return float(total)
+    except OverflowError:
+        return math.inf if total > 0 else -math.inf

@@ -47,6 +47,23 @@ def with_solution(make: Callable[[Scene], Any]) -> Outcome:
     return compare(SCENE, "pointcoord", Other())
 
 
+def test_instants_may_come_in_any_order_and_twice_and_the_first_number_of_each_counts() -> None:
+    # Backwards, and then all once more with numbers that would be wrong; every other instant is missing.
+    kept = np.arange(COUNT)[::-2]
+    places = np.concatenate([WHEEL[kept], WHEEL[kept] + 1.0])
+    times = np.tile(SCENE.instants[kept], 2)
+
+    def mine(scene: Scene) -> Solution:
+        claims = {"position": {"wheel_centre": np.full(places.shape, 1e-9)}}
+        return Solution(
+            "mine", times, {"position": {"wheel_centre": places}}, Accuracy(np.ones(len(times)), claims)
+        )
+
+    (row,) = (r for r in with_solution(mine).rows if (r.quantity, r.name) == ("position", "wheel_centre"))
+    assert row.share <= 1.0
+    assert row.instant in SCENE.instants[kept]
+
+
 SURE = Accuracy(np.ones(COUNT))
 
 
