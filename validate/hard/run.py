@@ -70,8 +70,8 @@ def examine(case: Case) -> Examined:
 
 
 def _few(values: Sequence[float]) -> tuple[float, ...]:
-    """The first, the middle and the last."""
-    return (values[0], values[len(values) // 2], values[-1])
+    """The one amid them and the last: each map takes longer than all else that a scene is tried by."""
+    return (values[len(values) // 2], values[-1])
 
 
 def _of_map(case: Case) -> Expected:

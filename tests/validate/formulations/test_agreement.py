@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, note
+from hypothesis import assume, given, note, settings
 
-from pointcoord import AssemblyError, InputOutOfRange, Scene, built_in_scenes, simulate
+from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene, built_in_scenes, simulate
 from validate.cars.car import moved, turned
 from validate.cars.scene_content import scene_content
 from validate.cars.strategies import scenes
@@ -24,6 +24,8 @@ PAIRS = [
     ("pointcoord", "absolute"),
     ("pointcoord-newton", "absolute"),
     ("pointcoord", "pointcoord-newton"),
+    ("pointcoord-map", "absolute"),
+    ("pointcoord-map", "relative"),
     ("pointcoord", "relative"),
     ("absolute", "relative"),
 ]
@@ -85,6 +87,18 @@ def test_series_and_newton_agree_on_random_cars_and_motions(scene: Scene) -> Non
         outcome = compare(scene, "pointcoord", "pointcoord-newton")
     except FormulationError as error:
         assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
+        raise
+    require_agreement(outcome)
+
+
+@settings(max_examples=10)
+@given(scenes(samples=3))
+def test_the_map_agrees_on_random_cars_and_motions(scene: Scene) -> None:
+    """A fold on the way of the inputs may keep a map from covering it; then it must say so."""
+    try:
+        outcome = compare(scene, "pointcoord-map", "absolute")
+    except FormulationError as error:
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange | MotionNotMapped))
         raise
     require_agreement(outcome)
 

@@ -9,7 +9,9 @@ import pytest
 
 import absolute
 import pointcoord.effects.rigid
+import pointcoord.patches.evaluation
 import pointcoord.results.readout
+import pointcoord.results.states_of_map
 import pointcoord.solve.dense_output
 import pointcoord.solve.taylor
 import validate.formulations.absolute_coordinates
@@ -80,6 +82,27 @@ def _wrong_derivative(patch: pytest.MonkeyPatch) -> None:
         return tables
 
     patch.setattr(pointcoord.solve.dense_output, "derivative_tables", wrong)
+
+
+def _in_powers_of_inputs(change: Callable[[list[np.ndarray], list[np.ndarray]], list[np.ndarray]]) -> Plant:
+    """In the powers that a map's series are summed with: those of the rates alone are handed over too."""
+    right = pointcoord.patches.evaluation.monomials
+
+    def wrong(states: list[np.ndarray], order: int, room: np.ndarray | None = None) -> list[np.ndarray]:
+        without_push = [*states[:2], *(np.zeros_like(state) for state in states[2:])]
+        return change(right(states, order), right(without_push, order))
+
+    return lambda patch: patch.setattr(pointcoord.patches.evaluation, "monomials", wrong)
+
+
+def _beside_the_middle(patch: pytest.MonkeyPatch) -> None:
+    """The series of a patch summed 1e-10 beside its middle."""
+    right = pointcoord.results.states_of_map.sum_rows
+
+    def wrong(tables: object, middle: np.ndarray, *rest: object) -> list[np.ndarray]:
+        return right(tables, middle + 1e-10, *rest)
+
+    patch.setattr(pointcoord.results.states_of_map, "sum_rows", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
@@ -252,6 +275,21 @@ FAULTS = {
         _half_square_term, "bounce", "acceleration", "pointcoord-newton"
     ),
     "a derivative k^2 for k (k-1)": Fault(_wrong_derivative, "steer", "acceleration"),
+    "a link 1e-7 mm too long, through the map": Fault(
+        _in_mechanism(_link_too_long), "bounce", "position", "pointcoord-map"
+    ),
+    "a patch summed beside its middle": Fault(_beside_the_middle, "bounce", "position", "pointcoord-map"),
+    "the curvature of the map counted half": Fault(
+        _in_powers_of_inputs(
+            lambda p, r: [*p[:2], *(a - 0.5 * b for a, b in zip(p[2:], r[2:], strict=True))]
+        ),
+        "bounce-and-steer",
+        "acceleration",
+        "pointcoord-map",
+    ),
+    "the inputs' second derivatives forgotten in the map": Fault(
+        _in_powers_of_inputs(lambda _, r: r), "bounce", "acceleration", "pointcoord-map"
+    ),
     "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
     "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
     "theta'' forgotten": Fault(_in_absolute_inputs(_without(2)), "bounce", "acceleration"),
