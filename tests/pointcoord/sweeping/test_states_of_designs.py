@@ -10,7 +10,7 @@ from pointcoord.method import SERIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.readout import Readout
 from pointcoord.results.states import StatesOfChain
-from pointcoord.results.states_of_designs import StatesOfDesigns
+from pointcoord.results.states_of_designs import CARRIED, StatesOfDesigns
 from pointcoord.simulation import chain_settings, pose_tolerance
 from pointcoord.solve.designs import solve_designs
 from pointcoord.sweeping.solving import Course
@@ -18,15 +18,16 @@ from pointcoord.sweeping.solving import Course
 
 @pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut", "steer"])
 @pytest.mark.parametrize("effects", [("velocity", "acceleration", "knuckle_rates", "wheel_angles"), ("toe",)])
+@pytest.mark.parametrize("count", [3, CARRIED + 8])
 @pytest.mark.parametrize("points", [None, ("wheel_centre", "lower_arm_front")])
 def test_states_of_designs_are_those_of_their_series(
-    name: str, effects: tuple[str, ...], points: tuple[str, ...] | None
+    name: str, effects: tuple[str, ...], points: tuple[str, ...] | None, count: int
 ) -> None:
     scene = Scene.load(name).model_copy(update={"effects": effects, "points": points})
-    designs = designs_of(scene, offsets={"tie_rod_outer.z": [-3.0, 0.0, 2.0]})
+    designs = designs_of(scene, offsets={"tie_rod_outer.z": np.linspace(-3.0, 2.0, count)})
     part, time = scene.mechanism, scene.time
     directions = {"up": part.up, "right": part.right}
-    mechanism = build_mechanism(part.topology, designs.points(np.arange(3)), directions)
+    mechanism = build_mechanism(part.topology, designs.points(np.arange(count)), directions)
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
     course = Course.of(designs)
     settings = chain_settings(scene, mechanism, course.plan.derivative)
