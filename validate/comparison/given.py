@@ -41,6 +41,8 @@ class Given:
     def at(self, instants: NDArray[np.bool_]) -> Given:
         """The same at fewer instants, a part of those that are found."""
         rows = instants[self.found]
+        if rows.all():
+            return self
         numbers, claims = (
             {
                 quantity: {name: array[rows] for name, array in part.items()}
