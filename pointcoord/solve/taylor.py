@@ -80,6 +80,8 @@ SEGMENT = 25.0
 POWERS, CUBIC = 3, 3
 # Last terms that are looked at for what follows, at least.
 WINDOW = 5
+# A series of fewer terms, of a single instant or of a car at rest, has too few for that.
+SHORT = 6
 # Segments up to which a motion is divided evenly; of more the last one hardly counts.
 FEW = 8
 # Share of the tolerance up to which Newton's method may stop short of a pose.
@@ -539,8 +541,9 @@ def _gone_on(logs: Array) -> Array:
     last WINDOW terms, or of more where more were missing at once, goes on as terms fell since the window
     before. Terms that end for good, of which the last window has none, stay missing.
     """
+    if logs.shape[-1] < SHORT:
+        return logs[:, -2:]
     window, fall = _fall(logs)
-    window = max(window, 2)  # a series of three terms has but one before these two
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
     last = (later - fall * ahead).max(axis=-1)
     before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
@@ -571,8 +574,9 @@ def last_magnitudes(series: Array) -> Array:
         series: coefficients, (order + 1, size).
     """
     sizes = np.abs(series)
+    if len(sizes) < SHORT:
+        return sizes[-2:]
     window, fall = _fall(_log_sizes(series))
-    window = max(window, 2)  # as in `_gone_on`
     later = sizes[-window:]
     ahead = np.exp(-fall[0] * np.arange(window - 1.0, -1.0, -1.0))[:, None]
     return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])

@@ -111,6 +111,11 @@ class Told:
         return self.law.breaks
 
     @property
+    def degree(self) -> int:
+        """The law's."""
+        return self.law.degree
+
+    @property
     def still(self) -> bool:
         """No."""
         return False

@@ -98,6 +98,7 @@ def test_the_printed_rows_cannot_follow_a_strut_through_the_horizontal() -> None
     assert outcomes == {
         "pointcoord": "right",
         "pointcoord-newton": "right",
+        "pointcoord-map": "right",
         "absolute": "right",
         "relative": "right",
         "printed": "refused",
