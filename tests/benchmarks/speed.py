@@ -190,17 +190,17 @@ class Figure:
 COPY, INVERSES, INVERSE = "a copy of the same bytes", "1,000 inverses of 15 x 15", "an inverse of 15 x 15"
 FIGURES = (
     Figure("dense, both rates", COPY, lambda: dense(BOTH_RATES), 2.0, 3.0),
-    Figure("dense, all effects", COPY, lambda: dense(tuple(EFFECTS)), 6.0, 6.0),
-    Figure("first answer", INVERSES, first_answer, 0.5, 1.3),
-    Figure("import", "numpy's own import", importing, 2.3, 3.0),
-    Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.5),
+    Figure("dense, all effects", COPY, lambda: dense(tuple(EFFECTS)), 6.0, 3.0),
+    Figure("first answer", INVERSES, first_answer, 0.5, 2.3),
+    Figure("import", "numpy's own import", importing, 2.3, 2.3),
+    Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
-    Figure("a pose by itself", INVERSE, one_by_one, 0.5, 1.0),
-    Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 14.0),
-    Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.5),
-    Figure("CSV", "pyarrow's CSV of the same table", csv, 3.0, 3.0),
-    Figure("a chain of many unknowns", "ten times one of a tenth", chain, 3.0, 4.0),
-    Figure("validate, from the shell", INVERSES, comparing, 150.0, 250.0),
+    Figure("a pose by itself", INVERSE, one_by_one, 0.5, 1.8),
+    Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
+    Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),
+    Figure("CSV", "pyarrow's CSV of the same table", csv, 3.0, 1.5),
+    Figure("a chain of many unknowns", "ten times one of a tenth", chain, 3.0, 2.5),
+    Figure("validate, from the shell", INVERSES, comparing, 150.0, 400.0),
 )
 
 

@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 Long = NDArray[np.longdouble]
 
 DIGITS = 40  # of a sine, beside those that its angle has before the point
+TRIED = (DIGITS, 4 * DIGITS)  # of a polynomial
 # Rounding unit of the longer format that numbers are tried in first; without one nothing is sure.
 LONG = float(np.finfo(np.longdouble).eps) / 2.0
 # Of a sine or cosine of that format, in such units: twice what the C library's own tests allow it.
@@ -82,9 +83,10 @@ def _exact_sine(wave: SinePart, t: float) -> list[float]:
 
 def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
     """A polynomial and its rates by Horner's rule, each rounded once."""
-    derivatives = [[Fraction(c) for c in coefficients]]
-    for _ in range(2):
-        derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
+    derivatives = [[mpmath.mpf(c) for c in coefficients]]
+    with mpmath.workdps(DIGITS):
+        for _ in range(2):
+            derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
     t = instants.astype(np.longdouble)
     sums: list[Long] = []
     sizes: list[Long] = []
@@ -116,17 +118,30 @@ def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[
         # A little more makes up for the rounding of the doubt itself and of these two sums.
         room = 1.001 * doubt + LONG * np.abs(total)
         sure = ((total - room).astype(float) == found) & ((total + room).astype(float) == found)
-    for i, d in np.argwhere(~(sure & np.isfinite(found))).tolist():
+    for i, d in np.argwhere(~sure).tolist():
         found[i, d] = exact(i, d)
     return found
 
 
-def _sum(coefficients: Sequence[Fraction], t: float) -> float:
-    """Horner's rule in fractions: digits, however many, leave a tie undecided that a tiny term decides."""
-    total, instant = Fraction(0), Fraction(t)
+def _sum(coefficients: Sequence[mpmath.mpf], t: float) -> float:
+    """Horner's rule with as many digits as tell to which double it rounds.
+
+    Digits, however many, leave a tie undecided that a tiny term decides: then in fractions.
+    """
+    for digits in TRIED:
+        with mpmath.workdps(digits):
+            total = size = mpmath.mpf(0)
+            for c in reversed(coefficients):
+                total, size = total * t + c, size * abs(t) + abs(c)
+            # A product and a sum of each power, each rounded to less than a unit of the last digit.
+            room = 2 * len(coefficients) * size * mpmath.mpf(10) ** (1 - digits)
+            low, high = float(total - room), float(total + room)
+        if low == high:
+            return low
+    exact, instant = Fraction(0), Fraction(t)
     for c in reversed(coefficients):
-        total = total * instant + c
+        exact = exact * instant + Fraction(*mpmath.libmp.to_rational(c._mpf_))
     try:
-        return float(total)
+        return float(exact)
     except OverflowError:
-        return math.inf if total > 0 else -math.inf
+        return math.inf if exact > 0 else -math.inf

@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Sweep
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import ALWAYS, QUANTITIES
 from pointcoord.sweeping.swept import Failure, Noted, merged
 
 Array = NDArray[np.float64]
 
+# What is told of the point that is always reported, and of drawings: angles of the car.
+PLACE = ALWAYS[0].quantities[0].name
+ANGLES = next(quantity.name for quantity in QUANTITIES.values() if quantity.of == "car")
 # Numbers of failed designs that are listed; a table of the sweep has all.
 LISTED = 10_000
 
@@ -59,11 +62,11 @@ class Summary:
 
     Attributes:
         total: how many designs were asked for.
-        wheel_centre: the point whose place is told.
+        told: the point whose place is told.
     """
 
     total: int
-    wheel_centre: str
+    told: str
     tried: int = 0
     instants: int = 0
     failed: list[int] = field(default_factory=list)
@@ -87,8 +90,8 @@ class Summary:
         for name, values in block.varied.items():
             _extend(self.varied, name, values, block.first)
         for name, values in block.drawn.items():
-            _extend(self.as_drawn, ("wheel", name), values, block.first)
-        for label, values in _told(block, self.wheel_centre):
+            _extend(self.as_drawn, (ANGLES, name), values, block.first)
+        for label, values in _told(block, self.told):
             _extend(self.in_motion, label, values, block.first)
 
     @property
@@ -151,7 +154,7 @@ class Summary:
         }
 
 
-def _told(block: Sweep, wheel_centre: str) -> Iterator[tuple[Label, Array]]:
+def _told(block: Sweep, point: str) -> Iterator[tuple[Label, Array]]:
     """The numbers whose ranges are told: of the car each, of a body its size, of the wheel where it is."""
     for quantity, channel in block.numbers.items():
         for name, array in channel.items():
@@ -159,10 +162,10 @@ def _told(block: Sweep, wheel_centre: str) -> Iterator[tuple[Label, Array]]:
                 yield (quantity, name), array
             elif channel.quantity.of == "body":
                 yield (quantity, f"size of {name}"), np.linalg.norm(array, axis=-1)
-            elif name == wheel_centre and quantity == "position":
+            elif name == point and quantity == PLACE:
                 for i, axis in enumerate("xyz"):
                     yield (quantity, f"{name}.{axis}"), array[..., i]
-            elif name == wheel_centre:
+            elif name == point:
                 yield (quantity, f"size of {name}"), np.linalg.norm(array, axis=-1)
 
 
@@ -179,7 +182,7 @@ def _data(extremes: Extremes | None) -> Mapping[str, float | int] | None:
 def _name(label: Label) -> str:
     quantity, name = label
     unit = QUANTITIES[quantity].unit
-    what = name if quantity == "wheel" else f"{QUANTITIES[quantity].words}, {name}"
+    what = name if quantity == ANGLES else f"{QUANTITIES[quantity].words}, {name}"
     return f"{what} [{'deg' if unit == 'rad' else unit}]"
 
 

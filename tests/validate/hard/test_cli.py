@@ -49,7 +49,10 @@ def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest
     (case,) = data["cases"]
     assert case["name"] == "at-rest"
     assert len(case["trials"]) == len(case["values"]) == 13
-    assert all(len(trial["answers"]) == 4 for trial in case["trials"])
+    # The map is tried at two of the values.
+    answers = [[answer["formulation"] for answer in trial["answers"]] for trial in case["trials"]]
+    assert sorted(len(each) - ("pointcoord-map" in each) for each in answers) == [4] * 13
+    assert sum("pointcoord-map" in each for each in answers) == 2
     assert data["counts"]["absolute"] == {"right": 13}
 
 
