@@ -13,13 +13,13 @@ are three products with one and the same matrix of coefficients.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]

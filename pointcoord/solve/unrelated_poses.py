@@ -17,13 +17,13 @@ what stops it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations_with_replacement
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.batch_last.elimination import Eliminated
