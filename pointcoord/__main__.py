@@ -11,7 +11,6 @@ import importlib
 import os
 import signal
 import sys
-from importlib import metadata
 from types import FrameType
 from typing import NoReturn
 
@@ -67,6 +66,8 @@ def _said(message: str, status: int) -> int:
 
 
 def _not_ours() -> str:
+    from importlib import metadata  # takes a third of numpy's time, for a rare message
+
     others = sorted({*metadata.packages_distributions().get("validate", ())} - {NAME})
     where = getattr(sys.modules.get("validate"), "__file__", None) or "no file"
     who = f"the distribution {' and '.join(map(repr, others))}" if others else "something else"

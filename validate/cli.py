@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from typing import NoReturn
 
-from validate.commands import comparison, cost, draw, hard, motion, scenes, sweep
 from validate.commands.usage import UsageError
 from validate.door import guarded
 from validate.exit_status import HELP, ExitStatus
@@ -20,7 +20,17 @@ share no code, and everything that they compute is compared. A mechanism and its
 scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
 form."""
 
-COMMANDS = (comparison, motion, sweep, scenes, draw, hard, cost)
+COMMANDS = {
+    "validate": "comparison",
+    "simulate": "motion",
+    "sweep": "sweep",
+    "plan": "scenes",
+    "scenes": "scenes",
+    "draw": "draw",
+    "hard": "hard",
+    "cost": "cost",
+}
+"""Every command, and the module of `validate.commands` that it is in."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str], console: Console) -> ExitStatus:
     try:
-        options = parser().parse_args(words)
+        options = parser(words[:1]).parse_args(words)
     except Answer as answer:
         console.require("it is where the answer goes")
         console.say(str(answer).rstrip())
@@ -64,10 +74,14 @@ class _Say(argparse.Action):
         raise Answer(self.const())
 
 
-def parser() -> argparse.ArgumentParser:
+def parser(first: Sequence[str] = ()) -> argparse.ArgumentParser:
     """The parser of the command line.
 
     Its `parse_args` raises UsageError, and Answer where only a text is asked for.
+
+    Args:
+        first: the first word of the command line. Where that is a command no other one's module is imported,
+            for that takes longer than to solve a scene.
     """
     top = _Parser(
         prog="pointcoord",
@@ -82,8 +96,9 @@ def parser() -> argparse.ArgumentParser:
         "--schema", action=_Say, const=schema_text, help="print the JSON Schema of what --json writes"
     )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
-    for command in COMMANDS:
-        command.add(commands)
+    asked = [word for word in first if word in COMMANDS]
+    for module in dict.fromkeys(COMMANDS[name] for name in asked or COMMANDS):
+        import_module(f"validate.commands.{module}").add(commands)
     for one in commands.choices.values():
         one.epilog = HELP
         one.formatter_class = argparse.RawDescriptionHelpFormatter

@@ -7,8 +7,6 @@ to solve as the scene asks. What is claimed is what was left out, whichever it w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +21,7 @@ from pointcoord import (
     simulate,
 )
 from pointcoord.bounds.proof import Proof
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import Method
 from pointcoord.simulation import finest_tolerance

@@ -8,15 +8,13 @@ from __future__ import annotations
 import json
 import math
 import os
-import platform
-import shlex
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
-from importlib import metadata, resources
+from pathlib import Path
 from typing import Any, BinaryIO
 
 from validate.exit_status import ExitStatus
@@ -37,6 +35,9 @@ def program_version() -> str:
 
 
 def _version(distribution: str) -> str | None:
+    # Imported here: it takes a third of numpy's time, and most runs write no document.
+    from importlib import metadata
+
     try:
         return metadata.version(distribution)
     except metadata.PackageNotFoundError:
@@ -45,12 +46,14 @@ def _version(distribution: str) -> str | None:
 
 def schema_text() -> str:
     """The JSON Schema of every document that the program writes."""
-    return resources.files("validate").joinpath("output", "schema.json").read_text(encoding="utf-8")
+    return Path(__file__).with_name("schema.json").read_text(encoding="utf-8")
 
 
 @cache
 def machine() -> dict[str, Any]:
     """Where the numbers come from: system, processors, versions, and how many threads are allowed."""
+    import platform
+
     return {
         "platform": platform.platform(),
         "processor": platform.machine(),
@@ -89,6 +92,8 @@ class Head:
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
     ) -> dict[str, Any]:
         """Everything as plain data; a run that goes on has no status yet."""
+        import shlex
+
         return {
             "schema_version": SCHEMA_VERSION,
             "kind": self.kind,

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import errno
 import os
-import secrets
 import stat
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -131,7 +130,7 @@ def _open_beside(target: str) -> tuple[int, Path]:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     if mode is None:
         _require_name(place)
-    beside = place.parent / f".pointcoord-{os.getpid()}-{secrets.token_hex(4)}.part"
+    beside = place.parent / f".pointcoord-{os.getpid()}-{os.urandom(4).hex()}.part"
     descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     if mode is not None:
         with suppress(OSError):

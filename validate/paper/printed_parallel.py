@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import Product, Row

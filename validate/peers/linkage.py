@@ -21,11 +21,12 @@ side of what holds the knuckle's upper end; and the side of the tie rod beside t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.data_classes import dataclass
 
 Array = NDArray[np.float64]
 Kind = Literal["hinge", "ball", "slide"]

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import subprocess
 import sys
 from dataclasses import replace
 from importlib import import_module
@@ -28,6 +29,25 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> str:
     path = folder / "mine.toml"
     path.write_text(text)
     return str(path)
+
+
+@pytest.mark.parametrize("name", cli.COMMANDS)
+def test_a_command_by_itself_is_the_one_among_all(name: str) -> None:
+    texts = []
+    for parser in (cli.parser([name]), cli.parser()):
+        with pytest.raises(cli.Answer) as answer:
+            parser.parse_args([name, "--help"])
+        texts.append(str(answer.value))
+    assert texts[0] == texts[1]
+    assert texts[0].startswith(f"usage: pointcoord {name} ")
+
+
+def test_the_command_that_is_asked_for_brings_no_other_with_it() -> None:
+    program = "import sys; from validate import cli; cli.parser(['validate']); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    found = {name for name in done.stdout.split() if name.startswith("validate.commands.")}
+    assert found == {"validate.commands.comparison", "validate.commands.usage"}
+    assert not {"validate.cost", "pinocchio", "mpmath", "pyarrow", "scipy"} & {*done.stdout.split()}
 
 
 def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
