@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pointcoord.scene.scene_file import InputPart, SinePart
+from validate.formulations import input_rates
 from validate.formulations.input_rates import rates
 
 EPS = float(np.finfo(float).eps)
@@ -52,6 +53,31 @@ def test_a_tiny_term_decides_a_tie() -> None:
     assert 2 * (terms[0] + terms[2]) == sum(
         Fraction(x) for x in (found[0], math.nextafter(found[0], math.inf))
     )
+
+
+def test_ties_are_known_without_many_digits(monkeypatch: pytest.MonkeyPatch) -> None:
+    # The rate 1/4 + t/8 has three bits more than t: every fourth one or so is halfway between two doubles.
+    law, instants = (0.8, 0.25, 0.0625), np.linspace(0.0, 2.6, 3001)
+    exact = [
+        [sum(math.perm(k, d) * Fraction(law[k]) * t ** (k - d) for k in range(d, 3)) for d in range(3)]
+        for t in map(Fraction, instants.tolist())
+    ]
+    ties = sum(
+        2 * rate == Fraction(near) + Fraction(math.nextafter(near, math.inf if rate > near else -math.inf))
+        for _, rate, _ in exact
+        if (near := float(rate)) != rate
+    )
+    assert ties > 300
+    decided = []
+    monkeypatch.setattr(
+        input_rates,
+        "_sum",
+        lambda law, t: decided.append(t) or float(sum(c * Fraction(t) ** k for k, c in enumerate(law))),
+    )
+    found = rates(InputPart(polynomial=law), instants)
+    assert found.tolist() == [[float(x) for x in row] for row in exact]
+    # Where a value of 64 digits is a tie and something small is left out: one in 2^10.
+    assert len(decided) <= 3 * len(instants) / 2**8
 
 
 @given(
