@@ -16,7 +16,7 @@ from pointcoord.scene.messages import meant, shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from validate.comparison.given import Given, given
-from validate.comparison.tolerance import largest_of, level, tolerance, untested
+from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
@@ -24,6 +24,8 @@ from validate.formulations.registry import formulation
 Array = NDArray[np.float64]
 # Numbers below the smallest normal one lose digits, and so do tolerances made of them.
 SMALLEST = float(np.finfo(float).tiny)
+# Numbers of one side that are compared at once: with a dozen such arrays they stay in a processor's memory.
+AT_ONCE = 2**16
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
 
@@ -153,7 +155,7 @@ def compare_solutions(
         parts = _parts(quantity, names, first, second)
         missing += _missing(quantity, parts, first, second)
         sides = (_Side.of(first, quantity), _Side.of(second, quantity))
-        rows += [_row(name, quantity, part, sides, instants[both]) for part in parts]
+        rows += _rows(name, quantity, parts, sides, instants[both])
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
 
 
@@ -191,61 +193,86 @@ class _Side:
         return cls(side.formulation, side.numbers[quantity], side.claims[quantity], side.condition)
 
     @cached_property
-    def largest(self) -> float:
-        """Of the numbers."""
-        return largest_of(self.numbers.values())
+    def largest(self) -> Array:
+        """Of the numbers, (N,)."""
+        return largest_numbers(self.numbers.values(), len(self.condition))
 
     @cached_property
     def level(self) -> Array:
         """See `tolerance.level`, (N,)."""
-        return level(self.claims.values(), self.numbers.values(), self.condition)
+        return level(self.claims.values(), self.largest, self.condition)
 
 
-def _row(scene: str, quantity: str, part: str, sides: tuple[_Side, _Side], times: Array) -> Comparison:
+def _rows(
+    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array
+) -> list[Comparison]:
+    """A row for each of the parts, in their order."""
+    both = [part for part in parts if all(part in side.numbers for side in sides)] if len(times) else []
+    rows: dict[str, Comparison] = {}
+    at_once = max(AT_ONCE // max(sides[0].numbers[both[0]].size, 1), 1) if both else 1
+    for low in range(0, len(both), at_once):
+        some = both[low : low + at_once]
+        rows |= zip(some, _compared(scene, quantity, some, sides, times), strict=True)
     unit, nan = QUANTITIES[quantity].unit, math.nan
+    ends = (scene, sides[0].formulation, sides[1].formulation, quantity)
+    return [
+        rows.get(part) or Comparison(*ends, part, unit, nan, nan, nan, nan, "not given", "", nan)
+        for part in parts
+    ]
+
+
+def _compared(
+    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array
+) -> Iterator[Comparison]:
+    """Rows of parts that both sides give, all at once; arrays are (components, parts, N)."""
     one, two = sides
-    known = [part in side.numbers for side in sides]
-    if not all(known) or not len(times):
-        ends = (scene, one.formulation, two.formulation, quantity, part, unit)
-        return Comparison(*ends, nan, nan, nan, nan, "not given", "", nan)
-    mine, other = one.numbers[part], two.numbers[part]
+    unit = QUANTITIES[quantity].unit
+    mine, other = (_stacked([side.numbers[part] for part in parts]) for side in sides)
     gap = np.abs(mine - other)
     if unit == "rad":
         # Whole turns apart is the same angle.
         gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
     # A NaN is a disagreement, and the worst one.
-    gap = np.where(np.isfinite(gap), gap, np.inf)
-    claims = [side.claims.get(part) for side in sides]
-    held = [np.zeros_like(gap) if claim is None else claim for claim in claims]
+    gap[~np.isfinite(gap)] = np.inf
+    nothing = np.zeros_like(one.numbers[parts[0]])
+    held = [_stacked([side.claims.get(part, nothing) for part in parts]) for side in sides]
     # The smaller of both, so that a wrong number does not widen its own tolerance.
-    largest = min(side.largest for side in sides)
+    largest = min(float(side.largest.max()) for side in sides)
     allowed = tolerance(held[0], held[1], largest)
     with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
-    apart = gap.reshape(len(gap), -1).max(axis=-1) > SMALLEST
-    loose = untested(held[0], held[1], one.level, two.level) & apart
-    verdict: Verdict = "agrees"
-    if any(claim is None for claim in claims):
-        verdict = "not tested"
-    elif float(np.max(shares)) > 1.0:
-        verdict = "disagrees"
-    elif loose.any():
-        verdict = "not tested"
-    worst = np.unravel_index(int(np.argmax(gap)), gap.shape)
-    widest = np.unravel_index(int(np.argmax(allowed)), allowed.shape)
-    larger = int(held[1][widest] > held[0][widest])
-    return Comparison(
-        scene=scene,
-        first=one.formulation,
-        second=two.formulation,
-        quantity=quantity,
-        name=part,
-        unit=unit,
-        difference=float(gap[worst]),
-        tolerance=float(allowed[worst]),
-        share=float(np.max(shares)),
-        instant=float(times[worst[0]]),
-        verdict=verdict,
-        rests_on=sides[larger].formulation,
-        part=float(held[larger][widest] / (allowed[widest] + SMALLEST)),
-    )
+        shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST)).max(axis=(0, 2))
+    gaps, widths = gap.max(axis=0), allowed.max(axis=0)
+    most = [np.abs(claim).max(axis=0) for claim in held]
+    loose = (untested(most[0], most[1], one.level, two.level) & (gaps > SMALLEST)).any(axis=-1)
+    for i, part in enumerate(parts):
+        share, when, widest = float(shares[i]), int(np.argmax(gaps[i])), int(np.argmax(widths[i]))
+        verdict: Verdict = "agrees"
+        if any(part not in side.claims for side in sides):
+            verdict = "not tested"
+        elif share > 1.0:
+            verdict = "disagrees"
+        elif loose[i]:
+            verdict = "not tested"
+        worst = (int(np.argmax(gap[:, i, when])), i, when)
+        place = (int(np.argmax(allowed[:, i, widest])), i, widest)
+        larger = int(held[1][place] > held[0][place])
+        yield Comparison(
+            scene=scene,
+            first=one.formulation,
+            second=two.formulation,
+            quantity=quantity,
+            name=part,
+            unit=unit,
+            difference=float(gap[worst]),
+            tolerance=float(allowed[worst]),
+            share=share,
+            instant=float(times[when]),
+            verdict=verdict,
+            rests_on=sides[larger].formulation,
+            part=float(held[larger][place] / (allowed[place] + SMALLEST)),
+        )
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    """Arrays (N, ...) as one, (components, arrays, N)."""
+    return np.stack([array.reshape(len(array), -1).T for array in arrays], axis=1)

@@ -67,14 +67,11 @@ def given(solution: Solution, instants: Array) -> Given:
     if isinstance(times, str) or times.ndim != 1:
         problem = times if isinstance(times, str) else f"have the shape {times.shape}"
         raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
-    found = np.isin(instants, times)
+    found, places = _places(times, instants)
     if not found.all():
         notes.append(
             f"{who} gives {int(found.sum())} of {len(instants)} instants; the others are not compared"
         )
-    # For each instant found the first place of its time: sorting keeps those of one time in their order.
-    order = np.argsort(times, kind="stable")
-    places = order[np.searchsorted(times, instants[found], side="left", sorter=order)]
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
     claims: Arrays = {quantity: {} for quantity in QUANTITIES}
     for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", notes).items():
@@ -90,7 +87,8 @@ def given(solution: Solution, instants: Array) -> Given:
             if isinstance(array, str):
                 notes.append(f"{what} {array}; it is left out")
                 continue
-            wrong = int(np.count_nonzero(~np.isfinite(array.reshape(len(array), -1)).all(axis=-1)))
+            finite = np.isfinite(array)
+            wrong = 0 if finite.all() else int(np.sum(~finite.reshape(len(array), -1).all(axis=-1)))
             said = any(note.startswith(f"{words} of {name} ") for note in solution.notes)
             if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
@@ -105,6 +103,16 @@ def given(solution: Solution, instants: Array) -> Given:
         notes.append(f"{who}: its condition number {condition}; 1 is taken")
         condition = np.ones_like(times)
     return Given(who, found, numbers, claims, condition[places], tuple(notes))
+
+
+def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:
+    """Which instants are among the times, and the place of each of these there."""
+    if np.array_equal(times, instants) and (times[1:] > times[:-1]).all():
+        return np.ones(len(instants), dtype=bool), slice(None)
+    found = np.isin(instants, times)
+    # For each instant found the first place of its time: sorting keeps those of one time in their order.
+    order = np.argsort(times, kind="stable")
+    return found, order[np.searchsorted(times, instants[found], side="left", sorter=order)]
 
 
 def _by_name(part: object, what: str, notes: list[str]) -> Mapping[str, object]:
@@ -131,4 +139,4 @@ def _real(raw: object) -> Array | str:
         return f"is no array ({error})"
     if array.dtype.kind not in "iuf":
         return f"is of type {array.dtype}; needed: real numbers"
-    return array.astype(float)
+    return array.astype(float, copy=False)

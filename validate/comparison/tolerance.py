@@ -38,33 +38,41 @@ def tolerance(first: Array, second: Array, largest: float) -> Array:
     return np.asarray(first + second + EPS**2 * largest)
 
 
-def largest_of(numbers: Iterable[Array]) -> float:
-    """The largest finite number of a quantity, 0 if there is none."""
-    finite = (np.where(np.isfinite(array), np.abs(array), 0.0) for array in numbers)
-    return max((float(np.max(array, initial=0.0)) for array in finite), default=0.0)
+def largest_numbers(numbers: Iterable[Array], count: int) -> Array:
+    """The largest finite number of a quantity at each instant, (count,), 0 where there is none."""
+    found = np.zeros(count)
+    for array in numbers:
+        np.maximum(found, largest(np.where(np.isfinite(array), array, 0.0)), out=found)
+    return found
 
 
-def level(claims: Iterable[Array], numbers: Iterable[Array], condition: Array) -> Array:
+def level(claims: Iterable[Array], numbers: Array, condition: Array) -> Array:
     """What a formulation would give for any number of a quantity at each instant, (N,).
 
     Args:
-        claims, numbers: of all points, bodies or angles of the quantity, each (N, ...).
-        condition: of the matrix that gives the rates, (N,).
+        claims: of all points, bodies or angles of the quantity, each (N, ...).
+        numbers: the largest of them, (N,). condition: of the matrix that gives the rates, (N,).
     """
-    claimed = [_largest(claim) for claim in claims]
-    rounded = [EPS * condition * _largest(np.where(np.isfinite(array), array, 0.0)) for array in numbers]
-    return np.asarray(np.max([*claimed, *rounded], axis=0))
+    found = EPS * condition * numbers
+    for claim in claims:
+        np.maximum(found, largest(claim), out=found)
+    return np.asarray(found)
 
 
 def untested(first: Array, second: Array, first_level: Array, second_level: Array) -> NDArray[np.bool_]:
-    """At which instants a tolerance is too wide to test anything, (N,).
+    """At which instants a tolerance is too wide to test anything, (..., N).
 
     Args:
-        first, second: what both claim of one point, body or angle, (N, ...).
+        first, second: the most that both claim of any component of a point, body or angle, (..., N).
         first_level, second_level: what they would give for any of the quantity, (N,).
     """
-    return (_largest(first) > LOOSEST * second_level) | (_largest(second) > LOOSEST * first_level)
+    return np.asarray((first > LOOSEST * second_level) | (second > LOOSEST * first_level))
 
 
-def _largest(array: Array) -> Array:
-    return np.asarray(np.abs(array).reshape(len(array), -1).max(axis=-1))
+def largest(array: Array) -> Array:
+    """The largest magnitude of any component at each instant, (N,), of numbers (N, ...)."""
+    columns = array.reshape(len(array), -1).T
+    found = np.abs(columns[0])
+    for column in columns[1:]:
+        np.maximum(found, np.abs(column), out=found)
+    return np.asarray(found)

@@ -40,11 +40,9 @@ def test_a_thousand_times_the_other_sides_claim_tests_nothing(wider: float, test
 
 def test_what_a_side_would_give_is_its_largest_claim_or_what_rounding_leaves() -> None:
     claims = [np.array([[1e-12, 2e-12, 0.0]]), np.array([[5e-12, 0.0, 0.0]])]
-    assert level(claims, [np.array([[1.0, 1.0, 1.0]])], np.array([10.0])).tolist() == [5e-12]
+    assert level(claims, np.array([1.0]), np.array([10.0])).tolist() == [5e-12]
     # eps times the condition number times the largest number.
-    assert level(claims, [np.array([[300.0, -400.0, 0.0]])], np.array([100.0])).tolist() == [
-        EPS * 100.0 * 400.0
-    ]
+    assert level(claims, np.array([400.0]), np.array([100.0])).tolist() == [EPS * 100.0 * 400.0]
 
 
 def changed(solution: Solution, quantity: str, arrays: Mapping[str, np.ndarray]) -> Solution:
