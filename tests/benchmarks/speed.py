@@ -199,7 +199,7 @@ FIGURES = (
     Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
     Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),
     Figure("CSV", "pyarrow's CSV of the same table", csv, 3.0, 1.5),
-    Figure("a chain of many unknowns", "ten times one of a tenth", chain, 3.0, 2.5),
+    Figure("a chain of many unknowns", "ten times one of a tenth", chain, 3.0, 2.3),
     Figure("validate, from the shell", INVERSES, comparing, 150.0, 400.0),
 )
 
