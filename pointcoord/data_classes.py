@@ -72,7 +72,8 @@ else:
 
     def _compiled(cls, fields: dict[str, Field]):
         """The function that takes the fields as arguments and sets them."""
-        names, arguments, lines = {"MISSING": MISSING}, ["self"], ["own = self.__dict__"]
+        # No field can have the name that the fields are set by.
+        names, arguments, lines = {"MISSING": MISSING}, ["self"], ["__fields__ = self.__dict__"]
         for name, own in fields.items():
             value = name
             if own.default_factory is not MISSING:
@@ -84,7 +85,7 @@ else:
                 arguments.append(f"{name}=_default_{name}")
             else:
                 arguments.append(name)
-            lines.append(f"own[{name!r}] = {value}")
+            lines.append(f"__fields__[{name!r}] = {value}")
         if hasattr(cls, "__post_init__"):
             lines.append("self.__post_init__()")
         exec(f"def __init__({', '.join(arguments)}):\n " + "\n ".join(lines), names)

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.monomials import monomials
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import monomials
 from pointcoord.patches.expansion import expand_in_inputs
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked

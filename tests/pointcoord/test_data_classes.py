@@ -129,3 +129,15 @@ def test_the_standard_library_makes_classes_from_them() -> None:
         five: int = 5
 
     assert dataclasses.asdict(Further(1)) == {"one": 1, "two": 2.0, "three": [], "five": 5}
+
+
+def test_a_field_may_have_any_name() -> None:
+    @dataclass(frozen=True)
+    class Named:
+        """Names that the making of a class uses too."""
+
+        names: int
+        own: str
+        value: float
+
+    assert dataclasses.astuple(Named(1, "own", 2.0)) == (1, "own", 2.0)
