@@ -10,12 +10,12 @@ so one matrix product for each coordinate and derivative sums all designs, where
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.results.carried_states import CARRIED, carry, summed_and_carried
 from pointcoord.results.readout import Readout
 from pointcoord.results.states import standing

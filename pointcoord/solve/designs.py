@@ -13,11 +13,12 @@ from the start.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
@@ -73,6 +74,7 @@ def solve_designs(
     settings: Settings,
     tolerance: float,
     way: Way | None = None,
+    like: Array | None = None,
 ) -> SolvedDesigns:
     """Close, assemble and move a batch of designs.
 
@@ -83,12 +85,14 @@ def solve_designs(
         settings: how the chain is cut, as finely as the design that needs it finest.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
         way: where the inputs go; without it all are followed in time.
+        like: coordinates of a drawing that all are like, by which the order of elimination is chosen; those
+            of the first design unless given.
     Raises:
         InputOutOfRange: a law has no meaning at an instant, whatever the design.
     """
     plain = Follow(functions, start, stop, settings, tolerance)
     if len(mechanism.drawn) >= FEW and tolerance > 0.0:
-        solved = _Together(mechanism, plain, way if start < stop else None).solve()
+        solved = _Together(mechanism, plain, way if start < stop else None).solve(like)
         if solved is not None:
             return solved
     return solve_plainly(mechanism, plain)
@@ -174,12 +178,14 @@ class _Together:
     plain: Follow
     way: Way | None
 
-    def solve(self) -> SolvedDesigns | None:
+    def solve(self, like: Array | None) -> SolvedDesigns | None:
         """What became of them; None where it takes the plain form."""
         mechanism, system, topology = self.mechanism, self.mechanism.map, self.mechanism.topology
         driven = [mechanism.layout.scalar(drive.coordinate) for drive in topology.drives]
         constants = ((mechanism.layout.zero, 0.0), (mechanism.layout.one, 1.0))
-        columns = columns_of(system, constants, driven, mechanism.drawn[0])
+        columns = None if like is None else columns_of(system, constants, driven, like)
+        if columns is None:
+            columns = columns_of(system, constants, driven, mechanism.drawn[0])
         if columns is None:
             return None
         failures: dict[int, Status] = {}

@@ -19,14 +19,14 @@ is halved. A design of which one box is not confirmed so is reported: whoever as
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from itertools import product
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
@@ -410,11 +410,13 @@ class _Course:
         degrees = powers.sum(axis=-1)
         best = (np.inf, (1,) * len(self.drives), MOST[len(self.drives)])
         for parts in product(PARTS, repeat=len(self.drives)):
+            # The way goes from end to end of every range.
+            if max(parts) * (BOX + comb(PILOT + len(parts), len(parts))) >= best[0]:
+                continue
             scaled = typical / (np.array(parts, dtype=float) ** powers).prod(axis=-1)
             by_degree = [float(scaled[degrees == k].sum()) for k in range(PILOT + 1)]
             order = self._needed(np.array(by_degree), parts)
             each = BOX + comb(order + len(parts), len(parts))
-            # The way goes from end to end of every range.
             if order > MOST[len(parts)] or max(parts) * each >= best[0]:
                 continue
             cost = len(self._touched(parts, centre - half, 2.0 * half / np.array(parts))) * each
@@ -481,8 +483,8 @@ class _Course:
         moves = np.stack(self.moves(), axis=-1)
         kinds = list(product((False, True), repeat=len(self.drives)))
         of_kind = [np.flatnonzero((moves[:n] == np.array(kind)).all(axis=-1)) for kind in kinds]
-        rooms: list[Array | None] = [None] * len(kinds)
-        powers: list[Numbers] = [np.empty((0, len(self.drives)), dtype=np.intp)] * len(kinds)
+        rooms: list[Array] = []
+        powers: list[Numbers] = []
         degree = order
         for low in range(0, members, CHUNK):
             part = slice(low, min(low + CHUNK, members))
@@ -501,23 +503,25 @@ class _Course:
             if low == 0 and np.count_nonzero(alive[part] & ~confirmed) > FEW * np.count_nonzero(alive[part]):
                 last = slice(here.degree - 1, here.degree + 1)
                 return int(np.argmax([np.abs(each.y[last, :n]).max() for each in here.alone]))
-            found = self._corners(here, own, centre, half, signs)
+            terms = [
+                here.terms_of(coordinates, kind) for coordinates, kind in zip(of_kind, kinds, strict=True)
+            ]
+            powers = [here.powers_of(kind) for kind in kinds]
+            ends = self._corner_poses(here, zip(of_kind, powers, terms, strict=True), signs)
+            found = self._corners(here, ends, own, centre, half, signs)
             for sign, (end, first) in zip(signs, found, strict=True):
                 confirmed &= end.good & first
                 corners[sign][0][:, part], corners[sign][1][part] = end.y[:n], end.left
             good[part] = confirmed
-            for number, (kind, coordinates) in enumerate(zip(kinds, of_kind, strict=True)):
-                terms = here.terms_of(coordinates, kind)
-                room = rooms[number]
-                if room is None:
-                    room = rooms[number] = np.empty((*terms.shape[:2], members))
-                    powers[number] = here.powers_of(kind)
-                room[..., part] = terms
+            if low == 0:
+                rooms = [np.empty((*each.shape[:2], members)) for each in terms]
+            for room, each in zip(rooms, terms, strict=True):
+                room[..., part] = each
             spare = here
         groups = tuple(
             Group(coordinates, power, room)
             for coordinates, power, room in zip(of_kind, powers, rooms, strict=True)
-            if room is not None and len(coordinates)
+            if len(coordinates)
         )
         return _Tried(Box(centre, half, groups), good, corners)
 
@@ -543,26 +547,36 @@ class _Course:
                 small[: self.settings.derivative + 1].all(axis=0) & np.isfinite(sizes).all(axis=0)
             )
 
+    def _corner_poses(
+        self, here: _Expanded, groups: Iterable[tuple[Numbers, Numbers, Array]], signs: list[Cell]
+    ) -> Array:
+        """What the series give at each corner, (corners, size, members).
+
+        Args:
+            groups: coordinates, powers and coefficients of each.
+        """
+        found = np.repeat(here.y[None], len(signs), axis=0)
+        for coordinates, powers, terms in groups:
+            if len(coordinates):
+                at = (np.array(signs, dtype=float)[:, None] ** powers).prod(axis=-1)
+                found[:, coordinates] = (at @ terms).swapaxes(0, 1)
+        return found
+
     def _corners(
-        self, here: _Expanded, own: Mechanism, centre: Array, half: Array, signs: list[Cell]
+        self, here: _Expanded, ends: Array, own: Mechanism, centre: Array, half: Array, signs: list[Cell]
     ) -> list[tuple[Confirmed, Flags]]:
-        """Newton's method at each corner, and whose first step is small enough."""
+        """Newton's method at each corner, and whose first step is small enough.
+
+        Args:
+            ends: what the series give there.
+        """
         columns, tolerance, found = self.columns, self.settings.tolerance, []
-        n = columns.map.unknowns
-        sizes = here.sizes()
-        for sign in signs:
-            y = here.y.copy()
-            for series, s in zip(here.alone, sign, strict=True):
-                powers = float(s) ** np.arange(1.0, here.degree + 1)
-                y[:n] += np.tensordot(powers, series.y[1 : here.degree + 1, :n], axes=1)
-            if here.mixed is not None:
-                for k, terms in enumerate(here.mixed.y[: here.degree - 1], start=2):
-                    powers = np.array([float(sign[0]) ** (k - j) * float(sign[1]) ** j for j in range(1, k)])
-                    y[here.mixed.unknowns] += np.einsum("j,ujm->um", powers, terms[:-1])
+        left_out = here.sizes()[-2:].sum(axis=0)
+        for sign, y in zip(signs, ends, strict=True):
             values = centre + half * np.array(sign)
             for place, law in zip(self.driven, self.known(values, np.zeros_like(half), 0, own), strict=True):
                 y[place] = law[0]
-            end = confirm(columns, y, here.factors, sizes[-2:].sum(axis=0), tolerance)
+            end = confirm(columns, y, here.factors, left_out, tolerance)
             small = end.first_step <= tolerance
             doubtful = end.good & ~small
             if doubtful.any():

@@ -7,11 +7,10 @@ block by block (see `block_proof`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.batch_last.elimination import Eliminated
 from pointcoord.numerics.branch import NEAR
 from pointcoord.solve.paths_together import Columns, Off

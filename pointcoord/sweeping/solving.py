@@ -8,13 +8,13 @@ a scene.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Doubt, Poses
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
@@ -151,6 +151,14 @@ class Course:
         which = self.which[numbers]
         for one in np.unique(which).tolist():
             yield one, numbers[which == one]
+
+    @cached_property
+    def drawn(self) -> Array | None:
+        """Coordinates of the scene's own drawing; None if it makes no mechanism."""
+        try:
+            return scene_mechanism(self.scene).drawn
+        except SceneError:
+            return None
 
     def way(self, law: int, functions: Mapping[str, TimeFunction]) -> Way | None:
         """Where the inputs go by some laws; None where all stand still."""
@@ -291,7 +299,8 @@ class _Block:
         allowed = pose_tolerance(scene, SERIES, mechanism)
 
         way = course.way(law, functions)
-        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed, way)
+        like = course.drawn
+        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed, way, like)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
         for place, status in solved.failures.items():
