@@ -16,6 +16,7 @@ from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import Readout
 from pointcoord.results.table import State, vectors
@@ -317,11 +318,14 @@ class StatesOfChain:
 
     def _standing(self, states: Sequence[State]) -> Array:
         """States of points of the chassis in its frame, where they stand, (..., states, 3), mm."""
-        mechanism = self.readout.mechanism
-        unit = np.asarray(mechanism.unit)[..., None]
-        batch = self.chain.segments[0].coefficients.shape[:-2]
-        places = np.zeros((*batch, len(states), 3))
-        for i, (order, name) in enumerate(states):
-            if order == 0:
-                places[..., i, :] = mechanism.drawing.vectors[name] * unit
-        return places
+        return standing(self.readout.mechanism, states)
+
+
+def standing(mechanism: Mechanism, states: Sequence[State]) -> Array:
+    """States of points of the chassis in its frame, where they stand, (..., states, 3), mm."""
+    unit = np.asarray(mechanism.unit)[..., None]
+    places = np.zeros((*mechanism.unit.shape, len(states), 3))
+    for i, (order, name) in enumerate(states):
+        if order == 0:
+            places[..., i, :] = mechanism.drawing.vectors[name] * unit
+    return places

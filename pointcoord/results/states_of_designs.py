@@ -8,30 +8,22 @@ coefficients do not:
 
 The series of a carried point takes as many products as its orders have pairs, in each segment of each design.
 At a hundred instants it is less to sum the series of its carriers, which are wanted anyway, and to put
-together at each instant what rides on them,
-
-    p = p_0 + a e1 + b e2 + c e1 x e2,
-    p'' = p_0'' + a e1'' + b e2'' + c (e1'' x e2 + 2 e1' x e2' + e1 x e2'').
+together at each instant what rides on them (see `carried_states`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.results.carried_states import CARRIED, carry, summed_and_carried
 from pointcoord.results.states import StatesOfChain
 from pointcoord.results.table import State, vectors
 
 Array = NDArray[np.float64]
-
-# Designs whose carried points are put together at a time: at a hundred instants what lies between stays in a
-# second-level cache.
-CARRIED = 32
 
 
 @dataclass(frozen=True)
@@ -45,14 +37,16 @@ class StatesOfDesigns(StatesOfChain):
             rows = np.empty((batch, table.height, count))
         rows[:, table.first_still :, :] = self.still
         found = {state: rows[:, first : first + 3, :] for first, state in table.states}
-        solved, carried = self._wanted
+        solved, carried = summed_and_carried(self.readout)
         spare = [state for state in (*solved, *carried) if state not in found]
         room = np.empty((batch, 3 * len(spare), count))
         found |= {state: room[:, 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
         self._sum(instants, {state: found[state] for state in solved})
         for low in range(0, batch, CARRIED):
             part = slice(low, low + CARRIED)
-            self._carry(part, {state: place[part] for state, place in found.items()})
+            carry(
+                self.readout.mechanism, part, carried, {state: place[part] for state, place in found.items()}
+            )
         states: list[dict[str, Array]] = [{} for _ in range(self.readout.plan.derivative + 1)]
         for (order, name), place in found.items():
             states[order][name] = vectors(place, 0)
@@ -60,18 +54,6 @@ class StatesOfDesigns(StatesOfChain):
             still = self._spare_still[..., i, None, :]
             states[order][name] = np.broadcast_to(still, (batch, count, 3))
         return states
-
-    @cached_property
-    def _wanted(self) -> tuple[list[State], list[State]]:
-        """The states that are summed, and those that are carried by them."""
-        table, topology = self.readout.table, self.readout.mechanism.topology
-        highest = dict.fromkeys(topology.moving, -1)
-        for order, name in (*table.moving, *table.spare):
-            for point in topology.carried.get(name, (name,)):
-                highest[point] = max(highest[point], order)
-        solved = [(order, point) for point, most in highest.items() for order in range(most + 1)]
-        carried = [state for state in (*table.moving, *table.spare) if state[1] in topology.carried]
-        return solved, carried
 
     def _sum(self, instants: Array, wanted: Mapping[State, Array]) -> None:
         """Sum the series of states of points that are solved for, each into (designs, 3, N), mm."""
@@ -93,38 +75,6 @@ class StatesOfDesigns(StatesOfChain):
                     series[name] = np.multiply(own, mechanism.unit, order="C").transpose(1, 2, 0)
                 np.matmul(series[name], powers[order], out=place[..., low:high].swapaxes(0, 1))
 
-    def _carry(self, part: slice, found: Mapping[State, Array]) -> None:
-        """Put together carried states of some designs from those of their carriers, (designs, 3, N), mm."""
-        mechanism, (_, carried) = self.readout.mechanism, self._wanted
-        unit = mechanism.unit[part, None, None]
-        edges: dict[tuple[int, str, str], Array] = {}
-        normals: dict[tuple[int, tuple[str, str, str]], Array] = {}
-
-        def edge(order: int, base: str, point: str) -> Array:
-            key = order, base, point
-            if key not in edges:
-                edges[key] = found[order, point] - found[order, base]
-            return edges[key]
-
-        def normal(order: int, carriers: tuple[str, str, str]) -> Array:
-            key, (base, first, second) = (order, carriers), carriers
-            if key not in normals:
-                total = normals[key] = np.zeros_like(edge(order, base, first))
-                for i in range(order + 1):
-                    crossed = edge(i, base, first), edge(order - i, base, second)
-                    _add_cross(total, float(comb(order, i)), *crossed)
-            return normals[key]
-
-        for order, name in carried:
-            carriers = base, first, second = mechanism.topology.carried[name]
-            a, b, c = (mechanism.carrier_weights[name][part, i, None, None] for i in range(3))
-            place = found[order, name]
-            np.multiply(edge(order, base, first), a, out=place)
-            place += b * edge(order, base, second)
-            # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
-            place += (c / unit) * normal(order, carriers)
-            place += found[order, base]
-
 
 def _powers(s: Array, scale: float, terms: int, derivatives: int) -> list[Array]:
     """Powers of s, shape (N,), and what becomes of them in each time derivative, each (terms, N)."""
@@ -138,13 +88,3 @@ def _powers(s: Array, scale: float, terms: int, derivatives: int) -> list[Array]
         np.multiply(found[-1][:-1], factors, out=lower[1:])
         found.append(lower)
     return found
-
-
-def _add_cross(total: Array, factor: float, a: Array, b: Array) -> None:
-    """Add factor a x b, all (designs, 3, N)."""
-    for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
-        crossed = a[:, j] * b[:, k]
-        crossed -= a[:, k] * b[:, j]
-        if factor != 1.0:
-            crossed *= factor
-        total[:, i] += crossed

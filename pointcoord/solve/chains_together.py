@@ -20,14 +20,13 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.batch_last.elimination import Eliminated
 from pointcoord.numerics.batch_last.series import ColumnSeries
-from pointcoord.numerics.branch import NEAR
 from pointcoord.numerics.counters import Work
-from pointcoord.solve.paths_together import Columns, Off
+from pointcoord.solve.ends_together import confirm, noise
+from pointcoord.solve.paths_together import Columns
 from pointcoord.solve.taylor import (
     MOST,
     MOST_SEGMENTS,
     SHORTEST,
-    SOLVED,
     Decay,
     Segment,
     Settings,
@@ -48,8 +47,6 @@ BEGUN = 8
 SEGMENT, PRODUCTS = 12.0, 0.015
 # A member whose last terms alone would make the segments this much shorter than the middle one's stands out.
 STANDS_OUT = 0.5
-# Steps of Newton's method at an end, at most.
-NEWTON = 4
 
 
 class NotTogether(Exception):
@@ -295,61 +292,31 @@ class _Step:
     def _end(self, end: float) -> tuple[NDArray[np.bool_], Array, Array]:
         """Whether members are confirmed at an instant; their coordinates there, and what is left of them."""
         course, joint, columns = self.course, self.joint, self.course.columns
-        rows, proof, n, tolerance = (
-            columns.map,
-            columns.proof,
-            columns.map.unknowns,
-            course.settings.tolerance,
-        )
+        n, tolerance = columns.map.unknowns, course.settings.tolerance
         members = joint.y.shape[-1]
         s = (end - joint.instant) / self.scale
         y = self.series.at(s)
         y[n:] = joint.y[n:]
         y[columns.driven] = self._known(end, 0)[0]
         largest = self.sizes[-2:] * np.array([[s ** (len(self.sizes) - 2)], [s ** (len(self.sizes) - 1)]])
-        left_out = largest.sum(axis=0)
-        good = np.ones(members, dtype=bool)
-        left, first_step = np.full(members, np.inf), np.zeros(members)
-        with np.errstate(all="ignore"):
-            for number in range(NEWTON):
-                d = rows.differences(y)
-                factors = columns.factorise(d)
-                step = columns.step(factors, d)
-                size = np.abs(step).max(axis=0)
-                y[:n] += step
-                good &= factors.sound & (factors.orientation == self.factors.orientation)
-                inverse = factors.inverse()
-                np.abs(inverse, out=inverse)
-                omega = proof.lipschitz(inverse)
-                if number == 0:
-                    first_step = size
-                    alone = (omega * (first_step + left_out)).max(axis=0) / columns.least
-                    good &= alone <= 2.0 * NEAR
-                off = Off(columns, proof.turning_of_all(inverse), size)
-                jacobian = np.abs(rows.jacobian(rows.differences(y)))
-                radius, _ = proof.radii(inverse, omega, off.missed(0.0), off.turns, jacobian)
-                left = radius.max(axis=0)
-                self.work += Work(residuals=members, factorisations=members)
-                if (left <= SOLVED * tolerance).all() or not good.any():
-                    break
-        good &= left <= SOLVED * tolerance
+        found = confirm(columns, y, self.factors, largest.sum(axis=0), tolerance)
+        self.work += Work(residuals=found.steps * members, factorisations=found.steps * members)
+        good, first_step = found.good, found.first_step
         doubtful = good & ~(first_step <= tolerance)
         if doubtful.any():
-            good[doubtful] = first_step[doubtful] <= tolerance + 2.0 * self._noise(y, end, doubtful)
-        return good, y, left
+            good[doubtful] = first_step[doubtful] <= tolerance + 2.0 * self._noise(found.y, end, doubtful)
+        return good, found.y, found.left
 
     def _noise(self, y: Array, end: float, members: NDArray[np.bool_]) -> Array:
         """Rounding of Newton's step of some members, the rounding of the laws included, shape (members,)."""
         numbers = np.flatnonzero(members)
-        mechanism, system = self.mechanism.taken(numbers), self.course.columns.map.system
-        here = np.ascontiguousarray(y[:, numbers].T)
+        mechanism = self.mechanism.taken(numbers)
+        here = np.ascontiguousarray(y[:, numbers])
         off = {name: function.rounding(np.array(end)) for name, function in self.course.functions.items()}
-        data = np.zeros(here.shape[-1])
+        data = np.zeros(len(here))
         if any(doubt.any() for doubt in off.values()):
-            _, data = mechanism.known_data(here, off)
-        rows = system.uncertainty(here, data)
-        inverse = np.linalg.inv(system.jacobian(here))
-        return np.asarray((np.abs(inverse) @ rows[..., None])[..., 0].max(axis=-1))
+            _, data = mechanism.known_data(np.ascontiguousarray(here.T), off)
+        return noise(self.course.columns, here, data)
 
 
 def _order(decay: Decay, time: float) -> int:

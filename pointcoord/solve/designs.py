@@ -3,14 +3,17 @@
 A batch of cars shares the segments of one chain of series. A design that cannot be closed, assembled or moved
 drops out with its status, and the others go on as if it had not been there.
 
-Many designs are solved as columns (see `paths_together` and `chains_together`), with one operation for all of
-them. What does not go well there is solved again by itself in the plain form, which decides, and words the
-reason. Few designs, and whatever the columns cannot do at all, are solved in the plain form from the start.
+Many designs are solved as columns, with one operation for all of them: as functions of their inputs where
+these are one or two (see `designs_by_inputs`), and the others as functions of time (see `paths_together` and
+`chains_together`). What does not go well there is solved again by itself in the plain form, which decides,
+and words the reason. Few designs, and whatever the columns cannot do at all, are solved in the plain form
+from the start.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +24,7 @@ from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Path, Pose, assemble, close_drawing
 from pointcoord.solve.chains_together import Course, NotTogether
+from pointcoord.solve.designs_by_inputs import Boxes, Way, boxes_of
 from pointcoord.solve.paths_together import Columns, columns_of, follow_together
 from pointcoord.solve.status import COMPLETE, Status, TooLong, blocked_by
 from pointcoord.solve.taylor import Chain, Settings, build_chain
@@ -39,11 +43,13 @@ class SolvedDesigns:
     """What became of a batch of designs.
 
     Attributes:
-        alive: numbers of the designs that were solved to the end, in increasing order, (A,).
+        alive: numbers of the designs that were followed in time to the end, in increasing order, (A,).
         chain: of those, its coefficients of shape (A, order + 1, size); without segments if there are none.
         start: coordinates of those at the first instant, (A, size); None if there are none.
         closed: coordinates of the closed drawings, (D, size); NaN where there is none.
-        failures: by number, what stopped each of the others.
+        failures: by number, what stopped each of those that were not solved.
+        mapped: numbers of the designs that were solved as functions of their inputs, in increasing order.
+        boxes: of those; None if there are none.
     """
 
     alive: Numbers
@@ -51,6 +57,13 @@ class SolvedDesigns:
     start: Array | None
     closed: Array
     failures: Mapping[int, Status]
+    mapped: Numbers = field(default_factory=lambda: np.empty(0, dtype=np.intp))
+    boxes: Boxes | None = None
+
+    @property
+    def solved(self) -> Numbers:
+        """The numbers of all that were solved, in increasing order."""
+        return np.union1d(self.alive, self.mapped)
 
 
 def solve_designs(
@@ -60,6 +73,8 @@ def solve_designs(
     stop: float,
     settings: Settings,
     tolerance: float,
+    way: Way | None = None,
+    like: Array | None = None,
 ) -> SolvedDesigns:
     """Close, assemble and move a batch of designs.
 
@@ -69,12 +84,15 @@ def solve_designs(
         start, stop: of the motion, s; they may be the same.
         settings: how the chain is cut, as finely as the design that needs it finest.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
+        way: where the inputs go; without it all are followed in time.
+        like: coordinates of a drawing that all are like, by which the order of elimination is chosen; those
+            of the first design unless given.
     Raises:
         InputOutOfRange: a law has no meaning at an instant, whatever the design.
     """
     plain = Follow(functions, start, stop, settings, tolerance)
     if len(mechanism.drawn) >= FEW and tolerance > 0.0:
-        solved = _Together(mechanism, plain).solve()
+        solved = _Together(mechanism, plain, way if start < stop else None).solve(like)
         if solved is not None:
             return solved
     return solve_plainly(mechanism, plain)
@@ -158,13 +176,16 @@ class _Together:
 
     mechanism: Mechanism
     plain: Follow
+    way: Way | None
 
-    def solve(self) -> SolvedDesigns | None:
+    def solve(self, like: Array | None) -> SolvedDesigns | None:
         """What became of them; None where it takes the plain form."""
         mechanism, system, topology = self.mechanism, self.mechanism.map, self.mechanism.topology
         driven = [mechanism.layout.scalar(drive.coordinate) for drive in topology.drives]
         constants = ((mechanism.layout.zero, 0.0), (mechanism.layout.one, 1.0))
-        columns = columns_of(system, constants, driven, mechanism.drawn[0])
+        columns = None if like is None else columns_of(system, constants, driven, like)
+        if columns is None:
+            columns = columns_of(system, constants, driven, mechanism.drawn[0])
         if columns is None:
             return None
         failures: dict[int, Status] = {}
@@ -172,16 +193,44 @@ class _Together:
         begun = np.flatnonzero(np.isfinite(left))
         if not len(begun):
             return SolvedDesigns(begun, None, None, closed, failures)
+        mapped, boxes = begun[:0], None
+        if self.way is not None:
+            course, begin = self.plain, np.ascontiguousarray(pose[:, begun])
+            taken, kept = mechanism.taken(begun), course.settings.kept
+            there, boxes = boxes_of(columns, taken, course.functions, self.way, begin, course.start, kept)
+            mapped, begun = begun[there], begun[~there]
+        if len(begun):
+            solved = self._in_time(columns, begun, pose, left, closed, failures)
+        else:
+            solved = SolvedDesigns(begun, None, None, closed, failures)
+        return replace(solved, mapped=mapped, boxes=boxes)
+
+    def _in_time(
+        self,
+        columns: Columns,
+        begun: Numbers,
+        pose: Array,
+        left: Array,
+        closed: Array,
+        failures: dict[int, Status],
+    ) -> SolvedDesigns:
+        """The motion of designs that have a start, followed in time.
+
+        Args:
+            pose, left: as of `_start`.
+        """
+        mechanism, plain = self.mechanism, self.plain
+        if len(begun) < FEW:
+            return self._plainly(begun, closed, failures)
         taken = mechanism.taken(begun)
 
         def goes_on(place: int) -> bool:
             number = int(begun[place])
-            ended = self.plain.together(mechanism.taken(np.array([number])))
+            ended = plain.together(mechanism.taken(np.array([number])))
             if not ended.status.complete:
                 failures[number] = ended.status
             return ended.status.complete
 
-        plain = self.plain
         course = Course(columns, plain.functions, plain.start, plain.stop, plain.settings.kept, goes_on)
         y = np.ascontiguousarray(pose[:, begun])
         try:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,8 @@ CHUNK = 1024
 # not.
 SAFETY, SHORTER, TRIALS = 0.9, 0.75, 6
 GUESSES = tuple(0.75**k for k in range(16))
+# Residuals up to which a drawing is closed but for rounding, in units.
+SMALL = 1e-12
 # Order of the series that a step follows, and the least weight of an unknown in the norm of its block.
 ORDER, LEAST_WEIGHT = 8, 0.3
 # Steps beyond which, and parts of the path below which, a member is given up.
@@ -80,6 +83,14 @@ def columns_of(
 
     None where that is singular.
     """
+    return _columns_of(system, constants, tuple(driven), like.tobytes())
+
+
+@lru_cache(maxsize=16)
+def _columns_of(
+    system: QuadraticMap, constants: tuple[tuple[int, float], ...], places: tuple[int, ...], pose: bytes
+) -> Columns | None:
+    driven, like = list(places), np.frombuffer(pose)
     rows, blocks = column_map(system, constants), system.structure.blocks
     plan = eliminate_like(system.jacobian(like), rows.entries, blocks)
     if plan is None:
@@ -244,7 +255,8 @@ def _advance(columns: Columns, group: _Travelling, first: bool) -> NDArray[np.bo
         d = rows.differences(here)
         factors = columns.factorise(d)
         jacobian = np.abs(factors.entries)
-        order = 1 if not columns.driven else ORDER
+        # Where only what rounding left of a drawing is taken back, the first order is the whole step.
+        order = ORDER if group.change.any() or (wanted is not None and (np.abs(wanted) > SMALL).any()) else 1
         series = ColumnSeries.begin(rows, factors, here, columns.driven, order)
         change = group.change[[i - n for i in columns.driven]] * group.remaining
         still = np.zeros(len(columns.driven))

@@ -31,10 +31,11 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
+from pointcoord.patches.path import way_of
 from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
-from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.results.states_of_boxes import StatesOfBoxes
 from pointcoord.results.states_of_designs import StatesOfDesigns
 from pointcoord.results.table import Table
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
@@ -49,6 +50,7 @@ from pointcoord.simulation import (
     tolerance_notes,
 )
 from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.designs_by_inputs import Way
 from pointcoord.solve.status import Status, TooLong, TooRough
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
@@ -133,22 +135,40 @@ class Course:
         block = _Block.empty(self, first, last)
         for low in range(first, last, together):
             numbers = np.arange(low, min(low + together, last))
-            for scene, members in self._by_laws(numbers):
+            for law, members in self._by_laws(numbers):
                 try:
-                    block.solve(scene, members)
+                    block.solve(law, members)
                 except PointcoordError as error:
                     if self.which is None:
                         raise
                     block.fail(members, error)
         return block.sweep()
 
-    def _by_laws(self, numbers: Numbers) -> Iterator[tuple[Scene, Numbers]]:
+    def _by_laws(self, numbers: Numbers) -> Iterator[tuple[int, Numbers]]:
         if self.which is None:
-            yield self.scene, numbers
+            yield 0, numbers
             return
         which = self.which[numbers]
         for one in np.unique(which).tolist():
-            yield self.laws[one], numbers[which == one]
+            yield one, numbers[which == one]
+
+    @cached_property
+    def drawn(self) -> Array | None:
+        """Coordinates of the scene's own drawing; None if it makes no mechanism."""
+        try:
+            return scene_mechanism(self.scene).drawn
+        except SceneError:
+            return None
+
+    def way(self, law: int, functions: Mapping[str, TimeFunction]) -> Way | None:
+        """Where the inputs go by some laws; None where all stand still."""
+        if law not in self._ways:
+            self._ways[law] = way_of_inputs(self.laws[law], functions)
+        return self._ways[law]
+
+    @cached_property
+    def _ways(self) -> dict[int, Way | None]:
+        return {}
 
 
 @dataclass(frozen=True)
@@ -215,8 +235,8 @@ class _Block:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
             self.filled[int(number) - self.first] = False
 
-    def solve(self, scene: Scene, members: Numbers) -> None:
-        """Solve designs that share their laws."""
+    def solve(self, law: int, members: Numbers) -> None:
+        """Solve designs that share their laws, by their number."""
         course = self.course
         points = course.designs.points(members)
         sound = np.ones(len(members), dtype=bool)
@@ -229,7 +249,7 @@ class _Block:
         for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
             places = np.searchsorted(members, own)
             self._look_at(own, {name: place[places] for name, place in points.items()})
-            self._move(scene, own, mechanism)
+            self._move(law, own, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
         """The mechanism of all that have one, found in halves where some have none."""
@@ -268,16 +288,19 @@ class _Block:
             weight = 0.0 if weights is None else float(weights[place])
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
-    def _move(self, scene: Scene, members: Numbers, mechanism: Mechanism) -> None:
+    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> None:
         """Close, assemble and move designs, and read their numbers."""
-        course, time = self.course, scene.time
+        course, scene = self.course, self.course.laws[law]
+        time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
         # Which values have a meaning is the same for every design.
         check_range(mechanism.taken(0), functions, scene.instants)
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
 
-        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
+        way = course.way(law, functions)
+        like = course.drawn
+        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed, way, like)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
         for place, status in solved.failures.items():
@@ -334,27 +357,43 @@ class _Block:
         solved: SolvedDesigns,
     ) -> None:
         """Put the numbers of designs that were solved into their tables."""
-        if solved.chain is None or not len(solved.alive):
+        if solved.chain is not None and len(solved.alive):
+            readout = _readout(self.course, scene, mechanism.taken(solved.alive))
+            states = StatesOfDesigns(readout, functions, solved.chain, scene.time.start)
+            self._fill(readout, states, scene.instants, members[solved.alive])
+        if solved.boxes is not None and len(solved.mapped):
+            all_of_them = len(solved.mapped) == len(members)
+            part = mechanism if all_of_them else mechanism.taken(solved.mapped)
+            readout = _readout(self.course, scene, part)
+            boxes = StatesOfBoxes(readout, functions, solved.boxes)
+            self._fill(readout, boxes, scene.instants, members[solved.mapped])
+        alive = members[solved.solved]
+        if not len(alive):
             return
-        alive, instants = members[solved.alive], scene.instants
-        part = mechanism.taken(solved.alive)
-        readout = _readout(self.course, scene, part)
-        self.readouts[:] = [readout]
-        states = StatesOfDesigns(readout, functions, solved.chain, scene.time.start)
-        whole = SolvedScene(readout, functions, states)
-        places = alive - self.first
         kept = np.array([number not in self.failures for number in alive.tolist()])
-        if kept.all() and places[-1] - places[0] == len(places) - 1:
-            whole.samples(instants, self.rows[places[0] : places[-1] + 1])
-        else:
-            rows = np.empty((len(alive), *self.rows.shape[1:]))
-            whole.samples(instants, rows)
-            self.rows[places[kept]] = rows[kept]
-        self.filled[places[kept]] = True
-        for words in tolerance_notes(scene, part.taken(0)):
+        for words in tolerance_notes(scene, mechanism.taken(int(solved.solved[0]))):
             self._note("tolerance", alive, kept, _the_same(words), warns=False)
         self._require_known(scene, alive[kept], functions)
         self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
+
+    def _fill(
+        self, readout: Readout, states: StatesOfDesigns | StatesOfBoxes, instants: Array, members: Numbers
+    ) -> None:
+        """Put the numbers of designs into their tables."""
+        self.readouts[:] = [readout]
+        places = members - self.first
+        kept = np.array([number not in self.failures for number in members.tolist()])
+        whole = kept.all() and places[-1] - places[0] == len(places) - 1
+        rows = (
+            self.rows[places[0] : places[-1] + 1] if whole else np.empty((len(members), *self.rows.shape[1:]))
+        )
+        for low in range(0, len(instants), INSTANTS):
+            here = rows[..., low : low + INSTANTS]
+            times = instants[low : low + INSTANTS]
+            readout.complete(times, states.states(times, here), here)
+        if not whole:
+            self.rows[places[kept]] = rows[kept]
+        self.filled[places[kept]] = True
 
     def _alone(self, number: int) -> None:
         """Solve one design as a scene of its own, by whatever follows its laws."""
@@ -411,6 +450,17 @@ def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:
 
 def _the_same(words: str) -> Callable[[int], str]:
     return lambda place: words
+
+
+def way_of_inputs(scene: Scene, functions: Mapping[str, TimeFunction]) -> Way | None:
+    """Where the inputs of a scene go that move; None where all stand still."""
+    moving = {name: law for name, law in functions.items() if not law.still}
+    if not moving:
+        return None
+    spans = way_of(moving, scene.time.start, scene.time.stop)
+    rates = [np.abs(law.series(scene.instants, 2)[:, 1:]).max(axis=0) for law in moving.values()]
+    speeds, accelerations = np.array([[1.0], [2.0]]) * np.array(rates).T
+    return Way(tuple(moving), spans.low, spans.high, speeds, accelerations)
 
 
 def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:

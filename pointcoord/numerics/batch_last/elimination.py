@@ -146,6 +146,23 @@ class Elimination:
     @cached_property
     def levels(self) -> tuple[Level, ...]:
         """Blocks that hang on earlier ones only, level after level."""
+        return self._levels_of(frozenset(range(self.size)))
+
+    def levels_of(self, unknowns: frozenset[int]) -> tuple[Level, ...]:
+        """The same of some blocks, where the unknowns of all others are zero.
+
+        Args:
+            unknowns: of these blocks.
+        """
+        if unknowns not in self._kept_levels:
+            self._kept_levels[unknowns] = self._levels_of(unknowns)
+        return self._kept_levels[unknowns]
+
+    @cached_property
+    def _kept_levels(self) -> dict[frozenset[int], tuple[Level, ...]]:
+        return {}
+
+    def _levels_of(self, wanted: frozenset[int]) -> tuple[Level, ...]:
         block_of = {unknown: number for number, block in enumerate(self.blocks) for unknown in block}
         row_block = {pivot.row: block_of[pivot.column] for pivot in self.pivots}
         depth = [0] * len(self.blocks)
@@ -155,13 +172,16 @@ class Elimination:
         inverse = self.inverse_program.entries
         found = []
         for level in range(max(depth) + 1):
-            rows = [pivot.row for pivot in self.pivots if depth[row_block[pivot.row]] == level]
-            unknowns = [unknown for unknown in range(self.size) if depth[block_of[unknown]] == level]
+            unknowns = [unknown for unknown in sorted(wanted) if depth[block_of[unknown]] == level]
+            if not unknowns:
+                continue
+            own_blocks = {block_of[unknown] for unknown in unknowns}
+            rows = [pivot.row for pivot in self.pivots if row_block[pivot.row] in own_blocks]
             own = [place for place, (i, _) in enumerate(inverse) if i in unknowns]
             outside = [
                 place
                 for place, (i, j) in enumerate(self.entries)
-                if i in rows and block_of[j] != row_block[i]
+                if i in rows and block_of[j] != row_block[i] and j in wanted
             ]
             sums = np.zeros((len(unknowns), len(own)))
             sums[[unknowns.index(inverse[place][0]) for place in own], np.arange(len(own))] = 1.0
@@ -244,26 +264,36 @@ class BlockSolver:
     level.
 
     Attributes:
+        levels: of the blocks that are solved.
         inverse, outside: by level, entries of the inverses and of the matrix in earlier unknowns.
     """
 
-    plan: Elimination
+    levels: tuple[Level, ...]
     inverse: tuple[Array, ...]
     outside: tuple[Array, ...]
 
     @classmethod
-    def of(cls, factors: Eliminated) -> BlockSolver:
-        """Of factors."""
-        inverse, levels = factors.inverse(), factors.plan.levels
+    def of(
+        cls, factors: Eliminated, unknowns: frozenset[int] | None = None, inverse: Array | None = None
+    ) -> BlockSolver:
+        """Of factors.
+
+        Args:
+            unknowns: those of the blocks that are wanted, where all others are zero; all if not given.
+            inverse: what `factors.inverse()` gives, where that is at hand.
+        """
+        plan = factors.plan
+        levels = plan.levels if unknowns is None else plan.levels_of(unknowns)
+        whole = factors.inverse() if inverse is None else inverse
         return cls(
-            factors.plan,
-            tuple(inverse.take(level.inverse, axis=0) for level in levels),
+            levels,
+            tuple(whole.take(level.inverse, axis=0) for level in levels),
             tuple(factors.entries.take(level.outside, axis=0) for level in levels),
         )
 
     def solve(self, right: Array, out: Array) -> Array:
         """x with matrix x = right, shapes (size, members)."""
-        for level, inverse, outside in zip(self.plan.levels, self.inverse, self.outside, strict=True):
+        for level, inverse, outside in zip(self.levels, self.inverse, self.outside, strict=True):
             rows = right.take(level.rows, axis=0)
             if len(level.outside):
                 known = out.take(level.earlier, axis=0)
@@ -272,6 +302,20 @@ class BlockSolver:
             products = rows.take(level.inverse_rows, axis=0)
             products *= inverse
             out[level.unknowns] = level.sums @ products
+        return out
+
+    def solve_many(self, right: Array, out: Array) -> Array:
+        """The same of several right-hand sides of each member, shapes (size, several, members)."""
+        flat = (-1, right.shape[1] * right.shape[2])
+        for level, inverse, outside in zip(self.levels, self.inverse, self.outside, strict=True):
+            rows = right.take(level.rows, axis=0)
+            if len(level.outside):
+                known = out.take(level.earlier, axis=0)
+                known *= outside[:, None]
+                rows -= (level.taken @ known.reshape(flat)).reshape(rows.shape)
+            products = rows.take(level.inverse_rows, axis=0)
+            products *= inverse[:, None]
+            out[level.unknowns] = (level.sums @ products.reshape(flat)).reshape(-1, *right.shape[1:])
         return out
 
 

@@ -49,17 +49,19 @@ class ColumnSeries:
         driven: list[int],
         most: int,
         spare: ColumnSeries | None = None,
+        follows: NDArray[np.bool_] | None = None,
     ) -> ColumnSeries:
         """The pose itself, with room for so many orders.
 
         Args:
             y: coordinates, shape (size, members). driven: the known coordinates that move.
             spare: a series that is not carried on any more; its room is used again if it suits.
+            follows: the unknowns that move with these, shape (unknowns,); all if not given.
         """
         size, members = y.shape
         first, second = rows.ends
         moving = np.zeros(size, dtype=bool)
-        moving[: rows.unknowns] = True
+        moving[: rows.unknowns] = True if follows is None else follows
         moving[driven] = True
         convolution = rows.convolution.of_moving(moving[first] | moving[second])
         d = rows.differences(y)

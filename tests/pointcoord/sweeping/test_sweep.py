@@ -116,6 +116,14 @@ def test_a_design_of_a_sweep_is_the_design_alone(scene: Scene, varied: str) -> N
         assert found.varied[varied][number] == drawn
 
 
+@pytest.mark.parametrize("scene", [WISHBONE, STRUT, PAPER, few_instants(Scene.load("bounce"), 11)])
+def test_a_design_among_many_is_the_design_alone(scene: Scene) -> None:
+    found = sweep(scene, offsets={"lower_ball_joint.z": np.linspace(-4.0, 3.0, 40)})
+    assert found.solved.all()
+    for number in (0, 17, 39):
+        assert_same_as_alone(found.of(number), found.scene(number))
+
+
 def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other() -> None:
     together = sweep(WISHBONE, offsets={"lower_ball_joint.z": (*HEIGHTS, STOPS)})
     assert set(together.failures) == {3, 4, 5}
