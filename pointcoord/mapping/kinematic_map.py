@@ -38,7 +38,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.stored import Stored, read, write
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import sum_series, sum_series_once
+from pointcoord.patches.evaluation import OnePatch, sum_series
 from pointcoord.patches.flood import Limits, flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
@@ -286,6 +286,9 @@ class KinematicMap:
             MapError: an array without a column for each input.
         """
         states = [np.asarray(values, dtype=float)]
+        if rates is None and accelerations is None and states[0].shape == self._single_shape:
+            place = states[0].tolist()
+            return self._ready[self._patch_of(place)].at(place).reshape(1, -1, 3)
         if accelerations is not None and rates is None:
             raise _needs_rates()
         states += [np.asarray(state, dtype=float) for state in (rates, accelerations) if state is not None]
@@ -301,14 +304,17 @@ class KinematicMap:
         middle, half = self._boxes
         table, order = self.stored.coefficients, self.order
         if all(state.ndim == 1 for state in states):
-            number = self._patch_of(states[0])
-            found = sum_series_once(table[number], middle[number], half[number], order, states)
-            return found.reshape(len(states), -1, 3)
+            single = [state.tolist() for state in states]
+            return self._ready[self._patch_of(single[0])].moving(single).reshape(len(states), -1, 3)
         batch = np.broadcast_shapes(*(state.shape[:-1] for state in states))
         flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
         patch = self._patches_of(flat[0])
         found = sum_series(table, middle, half, order, patch, flat)
         return found.reshape(len(states), *batch, len(self.points), 3)
+
+    def __reduce__(self) -> tuple[type[KinematicMap], tuple[Scene, float, Stored]]:
+        """What is made of it for quicker calls is made again."""
+        return type(self), (self.scene, self.tolerance, self.stored)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
@@ -378,17 +384,36 @@ class KinematicMap:
             raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
         return number
 
-    def _patch_of(self, value: Array) -> int:
+    @cached_property
+    def _single_shape(self) -> tuple[int]:
+        """Of one pose's inputs."""
+        return (len(self.inputs),)
+
+    @cached_property
+    def _ready(self) -> tuple[OnePatch, ...]:
+        """The patches, for one pose at a time."""
+        parts = zip(self.stored.coefficients, *self._boxes, strict=True)
+        return tuple(OnePatch.of(table, middle, half, self.order) for table, middle, half in parts)
+
+    @cached_property
+    def _ends(self) -> tuple[list[tuple[str, float, float, float]], int, memoryview]:
+        """Each input with its ends and the smallest boxes per unit, how many of these lie along a range, and
+        the patch of each of them."""
+        table = np.ascontiguousarray(self._lookup.table).ravel()
+        return list(zip(self.inputs, *self._lookup.corner, strict=True)), self.domain.parts, table.data
+
+    def _patch_of(self, value: list[float]) -> int:
         """The patch of one pose."""
-        low, high, along = self._lookup.corner
-        box = []
-        for i, number in enumerate(value.tolist()):
-            if not low[i] <= number <= high[i]:
-                raise self._out_of_range(self.inputs[i], number)
-            box.append(min(int((number - low[i]) * along[i]), self.domain.parts - 1))
-        patch = int(self._lookup.table[tuple(box)])
+        ends, parts, table = self._ends
+        box = 0
+        for number, (name, low, high, along) in zip(value, ends, strict=True):
+            if not low <= number <= high:
+                raise self._out_of_range(name, number)
+            place = int((number - low) * along)
+            box = box * parts + (place if place < parts else parts - 1)
+        patch: int = table[box]
         if patch < 0:
-            raise self._not_covered(value, patch, 1, 1)
+            raise self._not_covered(np.array(value), patch, 1, 1)
         return patch
 
     def _out_of_range(self, name: str, value: float) -> InputOutOfRange:
