@@ -15,7 +15,7 @@ outwards from the closed drawing (see `flood`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from types import MappingProxyType
@@ -35,6 +35,7 @@ from pointcoord.errors import (
 )
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import Stored, read, write
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
@@ -126,9 +127,11 @@ class MappedPoses:
     Attributes:
         numbers: by quantity and name, of points and bodies (..., 3), of the car (...), for inputs of shape
             (...); see `effects.registry.QUANTITIES` for what there is and its units.
+        bounds: how far each of these may be off, proven, of the same shapes; empty unless asked for.
     """
 
     numbers: Mapping[str, Channel]
+    bounds: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Channel:
         numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
@@ -238,6 +241,7 @@ class KinematicMap:
         inputs: Mapping[str, ArrayLike],
         rates: Mapping[str, ArrayLike] | None = None,
         accelerations: Mapping[str, ArrayLike] | None = None,
+        bounds: bool = False,
     ) -> MappedPoses:
         """Poses at some inputs, and their time derivatives where the inputs' own are given.
 
@@ -245,6 +249,8 @@ class KinematicMap:
             inputs: of each input that is not held, numbers or arrays that broadcast to one shape, rad or mm;
                 what moves the chassis may be given too, and is zero if it is not.
             rates, accelerations: likewise, per s and per s^2.
+            bounds: whether to prove how far each number is off, at its own pose, for the inputs as they are
+                given; it takes some 50 times as long.
         Returns:
             Positions of all points, their velocities and accelerations where rates and accelerations are
             given, and the scene's effects as far as these are known.
@@ -260,12 +266,15 @@ class KinematicMap:
                 raise _needs_rates()
             given.append(accelerations)
         states, lifts, shape = self._split(given)
-        numbers = self.evaluate(*states)
+        found = self.evaluate(*states)
         places = [
             self._chassis(d, shape) | {name: state[..., i, :] for i, name in enumerate(self.points)}
-            for d, state in enumerate(numbers)
+            for d, state in enumerate(found)
         ]
-        return self._read(places, lifts)
+        numbers = self._read(places, lifts)
+        if not bounds:
+            return MappedPoses(numbers)
+        return MappedPoses(numbers, self._bounds(states, found, self._chassis_inputs(given, shape), numbers))
 
     def evaluate(
         self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
@@ -438,7 +447,7 @@ class KinematicMap:
                     raise UnknownName(kind, name, topology.inputs)
                 wanted = held.get(name) if d == 0 else 0.0 if name in held else None
                 value = np.ravel(np.asarray(state[name], dtype=float))
-                if wanted is not None and any(value != wanted):
+                if wanted is not None and (value != wanted).any():
                     worst = float(value[np.argmax(value != wanted)])
                     raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
             for name in self.inputs:
@@ -451,17 +460,63 @@ class KinematicMap:
             for state in arrays
         ]
         lifts: list[Array | None] = []
-        for state in arrays:
+        for state in self._chassis_inputs(given, shape):
             total: Array | None = None
-            for name, direction in topology.chassis_motion.items():
-                if name in state:
-                    wrong = state[name][~np.isfinite(state[name])]
-                    if wrong.size:
-                        raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
-                    part = np.broadcast_to(state[name], shape)[..., None] * vectors[direction]
-                    total = part if total is None else total + part
+            for name, value in state.items():
+                wrong = value[~np.isfinite(value)]
+                if wrong.size:
+                    raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
+                part = value[..., None] * vectors[topology.chassis_motion[name]]
+                total = part if total is None else total + part
             lifts.append(total)
         return columns, lifts, shape
+
+    def _chassis_inputs(
+        self, given: Sequence[Mapping[str, ArrayLike]], shape: tuple[int, ...]
+    ) -> list[dict[str, Array]]:
+        """What moves the chassis as far as it is given, by derivative, each of the poses' shape."""
+        names = self.mechanism.topology.chassis_motion
+        return [
+            {n: np.broadcast_to(np.asarray(state[n], dtype=float), shape) for n in names if n in state}
+            for state in given
+        ]
+
+    def _bounds(
+        self,
+        states: Sequence[Array],
+        found: Array,
+        chassis: Sequence[Mapping[str, Array]],
+        numbers: Mapping[str, Channel],
+    ) -> dict[str, dict[str, Array]]:
+        """Proven errors of all numbers, of their shapes."""
+        flat = [np.ascontiguousarray(state).reshape(-1, len(self.inputs)) for state in states]
+        count = len(flat[0])
+        axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
+
+        def one_by_one(array: Array, of: str) -> Array:
+            return array.reshape((count,) if of == "car" else (count, 3))
+
+        evaluated = Evaluated(
+            self.mechanism,
+            axes,
+            self.points,
+            self.stored.off,
+            self._boxes[1],
+            self._patches_of(flat[0]),
+            flat[1:],
+            found.reshape(len(flat), count, len(self.points), 3),
+            [{name: value.reshape(count) for name, value in state.items()} for state in chassis],
+            {
+                quantity: {name: one_by_one(array, channel.quantity.of) for name, array in channel.items()}
+                for quantity, channel in numbers.items()
+            },
+        )
+        bounds = evaluated.bounds(self._effects[len(states) - 1])
+        return {
+            quantity: {name: array.reshape(numbers[quantity][name].shape) for name, array in arrays.items()}
+            for quantity, arrays in bounds.items()
+            if arrays
+        }
 
     @cached_property
     def _effects(self) -> tuple[tuple[Effect, ...], tuple[Effect, ...], tuple[Effect, ...]]:
@@ -474,7 +529,7 @@ class KinematicMap:
             found.append(tuple(e for e in states if e.derivative <= derivative))
         return found[0], found[1], found[2]
 
-    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> MappedPoses:
+    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> dict[str, Channel]:
         """Effects of states in the chassis' frame."""
         mechanism = self.mechanism
         axes = CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard)
@@ -493,7 +548,7 @@ class KinematicMap:
         for name, arrays in found.items():
             left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
             numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
-        return MappedPoses(numbers)
+        return numbers
 
 
 STATES = ("values", "rates", "accelerations")
