@@ -14,12 +14,14 @@ other.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.monomials import monomials
@@ -172,7 +174,7 @@ class Cover:
     work: Work
 
 
-@dataclass
+@dataclasses.dataclass
 class _Flood:
     """Boxes on their way to being covered.
 

@@ -24,7 +24,6 @@ Whatever is not confirmed goes along a path of its own, and then the plain way, 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations_with_replacement
 from math import comb
@@ -32,6 +31,7 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.batch_last.elimination import Eliminated

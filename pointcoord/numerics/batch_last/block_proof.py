@@ -20,11 +20,10 @@ go together, so that one that moves little counts as much as one that moves far.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.batch_last.column_map import ColumnMap
 from pointcoord.numerics.batch_last.elimination import Elimination
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF

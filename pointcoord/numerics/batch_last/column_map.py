@@ -12,12 +12,12 @@ b hold no constant: steps, tangents and terms of a series.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.quadratic import Product, QuadraticMap
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
