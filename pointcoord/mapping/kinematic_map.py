@@ -15,6 +15,7 @@ outwards from the closed drawing (see `flood`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from functools import cached_property
 from os import PathLike
 from types import MappingProxyType
@@ -35,10 +36,11 @@ from pointcoord.errors import (
 )
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import Stored, read, write
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import sum_series, sum_series_once
+from pointcoord.patches.evaluation import OnePatch, sum_series
 from pointcoord.patches.flood import Limits, flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
@@ -126,9 +128,11 @@ class MappedPoses:
     Attributes:
         numbers: by quantity and name, of points and bodies (..., 3), of the car (...), for inputs of shape
             (...); see `effects.registry.QUANTITIES` for what there is and its units.
+        bounds: how far each of these may be off, proven, of the same shapes; empty unless asked for.
     """
 
     numbers: Mapping[str, Channel]
+    bounds: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Channel:
         numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
@@ -238,6 +242,7 @@ class KinematicMap:
         inputs: Mapping[str, ArrayLike],
         rates: Mapping[str, ArrayLike] | None = None,
         accelerations: Mapping[str, ArrayLike] | None = None,
+        bounds: bool = False,
     ) -> MappedPoses:
         """Poses at some inputs, and their time derivatives where the inputs' own are given.
 
@@ -245,6 +250,8 @@ class KinematicMap:
             inputs: of each input that is not held, numbers or arrays that broadcast to one shape, rad or mm;
                 what moves the chassis may be given too, and is zero if it is not.
             rates, accelerations: likewise, per s and per s^2.
+            bounds: whether to prove how far each number is off, at its own pose, for the inputs as they are
+                given; it takes some 50 times as long.
         Returns:
             Positions of all points, their velocities and accelerations where rates and accelerations are
             given, and the scene's effects as far as these are known.
@@ -260,12 +267,15 @@ class KinematicMap:
                 raise _needs_rates()
             given.append(accelerations)
         states, lifts, shape = self._split(given)
-        numbers = self.evaluate(*states)
+        found = self.evaluate(*states)
         places = [
             self._chassis(d, shape) | {name: state[..., i, :] for i, name in enumerate(self.points)}
-            for d, state in enumerate(numbers)
+            for d, state in enumerate(found)
         ]
-        return self._read(places, lifts)
+        numbers = self._read(places, lifts)
+        if not bounds:
+            return MappedPoses(numbers)
+        return MappedPoses(numbers, self._bounds(states, found, self._chassis_inputs(given, shape), numbers))
 
     def evaluate(
         self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
@@ -286,6 +296,9 @@ class KinematicMap:
             MapError: an array without a column for each input.
         """
         states = [np.asarray(values, dtype=float)]
+        if rates is None and accelerations is None and states[0].shape == self._single_shape:
+            place = states[0].tolist()
+            return self._ready[self._patch_of(place)].at(place).reshape(1, -1, 3)
         if accelerations is not None and rates is None:
             raise _needs_rates()
         states += [np.asarray(state, dtype=float) for state in (rates, accelerations) if state is not None]
@@ -301,14 +314,17 @@ class KinematicMap:
         middle, half = self._boxes
         table, order = self.stored.coefficients, self.order
         if all(state.ndim == 1 for state in states):
-            number = self._patch_of(states[0])
-            found = sum_series_once(table[number], middle[number], half[number], order, states)
-            return found.reshape(len(states), -1, 3)
+            single = [state.tolist() for state in states]
+            return self._ready[self._patch_of(single[0])].moving(single).reshape(len(states), -1, 3)
         batch = np.broadcast_shapes(*(state.shape[:-1] for state in states))
         flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
         patch = self._patches_of(flat[0])
         found = sum_series(table, middle, half, order, patch, flat)
         return found.reshape(len(states), *batch, len(self.points), 3)
+
+    def __reduce__(self) -> tuple[type[KinematicMap], tuple[Scene, float, Stored]]:
+        """What is made of it for quicker calls is made again."""
+        return type(self), (self.scene, self.tolerance, self.stored)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
@@ -378,17 +394,36 @@ class KinematicMap:
             raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
         return number
 
-    def _patch_of(self, value: Array) -> int:
+    @cached_property
+    def _single_shape(self) -> tuple[int]:
+        """Of one pose's inputs."""
+        return (len(self.inputs),)
+
+    @cached_property
+    def _ready(self) -> tuple[OnePatch, ...]:
+        """The patches, for one pose at a time."""
+        parts = zip(self.stored.coefficients, *self._boxes, strict=True)
+        return tuple(OnePatch.of(table, middle, half, self.order) for table, middle, half in parts)
+
+    @cached_property
+    def _ends(self) -> tuple[list[tuple[str, float, float, float]], int, memoryview]:
+        """Each input with its ends and the smallest boxes per unit, how many of these lie along a range, and
+        the patch of each of them."""
+        table = np.ascontiguousarray(self._lookup.table).ravel()
+        return list(zip(self.inputs, *self._lookup.corner, strict=True)), self.domain.parts, table.data
+
+    def _patch_of(self, value: list[float]) -> int:
         """The patch of one pose."""
-        low, high, along = self._lookup.corner
-        box = []
-        for i, number in enumerate(value.tolist()):
-            if not low[i] <= number <= high[i]:
-                raise self._out_of_range(self.inputs[i], number)
-            box.append(min(int((number - low[i]) * along[i]), self.domain.parts - 1))
-        patch = int(self._lookup.table[tuple(box)])
+        ends, parts, table = self._ends
+        box = 0
+        for number, (name, low, high, along) in zip(value, ends, strict=True):
+            if not low <= number <= high:
+                raise self._out_of_range(name, number)
+            place = int((number - low) * along)
+            box = box * parts + (place if place < parts else parts - 1)
+        patch: int = table[box]
         if patch < 0:
-            raise self._not_covered(value, patch, 1, 1)
+            raise self._not_covered(np.array(value), patch, 1, 1)
         return patch
 
     def _out_of_range(self, name: str, value: float) -> InputOutOfRange:
@@ -413,7 +448,7 @@ class KinematicMap:
                     raise UnknownName(kind, name, topology.inputs)
                 wanted = held.get(name) if d == 0 else 0.0 if name in held else None
                 value = np.ravel(np.asarray(state[name], dtype=float))
-                if wanted is not None and any(value != wanted):
+                if wanted is not None and (value != wanted).any():
                     worst = float(value[np.argmax(value != wanted)])
                     raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
             for name in self.inputs:
@@ -426,17 +461,63 @@ class KinematicMap:
             for state in arrays
         ]
         lifts: list[Array | None] = []
-        for state in arrays:
+        for state in self._chassis_inputs(given, shape):
             total: Array | None = None
-            for name, direction in topology.chassis_motion.items():
-                if name in state:
-                    wrong = state[name][~np.isfinite(state[name])]
-                    if wrong.size:
-                        raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
-                    part = np.broadcast_to(state[name], shape)[..., None] * vectors[direction]
-                    total = part if total is None else total + part
+            for name, value in state.items():
+                wrong = value[~np.isfinite(value)]
+                if wrong.size:
+                    raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
+                part = value[..., None] * vectors[topology.chassis_motion[name]]
+                total = part if total is None else total + part
             lifts.append(total)
         return columns, lifts, shape
+
+    def _chassis_inputs(
+        self, given: Sequence[Mapping[str, ArrayLike]], shape: tuple[int, ...]
+    ) -> list[dict[str, Array]]:
+        """What moves the chassis as far as it is given, by derivative, each of the poses' shape."""
+        names = self.mechanism.topology.chassis_motion
+        return [
+            {n: np.broadcast_to(np.asarray(state[n], dtype=float), shape) for n in names if n in state}
+            for state in given
+        ]
+
+    def _bounds(
+        self,
+        states: Sequence[Array],
+        found: Array,
+        chassis: Sequence[Mapping[str, Array]],
+        numbers: Mapping[str, Channel],
+    ) -> dict[str, dict[str, Array]]:
+        """Proven errors of all numbers, of their shapes."""
+        flat = [np.ascontiguousarray(state).reshape(-1, len(self.inputs)) for state in states]
+        count = len(flat[0])
+        axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
+
+        def one_by_one(array: Array, of: str) -> Array:
+            return array.reshape((count,) if of == "car" else (count, 3))
+
+        evaluated = Evaluated(
+            self.mechanism,
+            axes,
+            self.points,
+            self.stored.off,
+            self._boxes[1],
+            self._patches_of(flat[0]),
+            flat[1:],
+            found.reshape(len(flat), count, len(self.points), 3),
+            [{name: value.reshape(count) for name, value in state.items()} for state in chassis],
+            {
+                quantity: {name: one_by_one(array, channel.quantity.of) for name, array in channel.items()}
+                for quantity, channel in numbers.items()
+            },
+        )
+        bounds = evaluated.bounds(self._effects[len(states) - 1])
+        return {
+            quantity: {name: array.reshape(numbers[quantity][name].shape) for name, array in arrays.items()}
+            for quantity, arrays in bounds.items()
+            if arrays
+        }
 
     @cached_property
     def _effects(self) -> tuple[tuple[Effect, ...], tuple[Effect, ...], tuple[Effect, ...]]:
@@ -449,7 +530,7 @@ class KinematicMap:
             found.append(tuple(e for e in states if e.derivative <= derivative))
         return found[0], found[1], found[2]
 
-    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> MappedPoses:
+    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> dict[str, Channel]:
         """Effects of states in the chassis' frame."""
         mechanism = self.mechanism
         axes = CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard)
@@ -468,7 +549,7 @@ class KinematicMap:
         for name, arrays in found.items():
             left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
             numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
-        return MappedPoses(numbers)
+        return numbers
 
 
 STATES = ("values", "rates", "accelerations")

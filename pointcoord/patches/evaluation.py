@@ -130,33 +130,90 @@ class _Summing:
                 yield here, d, block
 
 
-@lru_cache(maxsize=32)
-def _exponents(inputs: int, order: int) -> tuple[Array, list[NDArray[np.intp]]]:
-    """0 .. order, and the exponents of every power but the first by variable."""
-    return np.arange(order + 1.0), list(powers(inputs, order).exponents[1:].T)
+@dataclass(frozen=True)
+class _Exponents:
+    """Of one pose's powers.
 
-
-def sum_series_once(
-    coefficients: Array, middle: Array, half: Array, order: int, states: Sequence[Array]
-) -> Array:
-    """The same for one pose on one patch, with as few calls as possible.
-
-    Args:
-        coefficients: shape (powers, m). middle, half: (p,).
-        states: inputs and their time derivatives, each (p,).
-    Returns:
-        Shape (derivatives + 1, m), per s^d.
+    Attributes:
+        each: 0 .. order. which: exponents of every power but the first, by variable.
+        lowered, factors: exponents and factors of x^k and of its first two derivatives, (3, order + 1).
     """
-    if len(states) > 1:
-        local = [((states[0] - middle) / half)[:, None], *((state / half)[:, None] for state in states[1:])]
-        rows = np.stack([row[1:, 0] for row in monomials(local, order)])
-        result = np.asarray(rows @ coefficients[1:])
-        result[0] += coefficients[0]
-        return result
-    exponents, which = _exponents(len(middle), order)
-    row: Array | None = None
-    for value, at, width, k in zip(states[0].tolist(), middle.tolist(), half.tolist(), which, strict=True):
-        own = (((value - at) / width) ** exponents)[k]
-        row = own if row is None else row * own
-    assert row is not None  # a map has an input
-    return np.asarray(row @ coefficients[1:] + coefficients[0])[None]
+
+    each: Array
+    which: tuple[NDArray[np.intp], ...]
+    lowered: Array
+    factors: Array
+
+
+@lru_cache(maxsize=32)
+def exponents(inputs: int, order: int) -> _Exponents:
+    """Of series in some inputs."""
+    each = np.arange(order + 1.0)
+    lowered = np.maximum(each - np.arange(3.0)[:, None], 0.0)
+    factors = np.stack([np.ones(order + 1), each, each * (each - 1.0)])
+    which = tuple(np.ascontiguousarray(k) for k in powers(inputs, order).exponents[1:].T)
+    return _Exponents(each, which, lowered, factors)
+
+
+@dataclass(frozen=True)
+class OnePatch:
+    """A patch made ready for one pose at a time, with as few calls as possible.
+
+    Attributes:
+        places: middle and half width of each input. first: the first coefficient of each sum, (m,).
+        later: the others, (powers - 1, m).
+    """
+
+    places: tuple[tuple[float, float], ...]
+    first: Array
+    later: Array
+    exponents: _Exponents
+
+    @classmethod
+    def of(cls, coefficients: Array, middle: Array, half: Array, order: int) -> OnePatch:
+        """From its coefficients, shape (powers, m), middle and half widths, (p,)."""
+        places = tuple(zip(middle.tolist(), half.tolist(), strict=True))
+        return cls(places, coefficients[0], coefficients[1:], exponents(len(middle), order))
+
+    def at(self, values: Sequence[float]) -> Array:
+        """The sums, (m,)."""
+        row: Array | None = None
+        each = self.exponents.each
+        for value, (middle, half), k in zip(values, self.places, self.exponents.which, strict=True):
+            own = (((value - middle) / half) ** each).take(k)
+            row = own if row is None else row * own
+        assert row is not None  # a map has an input
+        found: Array = row.dot(self.later)
+        found += self.first
+        return found
+
+    def moving(self, states: Sequence[Sequence[float]]) -> Array:
+        """The sums and their time derivatives, (derivatives + 1, m), per s^d.
+
+        By the chain rule f(x)' = f_x x' and f(x)'' = f_x x'' + f_xx x'^2 for the powers of each variable, and
+        Leibniz' rule for their products.
+
+        Args:
+            states: inputs and their time derivatives, each (p,).
+        """
+        count = len(states)
+        rows: list[Array] = []
+        lowered, factors = self.exponents.lowered[:count], self.exponents.factors[:count]
+        for i, ((middle, half), k) in enumerate(zip(self.places, self.exponents.which, strict=True)):
+            by_x = ((states[0][i] - middle) / half) ** lowered
+            by_x *= factors
+            rate = states[1][i] / half
+            own = [by_x[0], rate * by_x[1]]
+            if count > 2:
+                own.append(states[2][i] / half * by_x[1] + rate * rate * by_x[2])
+            here = [part.take(k) for part in own]
+            if not rows:
+                rows = here
+                continue
+            product = [rows[0] * here[0], rows[1] * here[0] + rows[0] * here[1]]
+            if count > 2:
+                product.append(rows[2] * here[0] + 2.0 * (rows[1] * here[1]) + rows[0] * here[2])
+            rows = product
+        found: Array = np.array(rows).dot(self.later)
+        found[0] += self.first
+        return found

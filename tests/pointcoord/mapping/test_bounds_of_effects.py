@@ -1,0 +1,137 @@
+"""What a map says of how far each of its numbers is off holds against the many-digit reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import KinematicMap, Scene, kinematic_map
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.mapping.kinematic_map import MappedPoses
+from pointcoord.patches.jet import Jet
+from validate.adjudication.reference_solution import as_solution, reference_instant
+
+Array = NDArray[np.float64]
+States = tuple[dict[str, Array], dict[str, Array], dict[str, Array]]
+
+POSES = 8
+RANGES = {
+    "bounce-and-steer": {"arm_angle": (1.5, 1.9), "rack": (-30.0, 30.0)},
+    "double-wishbone": {"arm_angle": (1.45, 1.65), "rack": (-15.0, 15.0)},
+    "off-axis-strut": {"arm_angle": (1.5, 1.7), "rack": (-15.0, 15.0)},
+}
+by_scene = pytest.mark.parametrize("name", RANGES)
+
+
+def with_all_effects(name: str) -> Scene:
+    """As many instants as poses are compared with the reference; a map does not look at them."""
+    scene = Scene.load(name)
+    time = scene.time.model_copy(update={"samples": POSES})
+    return scene.model_copy(update={"effects": tuple(EFFECTS), "time": time})
+
+
+def states_of(scene: Scene, name: str, seed: int) -> States:
+    """Values, rates and accelerations of every input, at random."""
+    rng, ranges = np.random.default_rng(seed), RANGES[name]
+    values = {n: rng.uniform(*ranges.get(n, (-50.0, 50.0)), POSES) for n in scene.mechanism.topology.inputs}
+    sizes = {n: 3.0 if n == "arm_angle" else 200.0 for n in values}
+    rates = {n: size * rng.normal(size=POSES) for n, size in sizes.items()}
+    return values, rates, {n: 10.0 * size * rng.normal(size=POSES) for n, size in sizes.items()}
+
+
+def exact(scene: Scene, states: States) -> dict[str, dict[str, Array]]:
+    """The reference at the inputs as they are, rounded to doubles."""
+    instants = [
+        reference_instant(scene, {n: tuple(float(s[n][i]) for s in states) for n in states[0]})
+        for i in range(POSES)
+    ]
+    return {q: dict(arrays) for q, arrays in as_solution(scene, instants).numbers.items()}
+
+
+def shares(found: MappedPoses, truth: dict[str, dict[str, Array]]) -> dict[str, float]:
+    """The largest error of each quantity in parts of its bound; the rounding of the truth apart."""
+    largest = {}
+    for quantity, bounds in found.bounds.items():
+        parts = [
+            (np.abs(found.numbers[quantity][n] - truth[quantity][n]) - 2.0**-53 * np.abs(truth[quantity][n]))
+            / bounds[n]
+            for n in bounds
+            if bounds[n].all()
+        ]
+        largest[quantity] = float(np.max([part.max() for part in parts]))
+    return largest
+
+
+def coarse(name: str) -> KinematicMap:
+    """Its errors are seen beside rounding."""
+    return kinematic_map(with_all_effects(name), RANGES[name], tolerance=1e-3)
+
+
+@by_scene
+def test_every_number_is_within_its_bound_of_the_reference(name: str) -> None:
+    scene = with_all_effects(name)
+    states = states_of(scene, name, 21)
+    truth = exact(scene, states)
+    for tolerance in (1e-3, 1e-9):
+        found = kinematic_map(scene, RANGES[name], tolerance)(*states, bounds=True)
+        assert {q for q, channel in found.numbers.items() if channel.computed} == set(found.bounds)
+        for quantity, bounds in found.bounds.items():
+            assert set(bounds) == set(found.numbers[quantity])
+            for number, bound in bounds.items():
+                assert bound.shape == found.numbers[quantity][number].shape
+        parts = shares(found, truth)
+        assert max(parts.values()) <= 1.0, parts
+    # Of a wheel that turns about points some 100 mm apart: 1e-9 mm are 1e-11 rad.
+    assert max(bound.max() for bound in found.bounds["wheel"].values()) < 1e-10
+
+
+@by_scene
+def test_bounds_are_not_far_from_what_a_coarse_map_is_off(name: str) -> None:
+    scene = with_all_effects(name)
+    states = states_of(scene, name, 22)
+    parts = shares(coarse(name)(*states, bounds=True), exact(scene, states))
+    assert min(parts.values()) > 1e-3, parts
+
+
+@by_scene
+@pytest.mark.parametrize("derivative", range(3))
+def test_a_map_that_is_off_by_more_than_it_says_is_found_out(name: str, derivative: int) -> None:
+    """Errors of its sums, of their first or of their second derivatives are told a millionth as large."""
+    map, scene = coarse(name), with_all_effects(name)
+    parts = [part * (1e-6 if d == derivative else 1.0) for d, part in enumerate(map.stored.off.parts)]
+    wrong = KinematicMap(scene, map.tolerance, replace(map.stored, off=Jet(*parts)))
+    states = states_of(scene, name, 23)
+    truth = exact(scene, states)
+    told, honest = (shares(m(*states, bounds=True), truth) for m in (wrong, map))
+    assert max(honest.values()) <= 1.0
+    seen = ("position", "velocity", "acceleration")[derivative]
+    assert told[seen] > 1.0
+
+
+def test_bounds_have_the_shape_of_the_numbers_and_are_none_unless_asked_for() -> None:
+    map = kinematic_map(with_all_effects("bounce"), {"arm_angle": (1.5, 1.9), "rack": (0.0, 0.0)})
+    angles = np.linspace(1.5, 1.9, 6).reshape(2, 3)
+    plain = map({"arm_angle": angles, "rack": 0.0})
+    assert not plain.bounds
+    found = map({"arm_angle": angles, "rack": 0.0}, bounds=True)
+    assert found.bounds["position"]["wheel_centre"].shape == (2, 3, 3)
+    assert found.bounds["wheel"]["camber"].shape == (2, 3)
+    assert "velocity" not in found.bounds
+    one = map({"arm_angle": 1.6, "rack": 0.0}, {"arm_angle": 2.0}, {"arm_angle": 1.0}, bounds=True)
+    assert one.bounds["angular_velocity"]["knuckle"].shape == (3,)
+    none = map({"arm_angle": np.empty((0, 2)), "rack": 0.0}, bounds=True)
+    assert none.bounds["wheel"]["camber"].shape == (0, 2)
+
+
+def test_what_moves_the_chassis_and_a_far_origin_are_in_the_bounds() -> None:
+    """A heave of 1e9 mm rounds every position to 1e-7 mm, which is no error of the pose's angles."""
+    scene = with_all_effects("bounce")
+    map = kinematic_map(scene, {"arm_angle": (1.5, 1.9), "rack": (-5.0, 5.0)})
+    found = map({"arm_angle": 1.6, "rack": 1.0, "heave": 1e9 / 3.0}, bounds=True)
+    up = found.bounds["position"]["wheel_centre"][2]
+    assert 1e-9 < up < 1e-7
+    assert found.bounds["position"]["wheel_centre"][0] < 1e-9
+    assert found.bounds["wheel"]["camber"] < 1e-10
