@@ -8,13 +8,14 @@ component answers for the sensitivity of another. Near a dead point more than th
 see `fold`.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
 from absolute.solution import Array
 from absolute.stack import WHEEL, Placed
@@ -87,6 +88,20 @@ class Lengths(NamedTuple):
     bent: Array
 
 
+class Sensitivity(NamedTuple):
+    """What the doubts of the rows do at N instants to the turn of each moving body and to its points.
+
+    Attributes:
+        lengths: numbers of all of these side by side, in the order of `places_of`.
+        rounded: (3, N, 3 * of these) errors of quantities and their rates by what is rounded.
+        grown: (3, N) see `Answers`.
+    """
+
+    lengths: Lengths
+    rounded: Array
+    grown: Array
+
+
 def estimate(
     mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, chassis: Array
 ) -> Errors:
@@ -97,30 +112,78 @@ def estimate(
         series: inputs (N, 3, inputs). doubts: how far each number of them may be off.
         chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
     """
-    answers = _answers(mechanism, motion, series, doubts)
+    return named(mechanism, motion, chassis, totals(mechanism, motion, series, doubts)[0])
+
+
+def totals(
+    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None = None
+) -> tuple[Array, Sensitivity]:
+    """(3, N, 3 * of these) errors of all turns and points, without what sums of these round, in units of
+    size, and what they are made of.
+
+    Args:
+        mechanism, motion, series, doubts: as of `estimate`.
+        left: (N, 3, rows) what is left of the equations as computed, where that is known.
+    """
+    answers = _answers(mechanism, motion, series, doubts, left)
+    every = [
+        _lengths(answers, motion, index, arms)
+        for index, (_, arms) in enumerate(places_of(mechanism, motion.rotation), 1)
+    ]
+    lengths = Lengths(*(np.concatenate(kind, axis=-1) for kind in zip(*every, strict=True)))
+    sensitivity = Sensitivity(
+        lengths, by_row(np.sqrt, answers.squared, Lengths(*(a * a for a in lengths))), np.array(answers.grown)
+    )
+    found = known_part(answers.known, Lengths(*map(np.abs, lengths))) + sensitivity.rounded
+    if answers.inputs is not None:
+        # An input's row answers to all three equations at once where its value is off.
+        driven = slice(lengths.direct.shape[1] - answers.inputs.shape[-1], None)
+        d, v, a, b = (answer[:, driven] for answer in lengths)
+        for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
+            to_pose, to_rate, to_rest = slopes[..., None]
+            changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
+            for total, change in zip(found, changes, strict=True):
+                total += np.einsum("nic,ni->nc", np.abs(change), off)
+    return further(found, sensitivity.grown), sensitivity
+
+
+def places_of(mechanism: Mechanism, rotation: Array) -> list[tuple[list[str], Array]]:
+    """Of each moving body the points it is the first to hold, and their arms (N, points, 3)."""
+    drawing, told, found = mechanism.drawing, set[str](), []
+    for body, index in drawing.bodies.items():
+        points = [point for point in mechanism.model.bodies[body] if point not in told]
+        told.update(points)
+        if index:
+            local = np.array([drawing.arm(body, point) for point in points]).reshape(-1, 3)
+            found.append((points, local @ rotation[:, index].swapaxes(-1, -2)))
+    return found
+
+
+def named(mechanism: Mechanism, motion: BodyMotion, chassis: Array, found: Array) -> Errors:
+    """Errors by name of such totals, with what the sums round that make points of their arms."""
     model, size = mechanism.model, mechanism.drawing.size
     errors = Errors({}, {}, {}, {}, {}, {})
-    for body, index in mechanism.drawing.bodies.items():
-        points = [point for point in model.bodies[body] if point not in errors.position]
-        if not index:
-            for point in points:
-                # The drawn place and the motion of the chassis: one sum.
-                place = np.abs(np.array(model.points[point]) + chassis[:, 0])
-                errors.position[point] = 0.5 * EPS * place
-                errors.velocity[point], errors.acceleration[point] = np.zeros((2, *place.shape))
-            continue
-        local = np.array([mechanism.drawing.arm(body, point) for point in points]).reshape(-1, 3)
-        arms = local @ motion.rotation[:, index].swapaxes(-1, -2)
-        totals = _totals(answers, _lengths(answers, motion, index, arms))
-        errors.rotation[body] = totals[0][:, 0]
-        errors.angular_velocity[body], errors.angular_acceleration[body] = totals[1][:, 0], totals[2][:, 0]
-        rounded = _sums(mechanism, motion, index, arms, chassis)
-        for number, point in enumerate(points):
-            found = (
-                total[:, 1 + number] * size + more[:, number]
-                for total, more in zip(totals, rounded, strict=True)
+    for point in model.bodies[model.chassis]:
+        # The drawn place and the motion of the chassis: one sum.
+        place = np.abs(np.array(model.points[point]) + chassis[:, 0])
+        errors.position[point] = 0.5 * EPS * place
+        errors.velocity[point], errors.acceleration[point] = np.zeros((2, *place.shape))
+    column = 0
+    bodies = [body for body, index in mechanism.drawing.bodies.items() if index]
+    for index, (body, (points, arms)) in enumerate(
+        zip(bodies, places_of(mechanism, motion.rotation), strict=True), 1
+    ):
+        turn = found[..., column : column + 3]
+        column += 3
+        errors.rotation[body], errors.angular_velocity[body], errors.angular_acceleration[body] = turn
+        for number, (point, sums) in enumerate(
+            zip(points, np.moveaxis(_sums(mechanism, motion, index, arms, chassis), 2, 0), strict=True)
+        ):
+            first = column + 3 * number
+            errors.position[point], errors.velocity[point], errors.acceleration[point] = (
+                found[..., first : first + 3] * size + sums
             )
-            errors.position[point], errors.velocity[point], errors.acceleration[point] = found
+        column += 3 * len(points)
     return errors
 
 
@@ -149,7 +212,9 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
     return 2.0 / (1.0 + root), speed, second
 
 
-def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array) -> Answers:
+def _answers(
+    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None
+) -> Answers:
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
     targets = mechanism.target_series(series)
@@ -160,7 +225,14 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
         rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
     )
     drift = stack.drift(placed, motion.velocity[:, :, 0], motion.velocity[:, :, 1])
-    pose = pose_doubt(mechanism, placed, targets[0])
+    three = [
+        pose_doubt(mechanism, placed, targets[0]),
+        rate_doubt(moving, jacobian, speeds, targets[1]),
+        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
+    ]
+    if left is not None:
+        three = [Doubt(np.abs(left[:, order]), doubt.rounded) for order, doubt in enumerate(three)]
+    pose, rate, _ = three
     slopes = mechanism.target_slopes(series)
     everything = pose.known + pose.rounded
     everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
@@ -172,14 +244,11 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
     speed = -inverse @ turned[:, :count]
     turned[:, count : 2 * count] += by_velocity @ speed
     second, bent = -inverse @ turned[:, count : 2 * count], -inverse @ turned[:, 2 * count :]
-    rate = rate_doubt(moving, jacobian, speeds, targets[1])
     grown = fold(mechanism, placed, inverse, everything)
     # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
     off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
     fastest = np.abs(speeds).max(axis=1)
     share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
-    rest = second_doubt(moving, bending, jacobian, seconds, drift, targets[2])
-    three = (pose, rate, rest)
     rounded = np.stack([doubt.rounded for doubt in three], axis=1)
     return Answers(
         np.stack((inverse, speed, second, bent)).swapaxes(-1, -2),
@@ -230,10 +299,8 @@ def side_by_side(matrices: Array) -> Array:
     return matrices.swapaxes(1, 2).reshape(count, 3, 3 * many)
 
 
-def _sums(
-    mechanism: Mechanism, motion: BodyMotion, index: int, arms: Array, chassis: Array
-) -> tuple[Array, Array, Array]:
-    """What the sums that make points of their arms are rounded from, (N, points, 3) each, mm and s."""
+def _sums(mechanism: Mechanism, motion: BodyMotion, index: int, arms: Array, chassis: Array) -> Array:
+    """What the sums that make points of their arms are rounded from, (3, N, points, 3), mm and s."""
     drawing = mechanism.drawing
     size = drawing.size
     rates = motion.velocity[:, index, None], motion.acceleration[:, index, None]
@@ -249,43 +316,29 @@ def _sums(
     turning_twice = (fast * fast + faster) * reach
     acceleration = (TURNED_TWICE * turning_twice + SUMMED * np.abs(rates[1][..., 0, :])) * size
     acceleration += 0.5 * EPS * np.abs(chassis[:, None, 2])
-    return position, velocity, acceleration
+    return np.array((position, velocity, acceleration))
 
 
-def _totals(answers: Answers, lengths: Lengths) -> tuple[Array, Array, Array]:
-    """Sums over the rows of magnitudes times doubts, (N, of these, 3), of quantities and their rates."""
-    p, t = slice(0, 1), slice(1, 2)
-    direct = _summed(lengths.direct, answers, slice(0, 3))
-    totals = (
-        direct[:, 0],
-        _summed(lengths.speed, answers, p)[:, 0] + direct[:, 1],
-        _summed(lengths.second, answers, p)[:, 0] + _summed(lengths.bent, answers, t)[:, 0] + direct[:, 2],
-    )
-    if answers.inputs is not None:
-        # An input's row answers to all three equations at once where its value is off.
-        driven = slice(lengths.direct.shape[1] - answers.inputs.shape[-1], None)
-        d, v, a, b = (answer[:, driven] for answer in lengths)
-        for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
-            to_pose, to_rate, to_rest = slopes[..., None]
-            changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
-            for total, change in zip(totals, changes, strict=True):
-                total += np.einsum("nic,ni->nc", np.abs(change), off)
-    position, velocity, acceleration = (
-        _further(total.reshape(len(total), -1, 3), grown)
-        for total, grown in zip(totals, answers.grown, strict=True)
-    )
-    return position, velocity, acceleration
+def further(total: Array, grown: Array) -> Array:
+    """(3, N, 3 * of these) with the higher orders, which lead anywhere, not where the first leads.
+
+    Nothing stays nothing, however near the fold.
+    """
+    each = total.reshape(*total.shape[:2], -1, 3)
+    largest = each.max(axis=-1, keepdims=True)
+    more = np.multiply(largest, grown[..., None, None] - 1.0, out=np.zeros_like(largest), where=largest > 0)
+    return np.asarray((each + more).reshape(total.shape))
 
 
-def _further(total: Array, grown: Array) -> Array:
-    # Higher orders lead anywhere, not where the first leads. Nothing stays nothing, however near the fold.
-    largest = total.max(axis=-1, keepdims=True)
-    further = np.multiply(largest, grown[:, None, None] - 1.0, out=np.zeros_like(largest), where=largest > 0)
-    return np.asarray(total + further)
+def known_part(known: Array, magnitudes: Lengths) -> Array:
+    """(3, N, 3 * of these) for what is left of the equations, (N, 3, rows), by magnitudes of lengths."""
+    return by_row(np.asarray, known, magnitudes)
 
 
-def _summed(lengths: Array, answers: Answers, doubts: slice) -> Array:
-    """(N, doubts, 3 * of these) for some of p, t, s."""
-    known = answers.known[:, doubts] @ np.abs(lengths)
-    known += np.sqrt(answers.squared[:, doubts] @ (lengths * lengths))
-    return np.asarray(known)
+def by_row(each: Callable[[Array], Array], doubts: Array, lengths: Lengths) -> Array:
+    """Sums over the rows for doubts p, t, s (N, 3, rows), each sum put through a function before it is
+    added to others, for a quantity and its rates."""
+    direct = each(doubts @ lengths.direct)
+    speed, second = each(doubts[:, :1] @ lengths.speed)[:, 0], each(doubts[:, :1] @ lengths.second)[:, 0]
+    bent = each(doubts[:, 1:2] @ lengths.bent)[:, 0]
+    return np.array((direct[:, 0], speed + direct[:, 1], second + bent + direct[:, 2]))

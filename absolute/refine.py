@@ -30,6 +30,8 @@ class Refined(NamedTuple):
         step: (N,) the last correction, not made.
         closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
         kept: (N,) whether the pose is on the branch of the drawing.
+        left: (N, 3, rows) what is left of the equations of the pose and its rates as computed, zero without
+            rates.
         world: (N, features, 3) points and directions that tell it.
         sure: (N,) whether what was predicted was right: a small first correction, the determinant's sign.
         q: (N, configuration) of Pinocchio.
@@ -44,6 +46,7 @@ class Refined(NamedTuple):
     step: Array
     closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
+    left: Array
     world: Array
     sure: NDArray[np.bool_]
     q: Array
@@ -64,7 +67,8 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     q, corrections = found.q.copy(), found.corrections.copy()
     rotation, origin = mechanism.poses_of(q)
     placed = stack.place(rotation, origin)
-    steps = solved_once(stack.jacobian(placed), targets[0] - placed.values)
+    jacobian = stack.jacobian(placed)
+    steps = solved_once(jacobian, targets[0] - placed.values)
     first = previous = lengths(steps)
     factors: list[eigenpy.PartialPivLU] = [None] * len(q)
     pending = np.arange(len(q))
@@ -75,14 +79,15 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         corrections[pending] += 1
         poses = mechanism.poses_of(q[pending])
         fresh = stack.place(*poses)
+        renewed = stack.jacobian(fresh)
         if len(order) == len(q):
-            (rotation, origin), placed = poses, fresh
+            (rotation, origin), placed, jacobian = poses, fresh, renewed
         else:
-            rotation[pending], origin[pending] = poses
+            rotation[pending], origin[pending], jacobian[pending] = *poses, renewed
             for whole, part in zip(placed, fresh, strict=True):
                 whole[pending] = part
-        for instant, jacobian in zip(order, stack.jacobian(fresh), strict=True):
-            factors[instant] = eigenpy.PartialPivLU(jacobian)
+        for instant, each in zip(order, renewed, strict=True):
+            factors[instant] = eigenpy.PartialPivLU(each)
         those, left = [factors[instant] for instant in order], targets[0, pending] - fresh.values
         if rates:
             # Both at once: with factors that small, calls cost more than numbers.
@@ -112,7 +117,12 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
         acceleration = solved(factors, targets[2] - drift)
-    residual = np.abs(targets[0] - placed.values).max(axis=1)
+    left = np.zeros((len(q), 3, stack.count))
+    left[:, 0] = targets[0] - placed.values
+    if rates:
+        left[:, 1] = targets[1] - np.matvec(jacobian, velocity)
+        left[:, 2] = targets[2] - drift - np.matvec(jacobian, acceleration)
+    residual = np.abs(left[:, 0]).max(axis=1)
     kept = mechanism.branch_signs.kept(placed.world)
     sure = np.ones(len(q), dtype=np.bool_)
     for place in np.flatnonzero(found.predicted).tolist():
@@ -127,6 +137,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         previous,
         closed,
         kept,
+        left,
         placed.world,
         sure,
         q,

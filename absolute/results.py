@@ -5,16 +5,19 @@ from typing import NamedTuple
 import numpy as np
 
 from absolute.effects.effect import Effect
-from absolute.estimate import BodyMotion, Errors, estimate
+from absolute.estimate import BodyMotion, Errors, estimate, named
 from absolute.lines import SolvedLines
 from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
 from absolute.refine import Refined
+from absolute.sampled_estimate import sampled
 from absolute.solution import Array, Solution
 from absolute.vectors import cross
 
 # Jacobians at once when condition numbers or errors are asked for: what stays in fast memory.
 BATCH = 32
+# Instants among which errors are interpolated: coefficients of all of them at once are some 20 MB at most.
+STRETCH = 512
 
 
 class Asked(NamedTuple):
@@ -49,6 +52,7 @@ class Record:
         self._acceleration = np.zeros((count if rates else 0, bodies, 2, 3))
         self._iterations = np.zeros(count, dtype=np.int64)
         self._residual = np.zeros(count)
+        self._left = np.zeros((0 if asked.doubts is None else count, 3, mechanism.stack.count))
         self.written = 0
 
     def store(self, refined: Refined, count: int) -> None:
@@ -63,6 +67,8 @@ class Record:
             )
         self._iterations[part] = refined.corrections[:count]
         self._residual[part] = refined.residual[:count]
+        if len(self._left):
+            self._left[part] = refined.left[:count]
         self.written += count
 
     def solution(self) -> Solution:
@@ -100,7 +106,7 @@ class Record:
         spins1 = {body: self._acceleration[:count, i, 1].copy() for body, i in turns.items() if i}
         iterations = self._iterations[:count].copy()
         iterations.setflags(write=False)
-        errors = self._errors(count)
+        errors, condition = self._estimates(count)
         effects = self._asked.effects
         told = effects if self._asked.doubts is not None else ()
         lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors)
@@ -113,7 +119,7 @@ class Record:
             angular_acceleration=_fixed(spins1),
             iterations=iterations,
             residual=_locked(self._residual[:count] * drawing.size),
-            condition=_locked(self._condition_numbers(count)) if self._asked.conditions else None,
+            condition=None if condition is None else _locked(condition),
             position_error=_fixed(
                 {name: errors.position[name] for name in (model.points if errors.position else ())}
             ),
@@ -128,30 +134,51 @@ class Record:
             effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
         )
 
-    def _errors(self, count: int) -> Errors:
-        """Errors of the first `count` instants; nothing where none were asked for."""
-        doubts, whole = self._asked.doubts, Errors({}, {}, {}, {}, {}, {})
+    def _estimates(self, count: int) -> tuple[Errors, Array | None]:
+        """Errors and condition numbers of the first `count` instants; nothing where none were asked for."""
+        doubts, nothing, conditions = (
+            self._asked.doubts,
+            Errors({}, {}, {}, {}, {}, {}),
+            self._asked.conditions,
+        )
         model = self._mechanism.model
         if doubts is None:
-            return whole
-        if not count:
-            points, bodies = (
-                {name: np.zeros((0, 3)) for name in names} for names in (model.points, model.moving)
-            )
-            return Errors(points, points, points, bodies, bodies, bodies)
-        for start in range(0, max(count, 1), BATCH):
-            part = slice(start, min(start + BATCH, count))
-            origin = self._origin[part]
+            return nothing, self._condition_numbers(count) if conditions else None
+        points, bodies = (
+            {name: np.empty((count, 3)) for name in names} for names in (model.points, model.moving)
+        )
+        whole = Errors(
+            points,
+            *(
+                [
+                    {name: array.copy() for name, array in of.items()}
+                    for of in (points, points, bodies, bodies, bodies)
+                ]
+            ),
+        )
+        numbers = np.empty(count)
+        exact = not doubts.any()
+        for start in range(0, count, STRETCH if exact else BATCH):
+            part = slice(start, min(start + (STRETCH if exact else BATCH), count))
+            origin, series = self._origin[part], self._series[part]
             still = np.zeros((*origin.shape[:2], 2, 3))
             rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)
             motion = BodyMotion(self._rotation[part], origin, *rates)
-            found = estimate(self._mechanism, motion, self._series[part], doubts[part], self._chassis[part])
-            for kept, added in zip(whole, found, strict=True):
+            if exact:
+                if not self._rates:
+                    series = series * np.array([1.0, 0.0, 0.0])[:, None]
+                found, numbers[part] = sampled(self._mechanism, motion, series, self._left[part], conditions)
+                told = named(self._mechanism, motion, self._chassis[part], found)
+            else:
+                told = estimate(self._mechanism, motion, series, doubts[part], self._chassis[part])
+            for kept, added in zip(whole, told, strict=True):
                 for name, values in added.items():
-                    kept[name] = np.concatenate((kept[name], values)) if name in kept else values
+                    kept[name][part] = values
+        if not exact and conditions:
+            numbers = self._condition_numbers(count)
         if not self._rates:
-            return Errors(whole.position, {}, {}, whole.rotation, {}, {})
-        return whole
+            whole = Errors(whole.position, {}, {}, whole.rotation, {}, {})
+        return whole, numbers if conditions else None
 
     def _condition_numbers(self, count: int) -> Array:
         stack = self._mechanism.stack
