@@ -53,9 +53,9 @@ class Enclosed:
     def __add__(self, other: Enclosed) -> Enclosed:
         total, carry = two_sum(self.high, other.high)
         rest = carry + (self.low + other.low)
-        rounding = _both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
+        rounding = both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
         high, low = two_sum(total, rest)
-        mine, its = _aligned(self.radius, other.radius)
+        mine, its = aligned(self.radius, other.radius)
         return Enclosed(high, low, mine + its + rounding)
 
     def __neg__(self) -> Enclosed:
@@ -68,10 +68,10 @@ class Enclosed:
         product, carry = two_product(*np.broadcast_arrays(self.high, other.high))
         rest = carry + (self.high * other.low + self.low * other.high)
         size = np.abs(product)
-        mine, its = _aligned(self.radius, other.radius)
+        mine, its = aligned(self.radius, other.radius)
         spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
         high, low = two_sum(product, rest)
-        return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
+        return Enclosed(high, low, spread + both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
         """Times powers of two, which rounds nothing but what falls below the normal numbers."""
@@ -88,31 +88,84 @@ class Enclosed:
         """Elements of the last dimension."""
         return Enclosed(*(part.take(places, axis=-1) for part in (self.high, self.low, self.radius)))
 
+    def component(self, place: int) -> Enclosed:
+        """One element of the last dimension."""
+        return Enclosed(self.high[..., place], self.low[..., place], self.radius[..., place])
+
     @property
     def spread_out(self) -> Enclosed:
         """With a last dimension of 1, to multiply vectors."""
         return Enclosed(self.high[..., None], self.low[..., None], self.radius[..., None])
+
+    def cosine_sine(self) -> tuple[Enclosed, Enclosed]:
+        """Cosine and sine of an angle between -pi and pi, by Taylor's series of a 64th of it and six doublings.
+
+        With c = cos - 1, which keeps its digits where the angle is small, a doubling is 2 c (2 + c). The
+        expected radius is that of functions right to a unit in the last place.
+        """
+        part = Enclosed(self.high, self.low, self.radius).scaled(2.0**-HALVINGS)
+        square = part * part
+        one, two = Enclosed.of(1.0), Enclosed.of(2.0)
+        even, odd = one, one
+        for k in range(TERMS, 0, -1):
+            # cos x = 1 - x^2/(1 2) (1 - x^2/(3 4) (...)), sin x = x (1 - x^2/(2 3) (1 - x^2/(4 5) (...))).
+            odd = one - square * _inverse(2 * k * (2 * k + 1)) * odd
+            even = one - square * _inverse((2 * k + 1) * (2 * k + 2)) * even
+        sine, less = part * odd, -(square * even).scaled(0.5)
+        for _ in range(HALVINGS):
+            sine, less = (sine * (one + less)).scaled(2.0), (less * (two + less)).scaled(2.0)
+        values = (one + less, sine)
+        return values[0]._expecting(self), values[1]._expecting(self)
 
     @property
     def middle(self) -> Array:
         """high + low, rounded once."""
         return np.asarray(self.high + self.low)
 
+    @property
+    def typical(self) -> Array:
+        """The same, or that of one of some neighbours: see `enclosed_groups`."""
+        return self.middle
+
     def apart(self, reported: Array) -> Array:
         """Largest distance of the exact number from a reported one that is close, same shape."""
         distance = np.abs((reported - self.high) - self.low)
         return np.asarray(distance * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.radius[0])
 
+    def errors(self, reported: Array) -> Array:
+        """Proven and expected error of a reported number that is close, with a leading dimension of 2."""
+        return both(self.apart(reported), self.radius[1])
 
-def _aligned(a: Array, b: Array) -> tuple[Array, Array]:
+    def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> Enclosed:
+        """Other numbers of the same instants with radii."""
+        return Enclosed.of(values, 0.0, proven, expected)
+
+    def corrected(self, values: Array, off: Enclosed) -> Enclosed:
+        """Values of the same instants with what they are off added; radii are those of that."""
+        return Enclosed.of(values, off.middle, *off.radius)
+
+    def found(self, values: Array, radius: Array) -> Enclosed:
+        """Plain numbers of the same instants."""
+        return Enclosed(values, np.zeros_like(values), radius)
+
+
+def aligned(a: Array, b: Array) -> tuple[Array, Array]:
     """Radii that broadcast as the numbers do, with dimensions put in behind the first."""
     rank = max(a.ndim, b.ndim)
     first, second = (r.reshape(2, *(1,) * (rank - r.ndim), *r.shape[1:]) for r in (a, b))
     return first, second
 
 
-def _both(proven: Array, expected: Array) -> Array:
-    radius = np.empty((2, *proven.shape))
+def both(proven: ArrayLike, expected: ArrayLike) -> Array:
+    """Two arrays, broadcast to one shape, as one with a leading dimension of 2.
+
+    Components, the last of three or more dimensions, are as far apart in memory as they are of groups.
+    """
+    shape = np.broadcast_shapes(np.shape(proven), np.shape(expected))
+    if len(shape) > 2:
+        radius = np.moveaxis(np.empty((shape[-1], 2, *shape[:-1])), 0, -1)
+    else:
+        radius = np.empty((2, *shape))
     radius[0], radius[1] = proven, expected
     return radius
 
@@ -120,36 +173,13 @@ def _both(proven: Array, expected: Array) -> Array:
 def dot(a: Enclosed, b: Enclosed) -> Enclosed:
     """Scalar product over the last dimension of three."""
     products = a * b
-    x, y, z = (
-        Enclosed(products.high[..., i], products.low[..., i], products.radius[..., i]) for i in range(3)
-    )
+    x, y, z = (products.component(i) for i in range(3))
     return x + y + z
 
 
 def cross(a: Enclosed, b: Enclosed) -> Enclosed:
     """Vector product over the last dimension of three."""
     return a.take(CYCLE) * b.take(BACK) - a.take(BACK) * b.take(CYCLE)
-
-
-def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
-    """Cosine and sine of an angle between -pi and pi, by Taylor's series of a 64th of it and six doublings.
-
-    With c = cos - 1, which keeps its digits where the angle is small, a doubling is 2 c (2 + c). The expected
-    radius is that of functions right to a unit in the last place.
-    """
-    part = angle.scaled(2.0**-HALVINGS)
-    square = part * part
-    one, two = Enclosed.of(1.0), Enclosed.of(2.0)
-    even, odd = one, one
-    for k in range(TERMS, 0, -1):
-        # cos x = 1 - x^2/(1 2) (1 - x^2/(3 4) (...)) and sin x = x (1 - x^2/(2 3) (1 - x^2/(4 5) (...))).
-        odd = one - square * _inverse(2 * k * (2 * k + 1)) * odd
-        even = one - square * _inverse((2 * k + 1) * (2 * k + 2)) * even
-    sine, less = part * odd, -(square * even).scaled(0.5)
-    for _ in range(HALVINGS):
-        sine, less = (sine * (one + less)).scaled(2.0), (less * (two + less)).scaled(2.0)
-    values = (one + less, sine)
-    return values[0]._expecting(angle), values[1]._expecting(angle)
 
 
 def _inverse(number: int) -> Enclosed:
@@ -171,4 +201,4 @@ def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
         left = d - divisor.radius
         spread = (numerator.radius + np.abs(value) * divisor.radius) / left
         radius = np.where(left > 0.0, spread, np.inf) + 4.0 * UNIT_ROUNDOFF * np.abs(value)
-    return Enclosed(np.where(d > 0.0, value, 0.0), np.zeros_like(value), radius)
+    return numerator.found(np.where(d > 0.0, value, 0.0), radius)

@@ -19,6 +19,7 @@ a few per cent is not sound, and has to be divided.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,8 @@ class Neighbours:
         radius: exactly one assembly lies within it, (G, m).
         residual: C(y) about what the known coordinates mean, (rows, G, m).
         condition: condition number of the Jacobian of each group's anchor, (G,).
+        inverse: X, of each group's anchor, (G, unknowns, rows).
+        defect: at least |I - X C_u| at each pose of the group, element by element, (G, unknowns, unknowns).
     """
 
     sound: NDArray[np.bool_]
@@ -61,6 +64,8 @@ class Neighbours:
     radius: Array
     residual: Array
     condition: Array
+    inverse: Array
+    defect: Array
 
 
 @dataclass(frozen=True)
@@ -84,6 +89,12 @@ class Terms:
     differences: tuple[tuple[int, int], ...]
     changing: tuple[tuple[int, int, int], ...]
 
+    @cached_property
+    def squares(self) -> NDArray[np.bool_]:
+        """The terms whose two differences are one, (terms,)."""
+        (a, b), (c, d) = self.system.terms[2]
+        return np.asarray((a == c) & (b == d))
+
     @classmethod
     def of(cls, system: QuadraticMap, moving: Indices) -> Terms:
         """Those of a map of which the coordinates at some places move."""
@@ -103,7 +114,15 @@ class Terms:
         sums[np.repeat(np.arange(len(starts)), lengths)[terms], np.arange(len(terms))] = coefficients[terms]
         return cls(system, moving, sums, lengths, tuple(numbers)[1:], tuple(changing))
 
-    def certify(self, anchors: Array, low: Array, data: Array, change: Array, lost: Array) -> Neighbours:
+    def certify(
+        self,
+        anchors: Array,
+        low: Array,
+        data: Array,
+        change: Array,
+        lost: Array,
+        cost: tuple[float, float] = (SHARED, ROUNDED),
+    ) -> Neighbours:
         """Prove groups of poses.
 
         Args:
@@ -113,6 +132,7 @@ class Terms:
             change: from the anchor, with what its known coordinates lack added, to each pose with what its
                 own lack, (moving + 1, G, m); the last row is zero.
             lost: rounding of the change, (G, moving + 1).
+            cost: what a sound group may cost, as SHARED and ROUNDED.
         """
         system, n = self.system, self.system.unknowns
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
@@ -124,7 +144,7 @@ class Terms:
             changes = np.empty((len(self.differences), *change.shape[1:]))
             for made, (first, second) in zip(changes, self.differences, strict=True):
                 np.subtract(change[first], change[second], out=made)
-            reach = self._of_terms(np.maximum(changes.max(axis=-1), -changes.min(axis=-1)).T)
+            reach = self.of_terms(np.maximum(changes.max(axis=-1), -changes.min(axis=-1)).T)
             rows = (self.sums @ self._products(own, changes)).reshape(n, *change.shape[1:])
             start, doubt = doubled_residual(system, anchors, low, data)
             rows += start.T[..., None]
@@ -143,8 +163,8 @@ class Terms:
             found = ball(eta, z, self._lipschitz(magnitude)[..., None])
             seen = (magnitude @ rounded[..., None]).max(axis=(-2, -1))
             contraction = found.contraction.max(axis=-1)
-            sound = (contraction <= SHARED) & found.proven.all(axis=-1)
-            sound &= seen <= ROUNDED * UNIT_ROUNDOFF
+            sound = (contraction <= cost[0]) & found.proven.all(axis=-1)
+            sound &= seen <= cost[1] * UNIT_ROUNDOFF
         return Neighbours(
             sound=sound,
             contraction=np.maximum(contraction, z[:, 0]),
@@ -154,6 +174,8 @@ class Terms:
             radius=found.radius,
             residual=rows,
             condition=factors.condition,
+            inverse=inverse,
+            defect=defect,
         )
 
     def _products(self, own: tuple[Array, Array], changes: Array) -> Array:
@@ -178,7 +200,7 @@ class Terms:
             product += other
         return products.reshape(len(products), -1)
 
-    def _of_terms(self, differences: Array) -> tuple[Array, Array]:
+    def of_terms(self, differences: Array) -> tuple[Array, Array]:
         """Numbers of the differences that change, (G, differences), as those of all terms, (G, terms)."""
         left, right = (np.zeros((len(differences), int(self.lengths.sum()))) for _ in range(2))
         for term, first, second in self.changing:
@@ -207,7 +229,7 @@ class Terms:
         ends_lost = [lost[:, first] + lost[:, second] for first, second in self.differences]
         wrong = [
             UNIT_ROUNDOFF * part + more
-            for part, more in zip(reach, self._of_terms(np.stack(ends_lost, axis=-1)), strict=True)
+            for part, more in zip(reach, self.of_terms(np.stack(ends_lost, axis=-1)), strict=True)
         ]
         (left, right), (left_off, right_off) = reach, off
         left_wrong, right_wrong = wrong
