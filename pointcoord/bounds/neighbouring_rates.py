@@ -29,9 +29,9 @@ from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
-# What neighbours may cost: of the error of a pose and of a rate this part, for the inverse that they share;
-# for rounding of a pose this part of u, and of a rate this part of what is expected to be rounded.
-SHARED_POSES, ROUNDED_POSES, ROUNDED_RATES = 0.06, 0.2, 0.1
+# What neighbours may cost a rate beside what they may cost a pose: for rounding this part of what is expected
+# of it. An error that is seen exactly is mostly less than a tenth of that.
+ROUNDED_RATES = 0.03
 NOTHING = 1e-290  # a radius that is made of what underflows
 
 
@@ -66,16 +66,37 @@ class GroupState:
         radius[1, :, :n] = expected
         return GroupState(Enclosed.of(self.anchor.high, low, *radius), change, reach)
 
-    def of_every_coordinate(self, terms: Terms) -> EnclosedGroups:
-        """The same as numbers of groups, (G, m, size)."""
-        _, groups, size = self.change.shape
-        change = np.zeros((terms.system.size, groups, size))
-        change[terms.moving] = self.change[:-1]
-        reach = np.zeros(self.anchor.high.shape)
-        reach[:, terms.moving] = self.reach[:, :-1]
-        high, low, radius = self.anchor.high, self.anchor.low, self.anchor.radius
-        parts = high[:, None], low[:, None], radius[:, :, None]
-        return EnclosedGroups(*parts, np.moveaxis(change, 0, -1), reach[:, None])
+    def numbers(self, terms: Terms) -> NumbersOfGroups:
+        """The coordinates as numbers of groups."""
+        row = np.full(terms.system.size, -1, dtype=np.intp)
+        row[terms.moving] = np.arange(len(terms.moving))
+        return NumbersOfGroups(self, row)
+
+
+@dataclass(frozen=True)
+class NumbersOfGroups:
+    """Coordinates of groups of poses, of which vectors can be taken.
+
+    Attributes:
+        row: of each coordinate that moves among those, (size,); -1 of one that stands.
+    """
+
+    state: GroupState
+    row: NDArray[np.intp]
+
+    def take(self, places: list[int]) -> Enclosed:
+        """Some coordinates, (G, m, places); of those that all stand those of the anchors, (G, 1, places)."""
+        own = self.state.anchor.take(places)
+        high, low, radius = own.high[:, None], own.low[:, None], own.radius[:, :, None]
+        rows = self.row[places]
+        if (rows < 0).all():
+            return Enclosed(high, low, radius)
+        first = int(rows[0])
+        follow = (rows == np.arange(first, first + len(rows))).all()
+        change = self.state.change[first : first + len(rows)] if follow else self.state.change[rows]
+        return EnclosedGroups(
+            high, low, radius, change.transpose(1, 2, 0), self.state.reach[:, rows][:, None]
+        )
 
 
 @dataclass(frozen=True)
@@ -185,8 +206,7 @@ def neighbouring_poses(
         y: computed coordinates, (size, G, m). driven: by place in y, where they exactly are, (G, m).
     """
     pose, lost = _computed(mechanism, terms, y, driven, 0)
-    high, low, (proven, _) = pose.anchor.high, pose.anchor.low, pose.anchor.radius
-    return terms.certify(high, low, proven, pose.change, lost, (SHARED_POSES, ROUNDED_POSES))
+    return terms.certify(pose.anchor.high, pose.anchor.low, pose.anchor.radius[0], pose.change, lost)
 
 
 def neighbouring_rates(

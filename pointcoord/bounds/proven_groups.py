@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pointcoord.bounds.certified_poses import TOGETHER, CertifiedPoses, Certifier
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_points
 from pointcoord.bounds.neighbouring_rates import (
-    SHARED_POSES,
+    NOTHING,
     GroupState,
     neighbouring_poses,
     neighbouring_rates,
@@ -26,7 +26,7 @@ from pointcoord.bounds.reported_bounds import (
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.neighbours import Neighbours
+from pointcoord.numerics.neighbours import SHARED, Neighbours
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -112,7 +112,7 @@ class GroupProver:
 
     def _near(self, asked: Instants, groups: Indices) -> NDArray[np.bool_]:
         """Groups that are worth a try, (G,): a pose alone takes as long as some groups do."""
-        worst = max(self.stiffness / (1.5 * SHARED_POSES), self.dearness / 1.5)
+        worst = max(self.stiffness / (1.5 * SHARED), self.dearness / 1.5)
         with np.errstate(invalid="ignore", over="ignore"):
             return np.asarray(worst * self._farthest(asked, groups) <= 1.0)
 
@@ -139,7 +139,7 @@ class GroupProver:
             found = neighbouring_rates(mechanism, terms, certified, some.states, some.driven, unsolved)
             self.dearness = _learnt(self.dearness, found.cost, self._farthest(asked, groups))
             self._leave_out(asked, groups, some.states, some.powers, certified.condition, found.states)
-            coordinates = [state.of_every_coordinate(terms) for state in found.states]
+            coordinates = [state.numbers(terms) for state in found.states]
             poses = EnclosedPoses(
                 mechanism,
                 reported.axes,
@@ -148,7 +148,7 @@ class GroupProver:
                 [power[:, None] for power in some.powers],
             )
             proven, expected = bounds_of_numbers(poses, reported.effects, some.numbers(reported))
-        sound = certified.sound & (found.cost <= 1.0)
+        sound = certified.sound & (found.cost <= 1.0) & _credible(proven, expected, len(groups))
         return ProvenGroups(groups, certified, sound, proven, expected)
 
     def _leave_out(
@@ -162,21 +162,22 @@ class GroupProver:
     ) -> None:
         """Add to what is expected of each group what summing a series leaves out there.
 
-        Terms grow with the distance from where their series starts, so that they are largest at an end; where
-        a group goes over from one series to the next, every instant is looked at.
+        Terms grow with the distance from where their series starts, so that they are largest at an end, of
+        the group or of a series.
         """
         solved, unknowns, count = asked.reported.solved, self.mechanism.map.unknowns, groups.shape[1]
         pieces = solved.pieces(asked.times[groups.ravel()]).reshape(groups.shape)
-        whole = (pieces == pieces[:, :1]).all(axis=1)
-        for some, places in ((whole, np.array([0, count - 1])), (~whole, np.arange(count))):
-            if not some.any():
-                continue
-            chosen = groups[some][:, places]
-            for d, summed in enumerate(solved.summed(asked.times[chosen.ravel()])[: len(exact)]):
-                values = states[d][:, some][:, :, places].reshape(len(states[d]), -1).T
-                repeated = (part[some].repeat(len(places)) for part in (condition, powers[d]))
-                made = summed.expected(values, *repeated).reshape(*chosen.shape, -1).max(axis=1)
-                exact[d].anchor.radius[1, some, :unknowns] += made[:, :unknowns]
+        chosen = np.zeros(groups.shape, dtype=bool)
+        chosen[:, [0, -1]] = True
+        over = pieces[:, 1:] != pieces[:, :-1]
+        chosen[:, 1:] |= over
+        chosen[:, :-1] |= over
+        places = np.flatnonzero(chosen)
+        of, starts = places // count, np.searchsorted(places, count * np.arange(len(groups)))
+        for d, summed in enumerate(solved.summed(asked.times[groups.ravel()[places]])[: len(exact)]):
+            values = states[d].reshape(len(states[d]), -1)[:, places].T
+            made = summed.expected(values, condition[of], powers[d][of])
+            exact[d].anchor.radius[1, :, :unknowns] += np.maximum.reduceat(made[:, :unknowns], starts)
 
 
 @dataclass(frozen=True)
@@ -227,6 +228,21 @@ class _Grouped:
             quantity: {name: _side_by_side(array[self.here], self.shape) for name, array in part.items()}
             for quantity, part in reported.numbers.items()
         }
+
+
+def _credible(proven: Numbers, expected: Numbers, count: int) -> NDArray[np.bool_]:
+    """Groups of which no number is off by more than is expected throughout, or unknown anywhere, (count,).
+
+    A single number that is wrong, or none at all, spoils the bounds of its neighbours; each is then proven by
+    itself.
+    """
+    sound = np.ones(count, dtype=bool)
+    for quantity, part in proven.items():
+        for name, bound in part.items():
+            least, most = bound.min(axis=1), bound.max(axis=1)
+            fine = (least <= expected[quantity][name].max(axis=1) + NOTHING) & np.isfinite(most)
+            sound &= fine.reshape(count, -1).all(axis=1)
+    return sound
 
 
 def _learnt(known: float, values: Array, farthest: Array) -> float:

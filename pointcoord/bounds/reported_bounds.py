@@ -144,10 +144,11 @@ def bounds_of_numbers(
 
 
 def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, Array]]:
-    """One of two bounds of each number, times a factor; what cannot be told is not bounded."""
-    inflated = {q: {n: factor * e[which] for n, e in part.items()} for q, part in found.items()}
+    """One of two bounds of each number, times a factor, in place; what cannot be told is not bounded."""
+    inflated = {q: {n: e[which] for n, e in part.items()} for q, part in found.items()}
     for part in inflated.values():
         for bound in part.values():
+            bound *= factor
             np.copyto(bound, np.inf, where=np.isnan(bound))
     return inflated
 

@@ -127,7 +127,7 @@ class EnclosedGroups(Enclosed):
         run: slice | list[int] = chosen
         if chosen == list(range(chosen[0], chosen[0] + len(chosen))):
             run = slice(chosen[0], chosen[0] + len(chosen))
-        change = np.moveaxis(np.moveaxis(self.change, -1, 0)[run], 0, -1)
+        change = self.change.transpose(2, 0, 1)[run].transpose(1, 2, 0)
         return EnclosedGroups(*_parts(anchor), change, self.reach[..., run])
 
     def component(self, place: int) -> EnclosedGroups:
@@ -158,6 +158,20 @@ class EnclosedGroups(Enclosed):
         return np.asarray(
             distance * (1.0 + 8.0 * UNIT_ROUNDOFF) + (self.radius[0] + OF_A_DISTANCE * self.reach)
         )
+
+    def errors(self, reported: Array) -> Array:
+        """Proven and expected error of reported numbers that are close, (2, G, m, ...)."""
+        if reported.ndim != 3:
+            return both(self.apart(reported), self.radius[1])
+        found = np.empty((reported.shape[2], 2, *reported.shape[:2])).transpose(1, 2, 3, 0)
+        distance = np.subtract(reported, self.high, out=found[0])
+        distance -= self.low
+        distance -= self.change
+        np.abs(distance, out=distance)
+        distance *= 1.0 + 8.0 * UNIT_ROUNDOFF
+        distance += self.radius[0] + OF_A_DISTANCE * self.reach
+        found[1] = self.radius[1]
+        return np.asarray(found)
 
     def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> EnclosedGroups:
         """Other numbers of the same instants, (G, m, ...), with radii."""
@@ -207,9 +221,9 @@ class EnclosedGroups(Enclosed):
 def _product(a: Array, b: Array) -> Array:
     """a b, with the instants of a group side by side in memory whatever the two are."""
     shape = np.broadcast_shapes(a.shape, b.shape)
-    if len(shape) < 3:
+    if len(shape) != 3:
         return np.asarray(a * b)
-    product = np.moveaxis(np.empty((shape[-1], *shape[:-1])), 0, -1)
+    product = np.empty((shape[2], *shape[:2])).transpose(1, 2, 0)
     return np.asarray(np.multiply(a, b, out=product))
 
 
@@ -219,7 +233,10 @@ def _parts(anchor: Enclosed) -> tuple[Array, Array, Array]:
 
 def _made(anchor: Enclosed, change: Array, reach: Array, rounded: float) -> EnclosedGroups:
     """From anchors and changes that are rounded by a part of their reach, which is rounded as well."""
-    reach = np.broadcast_to(reach * MORE, anchor.high.shape)
-    radius = anchor.radius + rounded * reach
-    radius += both(np.where(reach > 0.0, TINY, 0.0), 0.0)
+    reach = reach * MORE
+    if reach.shape != anchor.high.shape:
+        reach = np.broadcast_to(reach, anchor.high.shape)
+    lost = rounded * reach
+    radius = anchor.radius + lost
+    radius[0] += (lost > 0.0) * TINY
     return EnclosedGroups(anchor.high, anchor.low, radius, change, reach)

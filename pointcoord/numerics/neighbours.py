@@ -114,15 +114,7 @@ class Terms:
         sums[np.repeat(np.arange(len(starts)), lengths)[terms], np.arange(len(terms))] = coefficients[terms]
         return cls(system, moving, sums, lengths, tuple(numbers)[1:], tuple(changing))
 
-    def certify(
-        self,
-        anchors: Array,
-        low: Array,
-        data: Array,
-        change: Array,
-        lost: Array,
-        cost: tuple[float, float] = (SHARED, ROUNDED),
-    ) -> Neighbours:
+    def certify(self, anchors: Array, low: Array, data: Array, change: Array, lost: Array) -> Neighbours:
         """Prove groups of poses.
 
         Args:
@@ -132,7 +124,6 @@ class Terms:
             change: from the anchor, with what its known coordinates lack added, to each pose with what its
                 own lack, (moving + 1, G, m); the last row is zero.
             lost: rounding of the change, (G, moving + 1).
-            cost: what a sound group may cost, as SHARED and ROUNDED.
         """
         system, n = self.system, self.system.unknowns
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
@@ -163,8 +154,8 @@ class Terms:
             found = ball(eta, z, self._lipschitz(magnitude)[..., None])
             seen = (magnitude @ rounded[..., None]).max(axis=(-2, -1))
             contraction = found.contraction.max(axis=-1)
-            sound = (contraction <= cost[0]) & found.proven.all(axis=-1)
-            sound &= seen <= cost[1] * UNIT_ROUNDOFF
+            sound = (contraction <= SHARED) & found.proven.all(axis=-1)
+            sound &= seen <= ROUNDED * UNIT_ROUNDOFF
         return Neighbours(
             sound=sound,
             contraction=np.maximum(contraction, z[:, 0]),
