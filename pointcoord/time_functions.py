@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import SPLITTER, two_product, two_sum
-from pointcoord.numerics.enclosure import Enclosed, cosine_sine
+from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ class Sine:
         speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
         angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
         turns = np.rint(angle.high / TURN.high)
-        cosine, sine = cosine_sine(angle - Enclosed.of(turns) * TURN)
+        cosine, sine = (angle - Enclosed.of(turns) * TURN).cosine_sine()
         values = (
             Enclosed.of(self.offset) + swing * sine,
             swing * speed * cosine,

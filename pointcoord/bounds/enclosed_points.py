@@ -7,6 +7,7 @@ precision.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from pointcoord.numerics.enclosure import Enclosed, cross
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
+Edges = tuple[Enclosed, Enclosed]
 
 
 @dataclass(frozen=True)
@@ -39,17 +41,25 @@ class EnclosedPoses:
     powers: Sequence[Array]
 
 
-def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> list[dict[str, Enclosed]]:
+class Coordinates(Protocol):
+    """Where the coordinates of poses exactly are, or a derivative of them."""
+
+    def take(self, places: list[int], /) -> Enclosed:
+        """Those at some places, as the last dimension."""
+        ...
+
+
+def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Coordinates]) -> list[dict[str, Enclosed]]:
     """Every point and as many of its derivatives as there are, each (N, 3), in units per s^d."""
     topology, layout = mechanism.topology, mechanism.layout
     found: list[dict[str, Enclosed]] = []
     for state in coordinates:
         names = (*topology.chassis, *topology.moving)
         found.append({name: state.take(list(layout.vector(name))) for name in names})
+    frames = {carriers: _frame(found, carriers) for carriers in set(topology.carried.values())}
     for name, carriers in topology.carried.items():
         weights = _weights(mechanism, name, carriers)
-        edges = [edges_of(points, carriers) for points in found]
-        for points, part in zip(found, _carried(weights, edges), strict=True):
+        for points, part in zip(found, _carried(weights, *frames[carriers]), strict=True):
             points[name] = points[carriers[0]] + part
     return found
 
@@ -60,13 +70,19 @@ def edges_of(points: Points, names: Sequence[str]) -> tuple[Enclosed, Enclosed]:
     return first - base, second - base
 
 
-def _carried(weights: Enclosed, edges: Sequence[tuple[Enclosed, Enclosed]]) -> list[Enclosed]:
+def _frame(found: Sequence[Points], carriers: Sequence[str]) -> tuple[list[Edges], list[Enclosed]]:
+    """The edges of a body and e1 x e2, with their derivatives."""
+    edges = [edges_of(points, carriers) for points in found]
+    return edges, _normals(edges)
+
+
+def _carried(weights: Enclosed, edges: Sequence[Edges], normals: Sequence[Enclosed]) -> list[Enclosed]:
     """p - p_0 and its derivatives."""
     a, b, c = (weights.take([i]) for i in range(3))
-    return [a * e1 + b * e2 + c * crossed for (e1, e2), crossed in zip(edges, _normals(edges), strict=True)]
+    return [a * e1 + b * e2 + c * crossed for (e1, e2), crossed in zip(edges, normals, strict=True)]
 
 
-def _normals(edges: Sequence[tuple[Enclosed, Enclosed]]) -> list[Enclosed]:
+def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
     """e1 x e2 and its derivatives by Leibniz' rule."""
     (e1, e2), *rates = edges
     result = [cross(e1, e2)]
@@ -87,16 +103,17 @@ def _weights(mechanism: Mechanism, name: str, carriers: tuple[str, str, str]) ->
     """
     vectors = {point: Enclosed.of(mechanism.drawing.vectors[point]) for point in (*carriers, name)}
     edges = edges_of(vectors, carriers)
+    normals = [cross(*edges)]
     target = vectors[name] - vectors[carriers[0]]
-    frame = np.stack([edges[0].middle, edges[1].middle, cross(*edges).middle], axis=-1)
+    frame = np.stack([edges[0].middle, edges[1].middle, normals[0].middle], axis=-1)
     lengths = np.linalg.norm(frame, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = np.linalg.inv(frame / lengths) / lengths[:, None]
     sound = np.abs(np.eye(3) - (inverse * lengths[:, None]) @ (frame / lengths)).sum(axis=-1).max() < 0.5
     first = Enclosed.of(mechanism.carrier_weights[name])
-    rest = target - _carried(first, [edges])[0]
+    rest = target - _carried(first, [edges], normals)[0]
     better = Enclosed.of(first.high, inverse @ rest.middle)
-    rest = target - _carried(better, [edges])[0]
+    rest = target - _carried(better, [edges], normals)[0]
     left = np.abs(rest.middle) + rest.radius[0]
     scaled = np.abs(inverse * lengths[:, None]) @ left
     proven = 2.0 * scaled.max() / lengths if sound else np.full(3, np.inf)

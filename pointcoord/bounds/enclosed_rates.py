@@ -198,10 +198,10 @@ def twice_polar(system: QuadraticMap, a: Enclosed, b: Enclosed) -> Enclosed:
     else:
         left_b, right_b = (b.take(first) - b.take(second) for first, second in (left, right))
         terms = left_a * right_b + left_b * right_a
-    return _row_sums(terms * Enclosed.of(coefficients), starts)
+    return row_sums(terms * Enclosed.of(coefficients), starts)
 
 
-def _row_sums(terms: Enclosed, starts: NDArray[np.intp]) -> Enclosed:
+def row_sums(terms: Enclosed, starts: NDArray[np.intp]) -> Enclosed:
     """Sums of runs of terms."""
     lengths = np.diff(starts, append=terms.high.shape[-1])
     total = terms.take(starts)

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.body_fixed import apart, carried_errors
 from pointcoord.bounds.certified_poses import CertifiedPoses, Certifier
-from pointcoord.bounds.reported_bounds import POSITION, Numbers, Proven, Reported, reported_bounds
+from pointcoord.bounds.proven_groups import GroupProver, Instants
+from pointcoord.bounds.reported_bounds import (
+    POSITION,
+    Numbers,
+    Proven,
+    Reported,
+    driven_coordinates,
+    reported_bounds,
+)
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
@@ -24,6 +32,8 @@ Array = NDArray[np.float64]
 
 # Instants at a time: a row of them stays in a first-level cache, and all rows of a block below 20 MB.
 BLOCK = 2048
+# The same with their rates, where what is done for a group takes as long as for some hundred instants.
+WITH_RATES = 16384
 
 
 @dataclass(frozen=True)
@@ -88,20 +98,53 @@ def prove(
     order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
     columns = np.empty((6, len(times)))
     certifier = Certifier(mechanism)
+    prover = GroupProver(mechanism, certifier)
     bounds = _Bounds(len(times))
-    for low in range(0, len(times), BLOCK):
-        here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
+    block = WITH_RATES if rates else BLOCK
+    for low in range(0, len(times), block):
+        here = slice(low, low + block) if order is None else order[low : low + block]
         part = reported.part(here)
         if rates:
-            pose, certified = _alone(mechanism, times[here], part, certain)
-            bounds.put(here, *reported_bounds(mechanism, pose, part))
-            y = np.ascontiguousarray(pose.states[0].T)
+            asked = Instants.of(times[here], part)
+            certified = _with_rates(asked, prover, certain, bounds, here)
+            y = asked.states[0]
         else:
             y = np.ascontiguousarray(part.solved.coordinates(times[here], 0)[0].T)
             certified = certifier.certify(times[here], y, part.doubts(times[here], certain))
         columns[:, here] = _positions(mechanism, times[here], part, y, certified)
     own, bound, carried, gain, condition, residual = columns
     return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
+
+
+def _with_rates(
+    asked: Instants,
+    prover: GroupProver,
+    certain: bool,
+    bounds: _Bounds,
+    here: slice | NDArray[np.intp],
+) -> CertifiedPoses:
+    """Bound every number at some instants: of neighbours together, and of each that is left by itself.
+
+    Args:
+        bounds: where they go; here: their places.
+    """
+    mechanism, times = prover.mechanism, asked.times
+    certified = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
+    groups, left = prover.prove(asked, certified)
+    for group in groups:
+        bounds.put_groups(places_of(here, group.members), group.sound, group.proven, group.expected)
+    for low in range(0, len(left), BLOCK):
+        members = left[low : low + BLOCK]
+        part = asked.reported.part(members)
+        pose = _alone(mechanism, times[members], part, certain)
+        certified.put_alone(members, pose.certificate, pose.factors)
+        bounds.put(places_of(here, members), *reported_bounds(mechanism, pose, part))
+    return certified
+
+
+def places_of(here: slice | NDArray[np.intp], members: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Where some of the instants of a block are among all of them."""
+    return here.start + members if isinstance(here, slice) else here[members]
 
 
 def _positions(
@@ -123,23 +166,20 @@ def _positions(
     return unit * own, unit * bound, unit * carried, gain, certified.condition, certified.residual
 
 
-def _alone(
-    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
-) -> tuple[Proven, CertifiedPoses]:
+def _alone(mechanism: Mechanism, times: Array, reported: Reported, certain: bool) -> Proven:
     """Poses that are proven each by its own inverse, with all that their rates depend on."""
     y, *rates = (np.ascontiguousarray(state) for state in reported.solved.coordinates(times, 2))
     factors = factorise(mechanism.map.jacobian(y))
     lacking, uncertainty = mechanism.known_data(y, reported.doubts(times, certain))
     expected = uncertainty + np.abs(lacking)
-    driven = reported.driven(mechanism, times)
+    laws = reported.enclosed_laws(times)
+    driven = driven_coordinates(mechanism, laws)
     lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
     for place, (value, _, _) in driven.items():
         expected[:, place] = value.radius[1]
     certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
-    certified = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
-    certified.put_alone(np.arange(len(times)), certificate, factors)
     data = (lacking, uncertainty, expected)
-    return Proven(factors, certificate, times, (y, *rates), data, driven), certified
+    return Proven(factors, certificate, times, (y, *rates), data, driven, laws)
 
 
 def _sharpened(
@@ -197,15 +237,40 @@ class _Bounds:
     proven: dict[str, dict[str, Array]] = field(default_factory=dict)
     expected: dict[str, dict[str, Array]] = field(default_factory=dict)
 
-    def put(self, here: slice | NDArray[np.intp], *parts: Numbers) -> None:
+    def put(self, here: NDArray[np.intp], *parts: Numbers) -> None:
         """Write proven and expected bounds at some of them."""
         for whole, part in zip((self.proven, self.expected), parts, strict=True):
             for quantity, arrays in part.items():
-                found = whole.setdefault(quantity, {})
                 for name, array in arrays.items():
-                    if name not in found:
-                        found[name] = np.empty((self.count, *array.shape[1:]))
-                    found[name][here] = array
+                    self._room(whole, quantity, name, array.shape[1:])[here] = array
+
+    def put_groups(
+        self, members: NDArray[np.intp], sound: NDArray[np.bool_], proven: Numbers, expected: Numbers
+    ) -> None:
+        """Write those of the groups that are sound, members (G, m)."""
+        if not sound.any():
+            return
+        every = sound.all()
+        places = (members if every else members[sound]).ravel()
+        first, last = int(places[0]), int(places[-1])
+        run = every and last - first + 1 == len(places) and bool((np.diff(places) == 1).all())
+        here = slice(first, last + 1) if run else places
+        for whole, part in ((self.proven, proven), (self.expected, expected)):
+            for quantity, arrays in part.items():
+                for name, array in arrays.items():
+                    room = self._room(whole, quantity, name, array.shape[2:])
+                    kept = array if every else array[sound]
+                    # By components, so that instants lie side by side where they are read and written.
+                    room.T[..., here] = np.moveaxis(kept, (0, 1), (-2, -1)).reshape(*room.shape[1:], -1)
+
+    def _room(
+        self, whole: dict[str, dict[str, Array]], quantity: str, name: str, shape: tuple[int, ...]
+    ) -> Array:
+        """All bounds of a number, (N, ...)."""
+        found = whole.setdefault(quantity, {})
+        if name not in found:
+            found[name] = np.empty((*shape[::-1], self.count)).T
+        return found[name]
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:

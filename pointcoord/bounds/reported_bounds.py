@@ -65,14 +65,11 @@ class Reported:
     laws: Mapping[str, TimeFunction]
     solved: SolvedCoordinates
 
-    def driven(self, mechanism: Mechanism, times: Array) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
-        """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
-        found = {}
+    def enclosed_laws(self, times: Array) -> dict[str, list[Enclosed]]:
+        """By input, where its value, rate and acceleration exactly are, each (N,)."""
         with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
-            for drive in mechanism.topology.drives:
-                law = self.laws[drive.input].enclosed(times)
-                found[mechanism.layout.scalar(drive.coordinate)] = drive.enclosed(law, mechanism.drawing)
-        return found
+            laws = {**self.laws, **self.chassis.functions}
+            return {name: law.enclosed(times) for name, law in laws.items()}
 
     def doubts(self, times: Array, certain: bool) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm.
@@ -106,6 +103,7 @@ class Proven:
         states: computed coordinates y and their time derivatives, (N, size), units per s^d.
         data: what the known coordinates of y lack, their uncertainty and the one that is expected, (N, size).
         driven: by place in y, where each driven coordinate and its two derivatives are, each (N,).
+        laws: by input, where its value and its two derivatives are, each (N,).
     """
 
     factors: Factors
@@ -114,25 +112,51 @@ class Proven:
     states: Sequence[Array]
     data: tuple[Array, Array, Array]
     driven: Mapping[int, Sequence[Enclosed]]
+    laws: Mapping[str, Sequence[Enclosed]]
+
+
+def driven_coordinates(
+    mechanism: Mechanism, laws: Mapping[str, Sequence[Enclosed]]
+) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
+    """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
+    with np.errstate(all="ignore"):
+        return {
+            mechanism.layout.scalar(drive.coordinate): drive.enclosed(laws[drive.input], mechanism.drawing)
+            for drive in mechanism.topology.drives
+        }
 
 
 def reported_bounds(mechanism: Mechanism, pose: Proven, reported: Reported) -> tuple[Numbers, Numbers]:
     """Proven error of every number, and the error that the method makes at most where nothing is wrong."""
-    found: dict[str, dict[str, Array]] = {quantity: {} for quantity in reported.numbers}
+    with np.errstate(all="ignore"):
+        return bounds_of_numbers(_enclosed(mechanism, pose, reported), reported.effects, reported.numbers)
+
+
+def bounds_of_numbers(
+    poses: EnclosedPoses, effects: Sequence[Bounded], numbers: Numbers
+) -> tuple[Numbers, Numbers]:
+    """The same of numbers, from where the points exactly are."""
+    found: dict[str, dict[str, Array]] = {quantity: {} for quantity in numbers}
     with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
-        poses = _enclosed(mechanism, pose, reported)
-        for effect in reported.effects:
-            for quantity, errors in effect.errors(poses, reported.numbers).items():
-                # What cannot be told is not bounded.
-                found[quantity] |= {n: np.where(np.isnan(e), np.inf, e) for n, e in errors.items()}
-    proven = {q: {n: INFLATION * e[0] for n, e in part.items()} for q, part in found.items()}
-    expected = {q: {n: ROUNDINGS * e[1] for n, e in part.items()} for q, part in found.items()}
-    return proven, expected
+        for effect in effects:
+            for quantity, errors in effect.errors(poses, numbers).items():
+                found[quantity] |= errors
+    return _inflated(found, 0, INFLATION), _inflated(found, 1, ROUNDINGS)
+
+
+def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, Array]]:
+    """One of two bounds of each number, times a factor, in place; what cannot be told is not bounded."""
+    inflated = {q: {n: e[which] for n, e in part.items()} for q, part in found.items()}
+    for part in inflated.values():
+        for bound in part.values():
+            bound *= factor
+            np.copyto(bound, np.inf, where=np.isnan(bound))
+    return inflated
 
 
 def _enclosed(mechanism: Mechanism, pose: Proven, reported: Reported) -> EnclosedPoses:
     """Where the points of proven poses are."""
-    time = _unit_of_time(pose.states)
+    time = unit_of_time(pose.states)
     powers = [time**d for d in range(3)]
     driven = {
         place: [part.scaled(power) for part, power in zip(parts, powers, strict=True)]
@@ -143,14 +167,20 @@ def _enclosed(mechanism: Mechanism, pose: Proven, reported: Reported) -> Enclose
     coordinates = enclosed_coordinates(
         mechanism, pose.factors, pose.certificate, scaled, pose.data, driven, summed, unsolved, powers
     )
-    added = reported.chassis.enclosed(pose.times, mechanism.origin)
+    added = reported.chassis.enclosed(pose.laws, mechanism.origin)
     return EnclosedPoses(mechanism, reported.axes, enclosed_points(mechanism, coordinates), added, powers)
 
 
-def _unit_of_time(states: Sequence[Array]) -> Array:
-    """Powers of two that make rates and the roots of accelerations about 1 per unit of time, (N,), s."""
+def unit_of_time(states: Sequence[Array]) -> Array:
+    """Powers of two that make rates and the roots of accelerations about 1 per unit of time, (N,), s.
+
+    Args:
+        states: coordinates and their derivatives, (N, ...), each over all that share the unit.
+    """
     fastest = np.zeros(len(states[0]))
     for d, state in enumerate(states[1:], 1):
-        fastest = np.maximum(fastest, np.abs(state).max(axis=-1) ** (1.0 / d))
+        every = tuple(range(1, state.ndim))
+        largest = np.maximum(state.max(axis=every), -state.min(axis=every))
+        fastest = np.maximum(fastest, largest ** (1.0 / d))
     exponent = np.frexp(np.where(np.isfinite(fastest) & (fastest > 0.0), fastest, 1.0))[1]
     return np.asarray(np.ldexp(1.0, -np.clip(exponent, -LONGEST, LONGEST)))

@@ -173,8 +173,7 @@ def _missing(topology: Topology, point: str) -> str:
 def angle_error(sine: Enclosed, cosine: Enclosed, found: Array) -> Array:
     """Proven and expected error of an angle atan2(sine, cosine) that was found, (2, N), rad; at most pi."""
     c, s = (
-        Enclosed.of(part, 0.0, 2.0 * UNIT_ROUNDOFF, 2.0 * UNIT_ROUNDOFF)
-        for part in (np.cos(found), np.sin(found))
+        sine.like(part, 2.0 * UNIT_ROUNDOFF, 2.0 * UNIT_ROUNDOFF) for part in (np.cos(found), np.sin(found))
     )
     off = sine * c - cosine * s
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):

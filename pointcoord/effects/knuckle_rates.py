@@ -22,7 +22,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.effects import rigid
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
-from pointcoord.numerics.enclosure import Enclosed, cross, dot, quotient
+from pointcoord.numerics.enclosure import Enclosed, both, cross, dot, quotient
 from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
@@ -119,16 +119,16 @@ class BodyRates(Effect):
             for d, quantity in enumerate(found, 1):
                 reported = numbers[quantity][body]
                 # About a rate that is no number nothing can be proven, but what is expected can be said.
-                near = np.nan_to_num(reported, posinf=0.0, neginf=0.0) * poses.powers[d][:, None]
+                near = np.nan_to_num(reported, posinf=0.0, neginf=0.0) * poses.powers[d][..., None]
                 off = body_rate_error(poses.points[0], poses.points[d], names, near, spin)
                 error = np.where(np.isfinite(reported), np.abs(off.middle) + off.radius[0], np.inf)
-                found[quantity][body] = np.stack([error, loss * off.radius[1]]) / poses.powers[d][:, None]
-                spin = Enclosed.of(near, off.middle, *off.radius)
+                found[quantity][body] = both(error, loss * off.radius[1]) / poses.powers[d][..., None]
+                spin = off.corrected(near, off)
         return found
 
 
 def _middles(points: Points, names: Sequence[str]) -> Edges:
-    first, second, third = (points[name].middle for name in names[:3])
+    first, second, third = (points[name].typical for name in names[:3])
     return second - first, third - first
 
 
@@ -146,7 +146,7 @@ def body_rate_error(
     from pointcoord.bounds.enclosed_points import edges_of
 
     e1, e2 = edges_of(points, names)
-    turning = Enclosed.of(found)
+    turning = e1.like(found)
     v1, v2 = edges_of(rates, names)
     s1, s2 = v1 - cross(turning, e1), v2 - cross(turning, e2)
     if pull is not None:

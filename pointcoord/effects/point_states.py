@@ -41,11 +41,11 @@ class PointStates(Effect):
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Distance of what is reported from where the point is, and what a sum in doubles loses."""
         d = self.derivative
-        unit = (float(poses.mechanism.unit) / poses.powers[d])[:, None]
+        unit = (float(poses.mechanism.unit) / poses.powers[d])[..., None]
         errors = {}
         for name, reported in numbers[self._quantity].items():
             exact = poses.points[d][name].scaled(unit) + poses.added[d]
-            errors[name] = np.stack([exact.apart(reported), exact.radius[1]])
+            errors[name] = exact.errors(reported)
         return {self._quantity: errors}
 
     @property

@@ -9,7 +9,7 @@ speed costs a digit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,14 +75,17 @@ class ChassisMotion:
             )
         return np.moveaxis(series, -1, 0)
 
-    def enclosed(self, instants: Array, origin: Array) -> list[Enclosed]:
-        """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s."""
-        still = np.zeros((len(instants), 3))
-        sums = [Enclosed.of(origin + still), Enclosed.of(still), Enclosed.of(still)]
-        for name, function in self.functions.items():
+    def enclosed(self, laws: Mapping[str, Sequence[Enclosed]], origin: Array) -> list[Enclosed]:
+        """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s.
+
+        Args:
+            laws: by input, where its value, rate and acceleration exactly are, each (N,).
+        """
+        still = np.zeros(3)
+        sums = [Enclosed.of(origin), Enclosed.of(still), Enclosed.of(still)]
+        for name in self.functions:
             along = Enclosed.of(self.directions[name])
-            laws = function.enclosed(instants)
-            sums = [total + along * law.spread_out for total, law in zip(sums, laws, strict=True)]
+            sums = [total + along * law.spread_out for total, law in zip(sums, laws[name], strict=True)]
         return sums
 
     def rounding(self, instants: Array, origin: Array) -> Array:

@@ -15,7 +15,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import exact_square, two_product
-from pointcoord.numerics.enclosure import Enclosed, cosine_sine
+from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine
 
@@ -174,7 +174,7 @@ class ArmAngle:
         arm = Enclosed.of(
             length, length * lacking, 256 * UNIT_ROUNDOFF**2 * length, 2 * UNIT_ROUNDOFF * length
         )
-        cosine, sine = cosine_sine(angle)
+        cosine, sine = angle.cosine_sine()
         second = sine * acceleration + cosine * rate * rate
         return arm * cosine, -(arm * sine * rate), -(arm * second)
 

@@ -13,6 +13,8 @@ dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); w
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -28,6 +30,7 @@ OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
 TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
+STEPS, FARTHEST = 256.0, 805  # of a table of angles, and how many of them reach beyond pi
 CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
@@ -53,9 +56,9 @@ class Enclosed:
     def __add__(self, other: Enclosed) -> Enclosed:
         total, carry = two_sum(self.high, other.high)
         rest = carry + (self.low + other.low)
-        rounding = _both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
+        rounding = both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
         high, low = two_sum(total, rest)
-        mine, its = _aligned(self.radius, other.radius)
+        mine, its = aligned(self.radius, other.radius)
         return Enclosed(high, low, mine + its + rounding)
 
     def __neg__(self) -> Enclosed:
@@ -65,13 +68,13 @@ class Enclosed:
         return self + -other
 
     def __mul__(self, other: Enclosed) -> Enclosed:
-        product, carry = two_product(*np.broadcast_arrays(self.high, other.high))
+        product, carry = two_product(self.high, other.high)
         rest = carry + (self.high * other.low + self.low * other.high)
         size = np.abs(product)
-        mine, its = _aligned(self.radius, other.radius)
+        mine, its = aligned(self.radius, other.radius)
         spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
         high, low = two_sum(product, rest)
-        return Enclosed(high, low, spread + _both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
+        return Enclosed(high, low, spread + both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
         """Times powers of two, which rounds nothing but what falls below the normal numbers."""
@@ -80,39 +83,105 @@ class Enclosed:
         lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
         return Enclosed(high, low, self.radius * factor + np.where(lost, TINY, 0.0))
 
-    def _expecting(self, angle: Enclosed) -> Enclosed:
+    def _expecting(self, angle: Enclosed, outside: Array) -> Enclosed:
+        """Of a function of an angle; infinite beyond the table."""
         expected = 2.0 * UNIT_ROUNDOFF * np.abs(self.high) + angle.radius[1]
-        return Enclosed(self.high, self.low, np.stack([self.radius[0], expected]))
+        return Enclosed(self.high, self.low, both(self.radius[0] + outside, expected))
 
     def take(self, places: Indices | list[int]) -> Enclosed:
         """Elements of the last dimension."""
         return Enclosed(*(part.take(places, axis=-1) for part in (self.high, self.low, self.radius)))
+
+    def component(self, place: int) -> Enclosed:
+        """One element of the last dimension."""
+        return Enclosed(self.high[..., place], self.low[..., place], self.radius[..., place])
 
     @property
     def spread_out(self) -> Enclosed:
         """With a last dimension of 1, to multiply vectors."""
         return Enclosed(self.high[..., None], self.low[..., None], self.radius[..., None])
 
+    def cosine_sine(self) -> tuple[Enclosed, Enclosed]:
+        """Cosine and sine of an angle between -pi and pi, about the nearest of a table of angles a.
+
+        With d = angle - a, s = sin d and l = 1 - cos d,
+
+            cos = cos a - (l cos a + s sin a),      sin = sin a - (l sin a - s cos a).
+
+        Of s / d and 2 l / d^2 what goes with d^4 is below 1e-12, so that plain doubles do. The expected
+        radius is that of functions right to a unit in the last place.
+        """
+        plain = Enclosed(self.high, self.low, self.radius)
+        known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
+        place = np.clip(np.rint(known * STEPS), -FARTHEST, FARTHEST)
+        cosine, sine = (whole.take((place + FARTHEST).astype(np.intp)) for whole in _table())
+        part = plain - Enclosed.of(place / STEPS)
+        square = part * part
+        sines, versines = (
+            _less(square, *factors) for factors in ((6.0, 20.0, 42.0, 72.0), (12.0, 30.0, 56.0, 90.0))
+        )
+        turned, back = part * sines, (square * versines).scaled(0.5)
+        outside = np.where(np.abs(part.high) < 1.01 / STEPS, 0.0, np.inf)
+        values = (
+            cosine - (back * cosine + turned * sine),
+            sine - (back * sine - turned * cosine),
+        )
+        found = (value._expecting(self, outside) for value in values)
+        return next(found), next(found)
+
     @property
     def middle(self) -> Array:
         """high + low, rounded once."""
         return np.asarray(self.high + self.low)
+
+    @property
+    def typical(self) -> Array:
+        """The same, or that of one of some neighbours: see `enclosed_groups`."""
+        return self.middle
 
     def apart(self, reported: Array) -> Array:
         """Largest distance of the exact number from a reported one that is close, same shape."""
         distance = np.abs((reported - self.high) - self.low)
         return np.asarray(distance * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.radius[0])
 
+    def errors(self, reported: Array) -> Array:
+        """Proven and expected error of a reported number that is close, with a leading dimension of 2."""
+        return both(self.apart(reported), self.radius[1])
 
-def _aligned(a: Array, b: Array) -> tuple[Array, Array]:
+    def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> Enclosed:
+        """Other numbers of the same instants with radii."""
+        return Enclosed.of(values, 0.0, proven, expected)
+
+    def corrected(self, values: Array, off: Enclosed) -> Enclosed:
+        """Values of the same instants with what they are off added; radii are those of that."""
+        return Enclosed.of(values, off.middle, *off.radius)
+
+    def found(self, values: Array, radius: Array) -> Enclosed:
+        """Plain numbers of the same instants."""
+        return Enclosed(values, np.zeros_like(values), radius)
+
+
+def aligned(a: Array, b: Array) -> tuple[Array, Array]:
     """Radii that broadcast as the numbers do, with dimensions put in behind the first."""
+    if a.ndim == b.ndim:
+        return a, b
     rank = max(a.ndim, b.ndim)
     first, second = (r.reshape(2, *(1,) * (rank - r.ndim), *r.shape[1:]) for r in (a, b))
     return first, second
 
 
-def _both(proven: Array, expected: Array) -> Array:
-    radius = np.empty((2, *proven.shape))
+def both(proven: ArrayLike, expected: ArrayLike) -> Array:
+    """Two arrays, broadcast to one shape, as one with a leading dimension of 2.
+
+    Of three dimensions the last is the first in memory: components of groups of instants.
+    """
+    shape = np.shape(proven)
+    if shape != np.shape(expected):
+        shape = np.broadcast_shapes(shape, np.shape(expected))
+    if len(shape) == 3:
+        radius = np.empty((shape[2], 2, *shape[:2])).transpose(1, 2, 3, 0)
+    else:
+        radius = np.empty((2, *shape))
     radius[0], radius[1] = proven, expected
     return radius
 
@@ -120,9 +189,7 @@ def _both(proven: Array, expected: Array) -> Array:
 def dot(a: Enclosed, b: Enclosed) -> Enclosed:
     """Scalar product over the last dimension of three."""
     products = a * b
-    x, y, z = (
-        Enclosed(products.high[..., i], products.low[..., i], products.radius[..., i]) for i in range(3)
-    )
+    x, y, z = (products.component(i) for i in range(3))
     return x + y + z
 
 
@@ -131,13 +198,28 @@ def cross(a: Enclosed, b: Enclosed) -> Enclosed:
     return a.take(CYCLE) * b.take(BACK) - a.take(BACK) * b.take(CYCLE)
 
 
-def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
-    """Cosine and sine of an angle between -pi and pi, by Taylor's series of a 64th of it and six doublings.
+def _less(square: Enclosed, *divisors: float) -> Enclosed:
+    """1 - q/a (1 - q/b (1 - q/c (1 - q/d))) of a small square q, its higher powers in plain doubles.
 
-    With c = cos - 1, which keeps its digits where the angle is small, a doubling is 2 c (2 + c). The expected
-    radius is that of functions right to a unit in the last place.
+    These are rounded by some 8 u of themselves, and of q below 4e-6 what is left out is less.
     """
-    part = angle.scaled(2.0**-HALVINGS)
+    first, second, third, fourth = divisors
+    q = square.high
+    rest = (q / first) * (q / second) * (1.0 - q / third * (1.0 - q / fourth))
+    left = 8.0 * UNIT_ROUNDOFF * rest + q**5 / (first * second * third * fourth)
+    moved = 2.0 * (q / first) / second * square.radius
+    tail = Enclosed(rest, np.zeros_like(rest), moved + both(left + UNIT_ROUNDOFF * q * q / first, left))
+    return Enclosed.of(1.0) - square * _inverse(int(first)) + tail
+
+
+@cache
+def _table() -> tuple[Enclosed, Enclosed]:
+    """Cosine and sine of the whole parts of 1 / STEPS between -pi and pi.
+
+    By Taylor's series of a 64th of each and six doublings. With c = cos - 1, which keeps its digits where the
+    angle is small, a doubling is 2 c (2 + c).
+    """
+    part = Enclosed.of(np.arange(-FARTHEST, FARTHEST + 1) / STEPS).scaled(2.0**-HALVINGS)
     square = part * part
     one, two = Enclosed.of(1.0), Enclosed.of(2.0)
     even, odd = one, one
@@ -148,8 +230,7 @@ def cosine_sine(angle: Enclosed) -> tuple[Enclosed, Enclosed]:
     sine, less = part * odd, -(square * even).scaled(0.5)
     for _ in range(HALVINGS):
         sine, less = (sine * (one + less)).scaled(2.0), (less * (two + less)).scaled(2.0)
-    values = (one + less, sine)
-    return values[0]._expecting(angle), values[1]._expecting(angle)
+    return one + less, sine
 
 
 def _inverse(number: int) -> Enclosed:
@@ -171,4 +252,4 @@ def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
         left = d - divisor.radius
         spread = (numerator.radius + np.abs(value) * divisor.radius) / left
         radius = np.where(left > 0.0, spread, np.inf) + 4.0 * UNIT_ROUNDOFF * np.abs(value)
-    return Enclosed(np.where(d > 0.0, value, 0.0), np.zeros_like(value), radius)
+    return numerator.found(np.where(d > 0.0, value, 0.0), radius)

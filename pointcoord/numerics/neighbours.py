@@ -18,6 +18,8 @@ a few per cent is not sound, and has to be divided.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,6 +52,8 @@ class Neighbours:
         radius: exactly one assembly lies within it, (G, m).
         residual: C(y) about what the known coordinates mean, (rows, G, m).
         condition: condition number of the Jacobian of each group's anchor, (G,).
+        inverse: X, of each group's anchor, (G, unknowns, rows).
+        defect: at least |I - X C_u| at each pose of the group, element by element, (G, unknowns, unknowns).
     """
 
     sound: NDArray[np.bool_]
@@ -60,6 +64,8 @@ class Neighbours:
     radius: Array
     residual: Array
     condition: Array
+    inverse: Array
+    defect: Array
 
 
 @dataclass(frozen=True)
@@ -82,6 +88,12 @@ class Terms:
     lengths: Indices
     differences: tuple[tuple[int, int], ...]
     changing: tuple[tuple[int, int, int], ...]
+
+    @cached_property
+    def squares(self) -> NDArray[np.bool_]:
+        """The terms whose two differences are one, (terms,)."""
+        (a, b), (c, d) = self.system.terms[2]
+        return np.asarray((a == c) & (b == d))
 
     @classmethod
     def of(cls, system: QuadraticMap, moving: Indices) -> Terms:
@@ -123,7 +135,7 @@ class Terms:
             changes = np.empty((len(self.differences), *change.shape[1:]))
             for made, (first, second) in zip(changes, self.differences, strict=True):
                 np.subtract(change[first], change[second], out=made)
-            reach = self._of_terms(np.maximum(changes.max(axis=-1), -changes.min(axis=-1)).T)
+            reach = self.of_terms(np.maximum(changes.max(axis=-1), -changes.min(axis=-1)).T)
             rows = (self.sums @ self._products(own, changes)).reshape(n, *change.shape[1:])
             start, doubt = doubled_residual(system, anchors, low, data)
             rows += start.T[..., None]
@@ -153,6 +165,8 @@ class Terms:
             radius=found.radius,
             residual=rows,
             condition=factors.condition,
+            inverse=inverse,
+            defect=defect,
         )
 
     def _products(self, own: tuple[Array, Array], changes: Array) -> Array:
@@ -177,7 +191,7 @@ class Terms:
             product += other
         return products.reshape(len(products), -1)
 
-    def _of_terms(self, differences: Array) -> tuple[Array, Array]:
+    def of_terms(self, differences: Array) -> tuple[Array, Array]:
         """Numbers of the differences that change, (G, differences), as those of all terms, (G, terms)."""
         left, right = (np.zeros((len(differences), int(self.lengths.sum()))) for _ in range(2))
         for term, first, second in self.changing:
@@ -206,7 +220,7 @@ class Terms:
         ends_lost = [lost[:, first] + lost[:, second] for first, second in self.differences]
         wrong = [
             UNIT_ROUNDOFF * part + more
-            for part, more in zip(reach, self._of_terms(np.stack(ends_lost, axis=-1)), strict=True)
+            for part, more in zip(reach, self.of_terms(np.stack(ends_lost, axis=-1)), strict=True)
         ]
         (left, right), (left_off, right_off) = reach, off
         left_wrong, right_wrong = wrong

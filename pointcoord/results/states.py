@@ -141,6 +141,10 @@ class StatesAtInstants:
         """Nothing: they were solved for."""
         return ()
 
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """There are no series."""
+        return np.zeros(len(instants), dtype=np.intp)
+
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave."""
         return self.solved.left[np.searchsorted(self.solved.times, instants)]
@@ -267,11 +271,15 @@ class StatesOfChain:
         parts = (sums(-2, None, lasts), sums(-4, -2, terms), sums(0, None, terms))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the segment of each instant."""
+        starts = [segment.start for segment in self.chain.segments]
+        return np.asarray(np.searchsorted(starts, instants, side="right") - 1)
+
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave at the start of each segment."""
-        starts = [segment.start for segment in self.chain.segments]
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
-        return left[np.searchsorted(starts, instants, side="right") - 1]
+        return left[self.pieces(instants)]
 
     @property
     def work(self) -> Work:

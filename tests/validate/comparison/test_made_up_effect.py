@@ -53,7 +53,7 @@ class Stub(Effect):
         inner, centre = (poses.points[0][name] for name in poses.mechanism.topology.wheel_axis)
         exact = poses.axes.enclosed(centre - inner, "outboard").scaled(float(poses.mechanism.unit))
         found = numbers[STUB.name]["stub_axle"]
-        return {STUB.name: {"stub_axle": np.stack([exact.apart(found), exact.radius[1]])}}
+        return {STUB.name: {"stub_axle": exact.errors(found)}}
 
 
 OURS = (
