@@ -79,8 +79,25 @@ def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
     True
     """
     require_scene(scene)
+    return solve_task(checked_task(scene, method_of(method)))
+
+
+def checked_task(scene: Scene, method: Method) -> Task:
+    """A scene ready to be solved.
+
+    Raises:
+        SceneError, InputOutOfRange, AssemblyError: as `simulate`.
+    """
     # Its dictionaries can be written after it was read.
-    task = prepare_task(Scene.checked(scene, scene.title or "scene"), method_of(method))
+    return prepare_task(Scene.checked(scene, scene.title or "scene"), method)
+
+
+def solve_task(task: Task) -> Motion:
+    """Solve a scene that is ready, by the method of the task.
+
+    Raises:
+        InputNotKnown, AssemblyError, MotionTooLong, MotionTooRough, MotionNotMapped: as `simulate`.
+    """
     if task.method.by_series and task.method.by_map:
         task, solved = solve_by_either(task)
     elif task.method.by_series:

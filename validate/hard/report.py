@@ -132,6 +132,18 @@ def _indented(text: str) -> str:
     return "\n".join(f"  {line}" for line in text.splitlines())
 
 
+def times_text(results: Sequence[Examined]) -> str:
+    """How long each case took, the longest first."""
+    longest = sorted(results, key=lambda result: -result.seconds)
+    rows = [(r.case.name, str(len(r.trials)), f"{r.seconds:.2f}", _most(r)) for r in longest]
+    total = sum(result.seconds for result in results)
+    return table(("case", "scenes", "seconds", "s a scene"), rows) + f"\n{total:.1f} s in all."
+
+
+def _most(result: Examined) -> str:
+    return f"{result.seconds / max(len(result.trials), 1):.3f}"
+
+
 def summary_text(results: Sequence[Examined]) -> str:
     """Counts over all cases, and the verdict."""
     rows = [

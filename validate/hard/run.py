@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
+from validate.formulations.registry import formulation
 from validate.hard.case import (
     REFUSED,
     RIGHT_OR_REFUSED,
@@ -97,14 +100,55 @@ def _tried(case: Case, value: float) -> Trial:
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
 
 
-def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:
-    """Examine cases one after the other; each is handed over as soon as it is done."""
+def run(cases: Sequence[Case], done: Callable[[Examined], None], workers: int = 1) -> tuple[Examined, ...]:
+    """Examine cases one after the other; each is handed over as soon as it and all before it are done.
+
+    Args:
+        workers: processes; a case is examined in one of them.
+    """
     results = []
-    for case in cases:
-        result = examine(case)
+    for result in map(examine, cases) if workers == 1 else _examined_elsewhere(cases, workers):
         done(result)
         results.append(result)
     return tuple(results)
+
+
+def _examined_elsewhere(cases: Sequence[Case], workers: int) -> Iterator[Examined]:
+    """Cases of the catalogue, examined by other processes, which find them by their names.
+
+    Raises:
+        MissingPackage: a formulation of the cases is not installed.
+    """
+    # Found out here, where it can be said in a line.
+    for name in dict.fromkeys(name for case in cases for name in case.expected):
+        formulation(name)
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        waiting = [pool.submit(_examine_named, case.name) for case in cases]
+        try:
+            for case, future in zip(cases, waiting, strict=True):
+                found = future.result()
+                yield Examined(replace(case, expected=found.expected), found.trials, found.seconds)
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What a process sends back: all of `Examined` but functions."""
+
+    expected: Mapping[str, Expected]
+    trials: tuple[Trial, ...]
+    seconds: float
+
+
+def _examine_named(name: str) -> _Found:
+    # Imported here: the catalogue's cases are made of what this module runs.
+    from validate.hard.catalogue import chosen
+
+    result = examine(*chosen([name]))
+    trials = tuple(replace(trial, judge=None) for trial in result.trials)
+    return _Found(result.case.expected, trials, result.seconds)
 
 
 def counts(results: Iterable[Examined]) -> dict[str, Counter[str]]:

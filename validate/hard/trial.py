@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord import Scene, SceneError
+from pointcoord import PointcoordError, Scene, SceneError
 from pointcoord.method import MAP
+from pointcoord.simulation import Task
 from validate.adjudication.reference_solution import reference_solution
 from validate.extras import MissingPackage
-from validate.formulations.point_coordinates import PointCoordinates
+from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.case import Answer, Case, Expected, Trial
@@ -44,6 +45,8 @@ class Tried:
 
 Measure = Callable[[Tried], Facts]
 
+# Where its methods start is found once.
+OURS = "pointcoord"
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
 
@@ -87,7 +90,8 @@ def try_scene(
     except SceneError as error:
         refused = tuple(Answer(name, "refused", _told(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not asked"})
-    tried = {name: solved(name, scene) for name in formulations}
+    start = _started(scene) if OURS in formulations else None
+    tried = {name: solved(name, scene, start) for name in formulations}
     solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
     reference = _reference(scene)
     answers = tuple(_held(scene, name, one, reference) for name, one in tried.items())
@@ -99,13 +103,26 @@ def try_scene(
     unknown = isinstance(reference, Exception) and not isinstance(reference, InfeasibleError)
 
     def judge(name: str) -> Answer:
-        return _held(scene, name, solved(name, scene), reference)
+        return _held(scene, name, solved(name, scene, start), reference)
 
     return Trial(value, answers, facts, None if unknown else judge)
 
 
-def solved(name: str, scene: Scene) -> Solution | Answer:
+def _started(scene: Scene) -> Task | PointcoordError | None:
+    """Where all methods of pointcoord start; None if that fails, so that each fails by itself."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return started(scene)
+    except Exception:
+        return None
+
+
+def solved(name: str, scene: Scene, start: Task | PointcoordError | None = None) -> Solution | Answer:
     """A formulation's solution, or its refusal as an answer.
+
+    Args:
+        start: of pointcoord, if it is at hand.
 
     Any other error is a defect of the formulation, and so is a warning: its answer is wrong, and the run
     goes on.
@@ -116,7 +133,8 @@ def solved(name: str, scene: Scene) -> Solution | Answer:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            return _with_bounded_effort(formulation(name)).solve(scene)
+            one = _with_bounded_effort(formulation(name))
+            return one.solve(scene, start) if isinstance(one, PointCoordinates) else one.solve(scene)
     except FormulationError as error:
         return Answer(name, "refused", _told(error.reason))
     except SceneError as error:

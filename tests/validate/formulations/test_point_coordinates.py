@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pointcoord import Motion, MotionTooRough, Scene, SingularConfiguration, simulate
+from pointcoord import Motion, MotionTooRough, PointcoordError, Scene, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
+from pointcoord.simulation import Task
 from validate.cars.car import Car
 from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
+from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 
@@ -100,16 +102,47 @@ def test_a_law_too_rough_to_follow_finely_is_followed_as_the_scene_asks(
     scene = rack_to_its_end(0.5, 1e-3)
     asked: list[float] = []
 
-    def solving(scene: Scene, method: Method) -> Motion:
+    def finely(task: Task) -> Motion:
+        asked.append(task.scene.tolerance)
+        raise MotionTooRough("rack", 0.5, None)
+
+    def as_asked(scene: Scene, method: Method) -> Motion:
         asked.append(scene.tolerance)
-        if scene.tolerance < 1e-3:
-            raise MotionTooRough("rack", 0.5, None)
         return simulate(scene, method)
 
-    monkeypatch.setattr("validate.formulations.point_coordinates.simulate", solving)
+    monkeypatch.setattr("validate.formulations.point_coordinates.solve_task", finely)
+    monkeypatch.setattr("validate.formulations.point_coordinates.simulate", as_asked)
     assert len(formulation("pointcoord").solve(scene).times) == len(scene.instants)
     assert asked[0] < 1e-11
     assert asked[1:] == [1e-3]
+
+
+@pytest.mark.parametrize("method", ["pointcoord", "pointcoord-newton", "pointcoord-map", "printed"])
+def test_methods_that_start_from_one_pose_answer_as_each_from_its_own(method: str) -> None:
+    scene, solver = Scene.load("bounce-and-steer"), formulation(method)
+    assert isinstance(solver, PointCoordinates)
+    own, shared = solver.solve(scene), solver.solve(scene, started(scene))
+    for quantity, claims in own.accuracy.claims.items():
+        for name, claim in claims.items():
+            gap = np.abs(own.numbers[quantity][name] - shared.numbers[quantity][name])
+            assert (gap <= claim + shared.accuracy.claims[quantity][name]).all()
+
+
+def test_a_scene_that_cannot_start_is_refused_by_every_method_for_the_same_reason() -> None:
+    content = rack_to_its_end(0.5).model_dump(mode="json", exclude_none=True)
+    content["inputs"]["rack"] = {"constant": 1000.0}
+    bad = Scene.from_mapping(content)
+    start = started(bad)
+    assert isinstance(start, PointcoordError)
+    for method in ("pointcoord", "pointcoord-newton", "pointcoord-map"):
+        solver = formulation(method)
+        assert isinstance(solver, PointCoordinates)
+        reasons = []
+        for given in (None, start):
+            with pytest.raises(FormulationError) as caught:
+                solver.solve(bad, given)
+            reasons.append(str(caught.value))
+        assert reasons[0] == reasons[1]
 
 
 @pytest.mark.parametrize("quantity", ["velocity", "angular_acceleration", "wheel"])
