@@ -196,7 +196,7 @@ FIGURES = (
     Figure("import", "numpy's own import", importing, 2.3, 2.3),
     Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
-    Figure("a pose by itself", INVERSE, one_by_one, 0.5, 1.8),
+    Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),
     Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
     Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),
     Figure("CSV", "pyarrow's CSV of the same table", csv, 3.0, 1.5),
