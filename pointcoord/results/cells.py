@@ -4,7 +4,7 @@ A cell is a stretch of consecutive instants inside one series, so short that eve
 degree `DEGREE` there, to rounding. Its numbers are computed by the plain formulas (series, effects) at that
 many and one more Chebyshev points, and all instants of the cell take
 
-    rows = [coefficients, directions, origin] [s^n .. s^0, laws of the chassis, 1],
+    rows = [coefficients, directions] [s^n .. s^0, laws of the chassis],
 
 a product whose result is written where it belongs. What is made of states, an angle or a turn, costs there
 what a coordinate costs. Whether a cell is short enough is not guessed:
@@ -25,9 +25,9 @@ from the number (see `bounds`), however it was found.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,6 +104,15 @@ class _Cells:
         points = np.clip(self.middle[:, None] + self.half[:, None] * own, first, last)
         return points, (points - self.middle[:, None]) / self.half[:, None] - own
 
+    def together(self, most: int) -> Iterator[Stretch]:
+        """Cells from a number to before another that have at most so many instants, which each has too."""
+        ends, first = np.cumsum(self.high - self.low), 0
+        while first < len(self):
+            before = ends[first - 1] if first else 0
+            last = int(np.searchsorted(ends, before + most, side="right"))
+            yield first, last
+            first = last
+
     def stretches(self) -> list[Stretch]:
         """The instants of cells in order, neighbours taken together."""
         begins = np.flatnonzero(np.append(True, self.low[1:] != self.high[:-1]))
@@ -154,34 +163,41 @@ class _Laws:
         return cls(chassis, derivatives, coefficients, smooth)
 
     def added_to(self, coefficients: Array, added: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Coefficients of rows with what the chassis adds to them, and in which cells its laws have some.
+        """Coefficients of rows with what stands added and, where all laws have some, what the laws add.
 
         Args:
             coefficients: (cells, rows, DEGREE + 1). added: (rows, laws x derivatives + 1).
+        Returns:
+            The coefficients, and in which cells the laws are in them.
         """
-        found, smooth, count = (
-            coefficients.copy(),
-            np.ones(len(coefficients), dtype=bool),
-            len(self.derivatives),
-        )
-        for i, name in enumerate(self.chassis.functions):
-            found += added[:, i * count : (i + 1) * count] @ self.coefficients[name]
+        count, smooth = len(self.derivatives), np.ones(len(coefficients), dtype=bool)
+        for name in self.chassis.functions:
             smooth &= self.smooth[name]
+        found = coefficients.copy()
         found[..., -1] += added[:, -1]
+        for i, name in enumerate(self.chassis.functions):
+            found[smooth] += added[:, i * count : (i + 1) * count] @ self.coefficients[name][smooth]
         return found, smooth
 
-    def put(self, cell: int, times: Array, powers: Array, out: Array) -> None:
-        """The laws at the instants of a cell, a row for each derivative of each.
+    def put(self, first: int, ends: Sequence[int], times: Array, powers: Array, out: Array) -> None:
+        """The laws at the instants of some cells, a row for each derivative of each law.
 
         Args:
-            powers: of the instants' places in the cell, highest first, (DEGREE + 1, N).
+            first: the first cell's number. ends: where the instants of each begin, and their end.
+            powers: of the instants' places in the cells, highest first, (DEGREE + 1, N).
         """
+        count = len(self.derivatives)
         for i, name in enumerate(self.chassis.functions):
-            rows = out[i * len(self.derivatives) : (i + 1) * len(self.derivatives)]
-            if self.smooth[name][cell]:
-                np.matmul(self.coefficients[name][cell], powers, out=rows)
-            else:
-                rows[...] = self.chassis.law(name, times, self.derivatives[-1])[list(self.derivatives)]
+            rows = out[i * count : (i + 1) * count]
+            smooth = self.smooth[name][first : first + len(ends) - 1]
+            rough = np.repeat(~smooth, np.diff(ends))
+            if rough.any():
+                rows[:, rough] = self.chassis.law(name, times[rough], self.derivatives[-1])[
+                    list(self.derivatives)
+                ]
+            for cell in np.flatnonzero(smooth).tolist():
+                here = slice(ends[cell], ends[cell + 1])
+                np.matmul(self.coefficients[name][first + cell], powers[:, here], out=rows[:, here])
 
 
 def _of_powers(chebyshev: Array) -> Array:
@@ -242,41 +258,51 @@ class CloseInstants:
     def _cells(self, times: Array) -> _Cells:
         """As few cells as are short enough for every state."""
         edges = self.states.series[0].edges(times)
-        found = [_Cells.of(np.zeros(0, np.intp), np.zeros(0, np.intp), times)]
-        for segment, (first, last) in enumerate(pairwise(edges)):
-            if last - first < ENOUGH:
-                continue
-            low = np.arange(first, last, MOST)
-            high = np.minimum(low + MOST, last)
-            while len(low):
-                cells = _Cells.of(low, high, times)
-                short = self._short_enough(segment, cells)
-                found.append(cells.chosen(short))
-                long = ~short & (high - low >= 2 * FEWEST)
-                low, high = low[long], high[long]
-                half = (low + high) // 2
-                low, high = np.concatenate([low, half]), np.concatenate([half, high])
-        every = _Cells.joined(found)
+        lows = [
+            np.arange(first, last, MOST) if last - first >= ENOUGH else np.zeros(0, dtype=np.intp)
+            for first, last in pairwise(edges)
+        ]
+        segment, low = np.repeat(np.arange(len(lows)), [len(each) for each in lows]), np.concatenate(lows)
+        high = np.minimum(low + MOST, np.array(edges[1:])[segment])
+        found = []
+        while len(low):
+            cells = _Cells.of(low, high, times)
+            short = self._short_enough(segment, cells)
+            found.append(cells.chosen(short))
+            long = ~short & (high - low >= 2 * FEWEST)
+            segment, low, high = segment[long].repeat(2), low[long].repeat(2), high[long].repeat(2)
+            low[1::2] = high[::2] = (low[::2] + high[1::2]) // 2
+        every = _Cells.joined([_Cells.of(low, high, times), *found])
         return every.chosen(np.argsort(every.low))
 
-    def _short_enough(self, segment: int, cells: _Cells) -> NDArray[np.bool_]:
-        """Whether every state is a polynomial of the degree in each cell."""
-        series = self.states.series[0]
+    def _short_enough(self, segment: Whole, cells: _Cells) -> NDArray[np.bool_]:
+        """Whether every state is a polynomial of the degree in each cell.
+
+        Args:
+            segment: of each cell; they do not decrease.
+        """
+        starts, scales = self._segments
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            middle = (cells.middle - series.starts[segment]) / series.scales[segment]
-            half = cells.half / series.scales[segment]
+            middle = (cells.middle - starts[segment]) / scales[segment]
+            half = cells.half / scales[segment]
             ratio = half / middle
             rounded = EPS * np.abs(cells.middle) <= ROUNDED * cells.half
             good = rounded & (half > 0.0) & (middle > 0.0) & (ratio <= NARROW)
         if not good.any():
             return good
-        sizes = self._sizes[segment]
-        orders = np.arange(sizes.shape[-1])[:, None]
-        counts = binomials(len(orders))[:, DEGREE + 1 :]
-        beyond = 2.0 * shares_beyond(DEGREE, len(orders))[DEGREE + 1 :]
-        middle, half, ratio = middle[good], half[good], ratio[good]
-        left = sizes @ (middle**orders * (counts @ (beyond[:, None] * ratio ** orders[DEGREE + 1 :])))
-        terms = sizes @ (middle - half) ** orders
+        segment, middle, half, ratio = segment[good], middle[good], half[good], ratio[good]
+        left, terms = (np.empty((len(self._sizes[0]), len(segment))) for _ in range(2))
+        places = np.searchsorted(segment, np.arange(len(self._sizes) + 1)).tolist()
+        most = max(sizes.shape[-1] for sizes in self._sizes)
+        powers, narrow = (each ** np.arange(most)[:, None] for each in (middle - half, ratio))
+        whole = middle ** np.arange(most)[:, None]
+        for sizes, (first, last) in zip(self._sizes, pairwise(places), strict=True):
+            if first < last:
+                here, count = slice(first, last), sizes.shape[-1]
+                beyond = 2.0 * shares_beyond(DEGREE, count)[DEGREE + 1 :, None]
+                own = binomials(count)[:, DEGREE + 1 :] @ (beyond * narrow[DEGREE + 1 : count, here])
+                left[:, here] = sizes @ (whole[:count, here] * own)
+                terms[:, here] = sizes @ powers[:count, here]
         allowed = LEFT_OUT * (terms + SHARED * self._largest_of_a_kind(terms))
         good[good] = (left <= allowed).all(axis=0)
         return good
@@ -284,10 +310,21 @@ class CloseInstants:
     def _largest_of_a_kind(self, terms: Array) -> Array:
         """Of all rows that are the same derivative, in each row."""
         largest = np.empty_like(terms)
-        for derivative in self.readout.table.reported:
-            rows = self.readout.table.states_of(derivative)[0]
+        for rows in self._kinds:
             largest[rows] = terms[rows].max(axis=0, initial=0.0)
         return largest
+
+    @cached_property
+    def _kinds(self) -> list[slice]:
+        """The rows of the solved states of each derivative."""
+        table = self.readout.table
+        return [table.states_of(derivative)[0] for derivative in table.reported]
+
+    @cached_property
+    def _segments(self) -> tuple[Array, Array]:
+        """Start and scale of each segment, s."""
+        series = self.states.series[0]
+        return np.array(series.starts), np.array(series.scales)
 
     @cached_property
     def _sizes(self) -> tuple[Array, ...]:
@@ -300,34 +337,41 @@ class CloseInstants:
         coefficients, good = self._coefficients(cells, times)
         cells, coefficients = cells.chosen(good), coefficients[good]
         laws = _Laws.of(self.readout.chassis, table.reported, cells, times)
-        stands = ~added[still:, :-1].any(axis=-1)
+        terms = {row: np.flatnonzero(added[row, :-1]).tolist() for row in range(still, table.height)}
+        stands = [row for row, own in terms.items() if not own]
+        carried = [(row, own[0], own[1:]) for row, own in terms.items() if own]
         for low, high in cells.stretches():
-            rows[still:, low:high][stands] = added[still:, -1:][stands]
-        carried = [(int(row), np.flatnonzero(added[row, :-1])) for row in still + np.flatnonzero(~stands)]
+            for row in stands:
+                rows[row, low:high] = added[row, -1]
         whole, smooth = laws.added_to(coefficients, added[:still])
-        beside = np.concatenate([np.zeros((still, DEGREE + 1)), added[:still]], axis=-1)
-        room = np.ones((beside.shape[-1], MOST))
-        for cell, (low, high) in enumerate(zip(cells.low.tolist(), cells.high.tolist(), strict=True)):
-            basis = room[:, : high - low]
-            power = basis[DEGREE::-1]
-            np.subtract(times[low:high], cells.middle[cell], out=power[1])
-            power[1] /= cells.half[cell]
+        room = np.ones((DEGREE + added.shape[-1], MOST))
+        middle, half = cells.middle.tolist(), cells.half.tolist()
+        spans = list(zip(cells.low.tolist(), cells.high.tolist(), strict=True))
+        for first, last in cells.together(MOST):
+            ends = [0, *accumulate(high - low for low, high in spans[first:last])]
+            power = room[DEGREE::-1, : ends[-1]]
+            here = np.concatenate([times[slice(*span)] for span in spans[first:last]])
+            for cell, (start, end) in enumerate(pairwise(ends), first):
+                np.subtract(here[start:end], middle[cell], out=power[1, start:end])
+                power[1, start:end] /= half[cell]
             for known in (1, 2, 4):
                 np.multiply(power[1 : known + 1], power[known], out=power[known + 1 : 2 * known + 1])
-            if laws.smooth:
-                laws.put(cell, times[low:high], basis[: DEGREE + 1], basis[DEGREE + 1 : -1])
+            laws.put(first, ends, here, room[: DEGREE + 1, : ends[-1]], room[DEGREE + 1 :, : ends[-1]])
+            for cell, (start, end) in enumerate(pairwise(ends), first):
+                low, high = spans[cell]
+                basis, own = room[: DEGREE + 1, start:end], room[DEGREE + 1 :, start:end]
+                if smooth[cell]:
+                    np.matmul(whole[cell], basis, out=rows[:still, low:high])
+                else:
+                    matrix = np.concatenate([whole[cell], added[:still, :-1]], axis=-1)
+                    np.matmul(matrix, room[:, start:end], out=rows[:still, low:high])
                 # A product of matrices takes three times as long for rows that have one law each.
-                for row, own in carried:
+                for row, law, others in carried:
                     out = rows[row, low:high]
-                    np.multiply(basis[DEGREE + 1 + own[0]], added[row, own[0]], out=out)
-                    for law in own[1:]:
-                        out += basis[DEGREE + 1 + law] * added[row, law]
+                    np.multiply(own[law], added[row, law], out=out)
+                    for other in others:
+                        out += own[other] * added[row, other]
                     out += added[row, -1]
-            if smooth[cell]:
-                np.matmul(whole[cell], basis[: DEGREE + 1], out=rows[:still, low:high])
-            else:
-                beside[:, : DEGREE + 1] = coefficients[cell]
-                np.matmul(beside, basis, out=rows[:still, low:high])
         return cells
 
     def _coefficients(self, cells: _Cells, times: Array) -> tuple[Array, NDArray[np.bool_]]:
