@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from pointcoord.bounds.reported_bounds import (
     driven_coordinates,
     reported_bounds,
 )
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
@@ -223,7 +225,7 @@ def _reported_bound(
     return np.asarray(INFLATION * found)
 
 
-@dataclass
+@dataclasses.dataclass
 class _Bounds:
     """Bounds of every number at some instants, written block by block.
 

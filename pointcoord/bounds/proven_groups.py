@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,12 @@ from pointcoord.bounds.reported_bounds import (
     driven_coordinates,
     unit_of_time,
 )
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.neighbours import SHARED, Neighbours
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -72,7 +74,7 @@ class ProvenGroups:
     expected: Numbers
 
 
-@dataclass
+@dataclasses.dataclass
 class GroupProver:
     """Proves groups of a mechanism's poses, and remembers how far apart the members of one may lie.
 
@@ -231,17 +233,18 @@ class _Grouped:
 
 
 def _credible(proven: Numbers, expected: Numbers, count: int) -> NDArray[np.bool_]:
-    """Groups of which no number is off by more than is expected throughout, or unknown anywhere, (count,).
+    """Groups of which no number is off by more than is expected, or unknown, (count,).
 
     A single number that is wrong, or none at all, spoils the bounds of its neighbours; each is then proven by
-    itself.
+    itself. What is left of a number that is exact is some u^2 of the others.
     """
     sound = np.ones(count, dtype=bool)
     for quantity, part in proven.items():
         for name, bound in part.items():
-            least, most = bound.min(axis=1), bound.max(axis=1)
-            fine = (least <= expected[quantity][name].max(axis=1) + NOTHING) & np.isfinite(most)
-            sound &= fine.reshape(count, -1).all(axis=1)
+            most, least = bound.max(axis=1), expected[quantity][name].min(axis=1)
+            others = expected[quantity][name].reshape(count, -1).max(axis=1)
+            spare = (UNIT_ROUNDOFF * others + NOTHING).reshape(-1, *[1] * (most.ndim - 1))
+            sound &= (most <= least + spare).reshape(count, -1).all(axis=1)
     return sound
 
 
