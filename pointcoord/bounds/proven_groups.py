@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,12 @@ from pointcoord.bounds.reported_bounds import (
     driven_coordinates,
     unit_of_time,
 )
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.neighbours import SHARED, Neighbours
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -72,7 +74,7 @@ class ProvenGroups:
     expected: Numbers
 
 
-@dataclass
+@dataclasses.dataclass
 class GroupProver:
     """Proves groups of a mechanism's poses, and remembers how far apart the members of one may lie.
 
@@ -147,8 +149,9 @@ class GroupProver:
                 reported.chassis.enclosed(some.laws, mechanism.origin),
                 [power[:, None] for power in some.powers],
             )
-            proven, expected = bounds_of_numbers(poses, reported.effects, some.numbers(reported))
-        sound = certified.sound & (found.cost <= 1.0) & _credible(proven, expected, len(groups))
+            numbers = some.numbers(reported)
+            proven, expected = bounds_of_numbers(poses, reported.effects, numbers)
+            sound = certified.sound & (found.cost <= 1.0) & _credible(numbers, proven, expected)
         return ProvenGroups(groups, certified, sound, proven, expected)
 
     def _leave_out(
@@ -230,18 +233,19 @@ class _Grouped:
         }
 
 
-def _credible(proven: Numbers, expected: Numbers, count: int) -> NDArray[np.bool_]:
-    """Groups of which no number is off by more than is expected throughout, or unknown anywhere, (count,).
+def _credible(numbers: Numbers, proven: Numbers, expected: Numbers) -> NDArray[np.bool_]:
+    """Groups of which every number is one, and is off by no more than is expected, (G,).
 
     A single number that is wrong, or none at all, spoils the bounds of its neighbours; each is then proven by
-    itself.
+    itself. What is left of a number that is exact is some u^2 of the others.
     """
-    sound = np.ones(count, dtype=bool)
+    sound: NDArray[np.bool_] = np.array(True)
     for quantity, part in proven.items():
         for name, bound in part.items():
-            least, most = bound.min(axis=1), bound.max(axis=1)
-            fine = (least <= expected[quantity][name].max(axis=1) + NOTHING) & np.isfinite(most)
-            sound &= fine.reshape(count, -1).all(axis=1)
+            most, least = bound.max(axis=1), expected[quantity][name].min(axis=1)
+            spare = UNIT_ROUNDOFF * least.max(axis=-1, keepdims=True) if least.ndim > 1 else 0.0
+            fine = (most <= least + spare + NOTHING) & np.isfinite(numbers[quantity][name].sum(axis=1))
+            sound = sound & (fine.all(axis=-1) if fine.ndim > 1 else fine)
     return sound
 
 

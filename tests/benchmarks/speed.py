@@ -152,6 +152,13 @@ def proofs() -> Race:
     return Race(lambda: motion.proof_of(samples), inverses, len(samples.times) / 1000)
 
 
+def proofs_of_effects() -> Race:
+    """Bounds of every number at many instants: positions, both rates and all effects."""
+    motion = simulate(scene("bounce-and-steer", tuple(EFFECTS)))
+    samples = motion.at(np.linspace(0.0, float(motion.times[-1]), size(200_000, 20_000)))
+    return Race(lambda: motion.proof_of(samples, rates=True), inverses, len(samples.times) / 1000)
+
+
 def csv() -> Race:
     """A motion as CSV, against pyarrow with the same table."""
     motion = simulate(scene("bounce", BOTH_RATES, size(200_000, 20_000)))
@@ -199,6 +206,7 @@ FIGURES = (
     Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),
     Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
     Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),
+    Figure("a proof of an instant's rates and effects", INVERSE, proofs_of_effects, 1.5, 2.0),
     Figure("CSV", "pyarrow's CSV of the same table", csv, 3.0, 1.5),
     Figure("a chain of many unknowns", "ten times one of a tenth", chain, 3.0, 2.3),
     Figure("validate, from the shell", INVERSES, comparing, 150.0, 400.0),
