@@ -184,6 +184,7 @@ class Task:
         functions: the laws of the inputs that drive the linkage.
         start: the pose at the first instant.
         closing: how far closing the drawing moved its points.
+        instants: of the scene, s.
     """
 
     scene: Scene
@@ -192,6 +193,7 @@ class Task:
     functions: Mapping[str, TimeFunction]
     start: Pose
     closing: Closing
+    instants: Array
 
 
 def prepare_task(scene: Scene, method: Method) -> Task:
@@ -203,15 +205,16 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     whole = scene_mechanism(scene, method)
     plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
     mechanism = needed_mechanism(whole, plan.derivatives(whole.topology))
+    laws, instants = scene.functions, scene.instants
     readout = Readout(
         mechanism=mechanism,
         plan=plan,
-        chassis=ChassisMotion.of(mechanism, scene.functions),
+        chassis=ChassisMotion.of(mechanism, laws),
         axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
     )
-    functions = {name: scene.functions[name] for name in whole.topology.required_inputs}
-    check_range(whole, functions, scene.instants)
-    for block in _blocks(scene.instants):
+    functions = {name: laws[name] for name in whole.topology.required_inputs}
+    check_range(whole, functions, instants)
+    for block in _blocks(instants if readout.chassis.functions else instants[:0]):
         readout.chassis.states(block, readout.reported_derivative)
     # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
     first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
@@ -222,7 +225,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     inputs = {name: f.series(first, 0)[..., 0] for name, f in functions.items()}
     begun = path_of_part(closed, whole, mechanism)
     start = assemble(mechanism, inputs, first, begun, pose_tolerance(scene, method, mechanism))
-    return Task(scene, method, readout, functions, start, moved)
+    return Task(scene, method, readout, functions, start, moved, instants)
 
 
 def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
@@ -330,7 +333,7 @@ def _chain(task: Task, hopeful: bool = True) -> Chain:
 
 def _at_instants(task: Task) -> SolvedScene:
     """Solve a motion at each of the scene's instants by itself."""
-    mechanism, instants, plan = task.readout.mechanism, task.scene.instants, task.readout.plan
+    mechanism, instants, plan = task.readout.mechanism, task.instants, task.readout.plan
     term = task.method.square_velocity_term
     allowed = pose_tolerance(task.scene, task.method, mechanism)
     solver = task.method.at_instants
@@ -340,7 +343,7 @@ def _at_instants(task: Task) -> SolvedScene:
 
 def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     """The motion, whole or up to where it was solved; None if it is nowhere."""
-    times = solved.states.covered(task.scene.instants)
+    times = solved.states.covered(task.instants)
     if not len(times):
         return None
     samples = solved.samples(times)
@@ -543,6 +546,8 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
 
 def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
     """Which numbers are none, and why."""
+    if _all_are_numbers(solved, samples):
+        return ()
     notes = []
     for effect in solved.readout.plan.computed:
         why = f": {effect.no_number}" if effect.no_number else ""
@@ -557,3 +562,17 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
                         f"{len(samples.times)} instants{why}"
                     )
     return tuple(notes)
+
+
+def _all_are_numbers(solved: SolvedScene, samples: Samples) -> bool:
+    """Whether no number is missing, looked at all at once where there are few instants."""
+    count = len(samples.times)
+    if count > BLOCK:
+        return False
+    found = [
+        samples.numbers[quantity][name].reshape(count, -1)
+        for effect in solved.readout.plan.computed
+        for quantity in effect.gives_numbers
+        for name in effect.names or samples.numbers[quantity]
+    ]
+    return bool(np.isfinite(np.concatenate(found, axis=1)).all())

@@ -10,7 +10,7 @@ which is all that positions, velocities, accelerations and whole motions need.
 from __future__ import annotations
 
 from functools import cache, cached_property
-from math import comb, factorial, perm
+from math import comb, factorial, isfinite, perm
 from operator import mul
 from typing import TYPE_CHECKING, Protocol
 
@@ -96,20 +96,33 @@ class Polynomial:
 
         Horner's rule in twice the working precision: terms may cancel, as where a motion comes to rest.
         """
+        if isinstance(instants, float):
+            return self._series_of_one(instants, order)
         t = np.asarray(instants, dtype=float)
+        if t.ndim == 0:
+            return self._series_of_one(float(t), order)
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(min(order + 1, len(self.coefficients))):
                 high, low = self._shifted(k)
-                if t.ndim == 0:
-                    doubled = np.asarray(_horner_of_one(high, low, float(t)))
-                else:
-                    doubled = _doubled_horner(high, low, t)
+                doubled = _doubled_horner(high, low, t)
                 if not np.isfinite(doubled).all():
                     # Splitting a number above 1e300 overflows; there only the plain sum is left.
                     plain = np.polynomial.polynomial.polyval(t, np.array(high))
                     doubled = np.where(np.isfinite(doubled), doubled, plain)
                 result[..., k] = doubled
+        return result
+
+    def _series_of_one(self, t: float, order: int) -> Array:
+        """The same about one instant, in Python's own numbers."""
+        result = np.zeros(order + 1)
+        for k in range(min(order + 1, len(self.coefficients))):
+            high, low = self._shifted(k)
+            doubled = _horner_of_one(high, low, t)
+            if not isfinite(doubled):
+                with np.errstate(over="ignore", invalid="ignore"):
+                    doubled = float(np.polynomial.polynomial.polyval(t, np.array(high)))
+            result[k] = doubled
         return result
 
     def _shifted(self, k: int) -> tuple[list[float], list[float]]:
@@ -450,20 +463,34 @@ def cosine(angle: Array) -> Array:
     c' = -s a' and s' = c a' give, term by term,
     c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
     """
-    return _cosine_of_one(angle) if angle.ndim == 1 else cosine_plainly(angle)
+    return np.array(cosine_of_one(angle)) if angle.ndim == 1 else cosine_plainly(angle)
 
 
-def _cosine_of_one(angle: Array) -> Array:
+def cosine_of_one(angle: Array) -> list[float]:
     """One series, in Python's own numbers; of an angle that is a polynomial only its own terms are summed."""
-    last = int(np.flatnonzero(angle)[-1]) if angle.any() else 0
-    weighted = [i * a for i, a in enumerate(angle[: last + 1].tolist())][1:]
-    c, s = [float(np.cos(angle[0]))], [float(np.sin(angle[0]))]
-    for k in range(1, len(angle)):
+    terms = angle.tolist()
+    weighted = [i * a for i, a in enumerate(terms)][1:]
+    while weighted and weighted[-1] == 0.0:
+        weighted.pop()
+    c, s = [float(np.cos(terms[0]))], [float(np.sin(terms[0]))]
+    if not weighted:
+        return c + [0.0] * (len(terms) - 1)
+    if len(weighted) <= 2:
+        slope, bend = (*weighted, 0.0)[:2]
+        before_c = before_s = 0.0
+        for k in range(1, len(terms)):
+            c_k = -(slope * s[-1] + bend * before_s) / k
+            before_s, s_k = s[-1], (slope * c[-1] + bend * before_c) / k
+            before_c = c[-1]
+            c.append(c_k)
+            s.append(s_k)
+        return c
+    for k in range(1, len(terms)):
         # The series so far, the latest term first, beside the terms 1, 2, ... of the angle's rate.
         c_k = -sum(map(mul, weighted, reversed(s))) / k
         s.append(sum(map(mul, weighted, reversed(c))) / k)
         c.append(c_k)
-    return np.array(c)
+    return c
 
 
 def cosine_plainly(angle: Array) -> Array:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import SingularConfiguration
 from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.vectors import LAST, NEXT
 
 Array = NDArray[np.float64]
 
@@ -28,8 +29,6 @@ Array = NDArray[np.float64]
 MOST_REFINEMENTS = 2
 # Of eps cond(J), up to which one is enough: its square is then a thousandth of a rounding.
 ROUGH = (1e-3 * EPS) ** 0.5
-# The components of a cross product: the first is made of the second and the third, and so on.
-TURNS = ((1, 2), (2, 0), (0, 1))
 
 
 def body_rates(position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:
@@ -80,26 +79,19 @@ def _about_centroid(vectors: Array) -> Array:
 def _turning(compliance: tuple[Array, ...], r: Array, v: Array, refinements: int) -> Array:
     """The least squares solution of v = omega x r, refined; shape (3, ...)."""
     omega = _apply(compliance, _moment(r, v))
-    rest, product = np.empty_like(v), np.empty_like(v[0])
     for _ in range(refinements):
-        for i, (j, k) in enumerate(TURNS):
-            np.multiply(omega[j], r[k], out=rest[i])
-            np.multiply(omega[k], r[j], out=product)
-            rest[i] -= product
-        np.subtract(v, rest, out=rest)
-        omega += _apply(compliance, _moment(r, rest))
+        omega += _apply(compliance, _moment(r, v - _crossed(omega[:, None], r)))
     return omega
 
 
 def _moment(r: Array, f: Array) -> Array:
     """sum r x f over points, shapes (3, points, ...) to (3, ...)."""
-    moment, product, other = np.empty((3, *r.shape[2:])), np.empty_like(r[0]), np.empty_like(r[0])
-    for i, (j, k) in enumerate(TURNS):
-        np.multiply(r[j], f[k], out=product)
-        np.multiply(r[k], f[j], out=other)
-        product -= other
-        np.add.reduce(product, axis=0, out=moment[i, ...])
-    return moment
+    return np.asarray(np.add.reduce(_crossed(r, f), axis=1))
+
+
+def _crossed(a: Array, b: Array) -> Array:
+    """a x b over the first dimension."""
+    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])
 
 
 def _inverse_inertia(r: Array) -> tuple[tuple[Array, ...], Array]:
@@ -107,9 +99,8 @@ def _inverse_inertia(r: Array) -> tuple[tuple[Array, ...], Array]:
 
     Each of shape (...).
     """
-    x, y, z = r
-    xx, yy, zz = ((c * c).sum(axis=0) for c in (x, y, z))
-    f, e, d = -(y * z).sum(axis=0), -(x * z).sum(axis=0), -(x * y).sum(axis=0)
+    xx, yy, zz = np.add.reduce(r * r, axis=1)
+    f, e, d = -np.add.reduce(r[NEXT] * r[LAST], axis=1)
     a, b, c = yy + zz, xx + zz, xx + yy
     cofactors = (b * c - f * f, a * c - e * e, a * b - d * d, d * e - a * f, d * f - b * e, e * f - c * d)
     determinant = a * cofactors[0] + d * cofactors[5] + e * cofactors[4]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.enclosure import Enclosed, cross, dot
+from pointcoord.numerics.vectors import cross as vector_product
 
 Array = NDArray[np.float64]
 
@@ -53,5 +54,5 @@ class CarAxes:
 
     @cached_property
     def _vectors(self) -> Mapping[Direction, Array]:
-        rearward = np.cross(self.right, self.up)
+        rearward = vector_product(self.right, self.up)
         return {"up": self.up, "outboard": self.outboard, "rearward": rearward}

@@ -14,6 +14,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.power_series import cross_series
 from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.vectors import cross, lengths
 
 Array = NDArray[np.float64]
 
@@ -26,10 +27,9 @@ def carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str])
     """
     base, first, second = (drawing.vectors[point] for point in carriers)
     e1, e2 = first - base, second - base
-    frame = np.stack(np.broadcast_arrays(e1, e2, np.cross(e1, e2)), axis=-1)
-    lengths = np.linalg.norm(e1, axis=-1) * np.linalg.norm(e2, axis=-1)
-    area = np.linalg.norm(np.cross(e1, e2), axis=-1)
-    if not (area > 8 * EPS * lengths).all():
+    normal = cross(*np.broadcast_arrays(e1, e2)) if e1.ndim != e2.ndim else cross(e1, e2)
+    frame = np.stack([np.broadcast_to(edge, normal.shape) for edge in (e1, e2, normal)], axis=-1)
+    if not (lengths(normal) > 8 * EPS * lengths(e1) * lengths(e2)).all():
         raise MechanismError(
             f"{', '.join(carriers)} lie in one line, so they cannot carry {name}; move one off the line",
             carriers,
@@ -50,6 +50,18 @@ def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str
     others = (sides.sum(axis=-1, keepdims=True) - sides).max(axis=-1)
     a, b, c = (weights[..., i] for i in range(3))
     return float(np.max(np.abs(1.0 - a - b) + np.abs(a) + np.abs(b) + 2.0 * np.abs(c) * others))
+
+
+def carried_place(weights: Array, base: Array, first: Array, second: Array) -> Array:
+    """A carried point, shape (..., 3).
+
+    Args:
+        weights: (a, b, c), shape (..., 3).
+        base, first, second: places of the carriers, shape (..., 3).
+    """
+    e1, e2 = first - base, second - base
+    a, b, c = (weights[..., i, None] for i in range(3))
+    return np.asarray(base + a * e1 + b * e2 + c * cross(e1, e2))
 
 
 def carried_series(weights: Array, base: Array, first: Array, second: Array) -> Array:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.numerics.vectors import lengths
 
 Array = NDArray[np.float64]
 
@@ -22,13 +24,18 @@ class Drawing:
     def distance(self, start: str, end: str) -> Array:
         """Drawn distance between two points, shape (...,)."""
         if (start, end) not in self._distances:
-            between = self.vectors[start] - self.vectors[end]
-            self._distances[start, end] = np.asarray(np.linalg.norm(between, axis=-1))
+            self._distances[start, end] = lengths(self.vectors[start] - self.vectors[end])
         return self._distances[start, end]
 
     @cached_property
     def _distances(self) -> dict[tuple[str, str], Array]:
         return {}
+
+    def stacked(self, names: Sequence[str]) -> Array:
+        """Drawn points as one array, shape (..., points, 3)."""
+        own = [self.vectors[name] for name in names]
+        one = all(vector.ndim == 1 for vector in own)
+        return np.array(own) if one else np.stack(np.broadcast_arrays(*own), axis=-2)
 
     def along(self, start: str, end: str, direction: str) -> Array:
         """Component of the drawn vector from start to end along a direction, shape (...,)."""

@@ -17,7 +17,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import exact_square, two_product
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.time_functions import cosine
+from pointcoord.time_functions import cosine, cosine_of_one
 
 Array = NDArray[np.float64]
 
@@ -123,6 +123,9 @@ class ArmAngle:
         Raises:
             InputOutOfRange: an angle outside 0 .. pi.
         """
+        if value.ndim == 1 and drawing.unit.ndim == 0 and 0.0 <= float(value[0]) <= np.pi:
+            length = float(drawing.distance(self.pivot, self.point))
+            return np.array([length * term for term in cosine_of_one(value)])
         angle = value[..., 0]
         inside = (angle >= 0.0) & (angle <= np.pi)
         if not inside.all():

@@ -37,7 +37,8 @@ def build_mechanism(
     topology = topology.given(points)
     located = _checked(topology.with_defaults(points), topology.points, "point")
     turned = _checked(directions, topology.directions, "direction")
-    stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
+    batched = any(place.ndim > 1 for place in located.values())
+    stack = np.stack(np.broadcast_arrays(*located.values()), -2) if batched else np.array([*located.values()])
     with np.errstate(over="ignore", invalid="ignore"):
         extent = (stack.max(axis=-2) - stack.min(axis=-2)).max(axis=-1)
     if not (np.isfinite(extent).all() and (extent > 1e-100).all() and (extent < 1e100).all()):
@@ -49,7 +50,10 @@ def build_mechanism(
     # never less than three quarters of a nonzero origin's, and never on the other side of zero.
     grid = 4.0 * unit[..., None]
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
-    vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
+    if batched:
+        vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
+    else:
+        vectors = dict(zip(located, (stack - origin) / unit, strict=True)) | turned
     drawing = Drawing(vectors, unit)
     drawn, lacks, doubt = _drawn(topology, drawing)
     mechanism = Mechanism(
@@ -75,6 +79,9 @@ def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
 
 
 def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
+    one = _of_one_car(given, names)
+    if one is not None:
+        return one
     result: dict[str, Array] = {}
     for name in names:
         if name not in given:
@@ -88,6 +95,20 @@ def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) ->
     return result
 
 
+def _of_one_car(given: Mapping[str, ArrayLike], names: Sequence[str]) -> dict[str, Array] | None:
+    """The vectors of one car; None where that is not what is given, or something is wrong."""
+    places = [given.get(name) for name in names]
+    if not all(isinstance(place, tuple) for place in places):
+        return None
+    try:
+        stack = np.array(places, dtype=float)
+    except (TypeError, ValueError):
+        return None
+    if stack.shape != (len(names), 3) or not np.isfinite(stack).all():
+        return None
+    return dict(zip(names, stack, strict=True))
+
+
 def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     """The coordinates y at which the drawing stands, assembled or not, what they lack and their doubt."""
     layout = topology.layout
@@ -95,19 +116,24 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     y, lacks, doubt = (np.zeros((*batch, layout.size)) for _ in range(3))
     y[..., layout.one] = 1.0
     for name in (*layout.moving, *layout.chassis, *layout.directions):
-        y[..., list(layout.vector(name))] = drawing.vectors[name]
-    for constraint in topology.constraints:
-        for own in constraint.placed(layout, drawing):
+        y[..., layout.span(name)] = drawing.vectors[name]
+    for kind in topology.kinds:
+        for own in type(kind[0]).placed_together(kind, layout, drawing):
             places = list(own.places)
-            y[..., places], lacks[..., places], doubt[..., places] = own.values, own.lacks, own.doubt
-    for drive in topology.drives:
-        y[..., layout.scalar(drive.coordinate)] = drive.drawn(drawing)
+            y[..., places] = own.values
+            for table, values in ((lacks, own.lacks), (doubt, own.doubt)):
+                if not isinstance(values, float) or values:
+                    table[..., places] = values
+    for drive, place in zip(topology.drives, topology.driven, strict=True):
+        y[..., place] = drive.drawn(drawing)
     return y, lacks, doubt
 
 
 def _check_determined(mechanism: Mechanism) -> None:
     topology, layout, system = mechanism.topology, mechanism.layout, mechanism.map
     equations, unknowns = len(system.rows), system.unknowns
+    if equations == unknowns and mechanism.drawn.ndim == 1 and not mechanism.drawn_factors.singular:
+        return
     jacobian = system.jacobian(mechanism.drawn)
     if equations == unknowns:
         if _regular_like_the_first(jacobian.reshape(-1, unknowns, unknowns)):
@@ -143,8 +169,10 @@ def _regular_like_the_first(matrices: Array) -> bool:
     With X the first one's inverse and |I - X A| <= 1/2, |A^-1| <= 2 |X|: one product for all, where each
     would take a factorisation. False says nothing.
     """
+    if len(matrices) < 2:
+        return False
     first, n = factorise(matrices[0]), matrices.shape[-1]
-    if len(matrices) < 2 or first.singular:
+    if first.singular:
         return False
     inverse = first.preconditioner
     products = inverse @ matrices.transpose(1, 0, 2).reshape(n, -1)

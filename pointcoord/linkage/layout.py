@@ -77,6 +77,11 @@ class Layout:
         first = self._vectors[name]
         return first, first + 1, first + 2
 
+    def span(self, name: str) -> slice:
+        """The same three as a slice."""
+        first, _, last = self.vector(name)
+        return slice(first, last + 1)
+
     def scalar(self, name: str) -> int:
         """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
         if name not in self._scalars:

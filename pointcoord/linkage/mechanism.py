@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, UnknownName
-from pointcoord.linkage.carried_points import carried_gain, carried_series
+from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.time_functions import TimeFunction
@@ -66,6 +67,11 @@ class Mechanism:
         return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
     @cached_property
+    def drawn_factors(self) -> Factors:
+        """Factorisation of C_u at the drawing."""
+        return factorise(self.map.jacobian(self.drawn))
+
+    @cached_property
     def carried_gain(self) -> float:
         """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
         carried = self.topology.carried.items()
@@ -90,12 +96,10 @@ class Mechanism:
     def places(self, y: Array) -> dict[str, Array]:
         """Every point of poses y, shape (..., size), in the mechanism's units; each of shape (..., 3)."""
         topology = self.topology
-        found = {
-            name: y[..., list(self.layout.vector(name))] for name in (*topology.chassis, *topology.moving)
-        }
+        found = {name: y[..., self.layout.span(name)] for name in (*topology.chassis, *topology.moving)}
         for name, carriers in topology.carried.items():
-            series = (found[carrier][..., None, :] for carrier in carriers)
-            found[name] = carried_series(self.carrier_weights[name], *series)[..., 0, :]
+            places = (found[carrier] for carrier in carriers)
+            found[name] = carried_place(self.carrier_weights[name], *places)
         return found
 
     def known_series(self, inputs: Mapping[str, Array]) -> Array:
@@ -112,20 +116,20 @@ class Mechanism:
         """
         topology, layout = self.topology, self.layout
         required = topology.required_inputs
-        for name in inputs:
-            if name not in required:
-                raise UnknownName("driving input", name, required)
-        for name in required:
-            if name not in inputs:
-                raise UnknownName("given input", name, inputs)
+        if inputs.keys() != topology.required_input_names:
+            for name in inputs:
+                if name not in required:
+                    raise UnknownName("driving input", name, required)
+            for name in required:
+                if name not in inputs:
+                    raise UnknownName("given input", name, inputs)
         shapes = {s.shape[:-1] for s in inputs.values()} | {self.drawn.shape[:-1]}
         batch = () if shapes == {()} else np.broadcast_shapes(*shapes)
         orders = inputs[required[0]].shape[-1]
         known = np.zeros((*batch, orders, layout.size - layout.unknowns))
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
-        for drive in topology.drives:
-            place = layout.scalar(drive.coordinate) - layout.unknowns
-            known[..., place] = drive.series(inputs[drive.input], self.drawing)
+        for drive, place in zip(topology.drives, topology.driven, strict=True):
+            known[..., place - layout.unknowns] = drive.series(inputs[drive.input], self.drawing)
         if np.isfinite(known).all() and all(np.isfinite(series).all() for series in inputs.values()):
             return known
         for name, series in inputs.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import field, replace
 from functools import cached_property, lru_cache
+from itertools import combinations
 from typing import TypeVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
 
 Array = NDArray[np.float64]
 Place = TypeVar("Place")
+Piece = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,16 @@ class Topology:
         """Inputs that must be given."""
         return tuple(drive.input for drive in self.drives)
 
+    @cached_property
+    def required_input_names(self) -> frozenset[str]:
+        """The same, to be compared with what is given."""
+        return frozenset(self.required_inputs)
+
+    @cached_property
+    def driven(self) -> tuple[int, ...]:
+        """Places of the driven coordinates, drive by drive."""
+        return tuple(self.layout.scalar(drive.coordinate) for drive in self.drives)
+
     @property
     def inputs(self) -> tuple[str, ...]:
         """Every input that may be given."""
@@ -154,6 +166,36 @@ class Topology:
             vectors=tuple(name for c in self.constraints for name in c.vectors),
             constants=tuple(name for c in self.constraints for name in c.constants),
         )
+
+    @cached_property
+    def kinds(self) -> tuple[tuple[Constraint, ...], ...]:
+        """The constraints, those of a kind together, in the order in which the kinds come."""
+        kinds: dict[type[Constraint], list[Constraint]] = {}
+        for constraint in self.constraints:
+            kinds.setdefault(type(constraint), []).append(constraint)
+        return tuple(tuple(same) for same in kinds.values())
+
+    @property
+    def pieces(self) -> dict[Piece, tuple[Piece, ...]]:
+        """By line, pairs of points that have a sense along it: links on it, and slides from its start."""
+        on_lines: dict[Piece, list[str]] = {}
+        for constraint in self.constraints:
+            if constraint.aligned:
+                start, end, point = constraint.aligned
+                on_lines.setdefault((start, end), []).append(point)
+        links = [ends for constraint in self.constraints for ends in constraint.squared_lengths]
+        found: dict[Piece, tuple[Piece, ...]] = {}
+        for (start, end), slides in on_lines.items():
+            rigid = [link for link in links if {start, end, *slides}.issuperset(link)]
+            found[start, end] = (*rigid, *((start, point) for point in slides))
+        return found
+
+    @cached_property
+    def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
+        """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3)."""
+        pairs = [pair for along in self.pieces.values() for pair in combinations(along, 2)]
+        places = [[[self.layout.vector(end) for end in piece] for piece in pair] for pair in pairs]
+        return tuple(pairs), np.array(places, dtype=np.intp).reshape(-1, 2, 2, 3)
 
     @cached_property
     def map(self) -> QuadraticMap:

@@ -38,6 +38,6 @@ def on_branch(
     """
     last, order = np.abs(series[..., -2:, :]), series.shape[-2] - 1
     left_out = (last[..., 0, :] * s ** (order - 1) + last[..., 1, :] * s**order).max(axis=-1)
-    omega = system.lipschitz(factors.preconditioner)
+    omega = reached.lipschitz_with(system, factors)
     alone = omega * (reached.first_step + left_out) <= 2.0 * NEAR
     return np.asarray(alone & (orientation(factors) == side))

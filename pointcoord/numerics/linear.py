@@ -9,7 +9,8 @@ few entries is inverted block after block (see `block_inverse`), and its solutio
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,12 +123,12 @@ class Factors:
         matrix, inverse, row_scale, condition = result
         return Factors(matrix, inverse, row_scale, condition, sign)
 
-    @property
+    @cached_property
     def orientation(self) -> Array:
         """Sign of the determinant, shape (...,); positive scales of rows do not change it."""
         return np.asarray(np.linalg.slogdet(self.matrix)[0]) if self.sign is None else self.sign
 
-    @property
+    @cached_property
     def preconditioner(self) -> Array:
         """The inverse of the unscaled matrix, shape (..., n, n)."""
         return np.asarray(self.inverse * self.row_scale[..., None, :])
@@ -145,19 +146,30 @@ def factorise(matrix: Array) -> Factors:
 
 
 def _factorise_one(matrix: Array) -> Factors | None:
-    """The same numbers for one matrix, with half the calls; None where a row or the matrix has no inverse."""
+    """The same for one matrix, with half the calls; None where a row or the matrix has no inverse."""
     # The largest element of each row; what is not finite leaves no number between the bounds.
-    largest = np.maximum.reduce(np.abs(matrix), axis=1)
-    if not (float(largest.min()) > 0.0 and float(largest.max()) < np.inf):
+    rows = np.maximum.reduce(np.abs(matrix), axis=1)
+    largest = rows.tolist()
+    if not (min(largest) > 0.0 and sum(largest) < np.inf):
         return None
-    row_scale = np.ldexp(1.0, 1 - np.frexp(largest)[1])
+    row_scale = np.ldexp(1.0, 1 - np.frexp(rows)[1])
     scaled = matrix * row_scale[:, None]
     try:
         inverse = np.linalg.inv(scaled)
     except np.linalg.LinAlgError:
         return None
-    sizes = (float(np.add.reduce(np.abs(each), axis=1).max()) for each in (scaled, inverse))
-    return Factors(scaled, inverse, row_scale, np.asarray(next(sizes) * next(sizes)))
+    return Factors(scaled, inverse, row_scale, np.asarray(_norm_of_one(scaled) * _norm_of_one(inverse)))
+
+
+def _norm_of_one(matrix: Array) -> float:
+    """The maximum norm of one small matrix: a product takes a fraction of the time of a reduction."""
+    sums = np.abs(matrix).dot(_ones(len(matrix))).tolist()
+    return max(sums) if isfinite(sum(sums)) else np.inf
+
+
+@lru_cache(maxsize=64)
+def _ones(count: int) -> Array:
+    return np.ones(count)
 
 
 def factorise_plainly(matrix: Array) -> Factors:

@@ -18,6 +18,8 @@ LU with partial pivoting (see `linear`). A step ends the iteration
 
 from __future__ import annotations
 
+from math import isfinite, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,11 +51,13 @@ class Converged:
         iterations: steps taken by each member, shape (...,).
         first_step: largest component of the first step, shape (...,).
         noise: largest component of the rounding error of the last step, shape (...,); zero where the step was
-            far above it.
+            far above it, or where one start ended by the tolerance (see `rounding_of`).
         left: proven distance to the solution, rounding apart, of members that ended by the tolerance,
             shape (...,); zero of those that ended in noise.
         last_step: largest component of the last step, shape (...,).
         work: what it cost.
+        lipschitz: of X C_u, X the inverse that the last step was made with; not a number where it was not
+            needed.
     """
 
     y: Array
@@ -65,6 +69,12 @@ class Converged:
     left: Array
     last_step: Array
     work: Work
+    lipschitz: Array | float = np.nan
+
+    def lipschitz_with(self, system: QuadraticMap, factors: Factors) -> Array:
+        """The Lipschitz constant of X C_u with the inverse of some factors, shape (...,)."""
+        known = factors.inverse is self.factors.inverse and not np.isnan(self.lipschitz).any()
+        return np.asarray(self.lipschitz) if known else system.lipschitz(factors.preconditioner)
 
 
 def newton_refine(
@@ -88,33 +98,37 @@ def _refine_one(system: QuadraticMap, y: Array, offset: Array | float, tolerance
     """The same steps for one start, with plain numbers where `refine_plainly` has arrays of one."""
     n, y = system.unknowns, y.copy()
     converged, iterations = False, 0
-    first_step, last_noise, left, previous = np.nan, np.inf, 0.0, np.inf
+    first_step, last_noise, left, previous, lipschitz = np.nan, np.inf, 0.0, np.inf, np.nan
     with np.errstate(all="ignore"):
         while iterations < LIMIT:
             factors = factorise(system.jacobian(y))
             step = -factors.solve(system.residual(y) - offset)
-            magnitude = np.abs(step)
-            size = float(magnitude.max())
+            # A number that is none may hide behind others from Python's own maximum, and a sum shows it.
+            sizes = np.abs(step).tolist()
+            size = max(sizes) if isfinite(sum(sizes)) else np.inf
             iterations += 1
-            usable = size < np.inf and not factors.singular
-            small = size < 1e-8 and size >= 0.5 * previous
-            last_noise = 0.0
-            if not size > ROUNDINGS * EPS * float(factors.condition):
-                noise = _noise(system, y, factors, np.asarray(size))
-                small = small or bool((magnitude <= noise).all())
-                last_noise = float(noise.max())
             first_step = size if iterations == 1 else first_step
-            previous = size
-            if not usable:
+            last_noise = np.inf
+            if not size < np.inf or factors.singular:
+                previous = size
                 break
             y[:n] += step
-            if not small and tolerance > 0.0:
-                left = float(what_is_left(system, factors, step))
-                small = left <= min(tolerance, LARGEST)
-            elif small:
-                left = 0.0
-            if small:
-                converged = True
+            if tolerance > 0.0:
+                lipschitz = float(system.lipschitz(factors.preconditioner))
+                left = left_of_one(system, factors, step, size, lipschitz)
+                converged = left <= min(tolerance, LARGEST)
+            if not converged:
+                # What ends in noise has no more left than that.
+                last_noise, converged = 0.0, size < 1e-8 and size >= 0.5 * previous
+                if not size > ROUNDINGS * EPS * float(factors.condition):
+                    noise = _noise(system, y, factors, np.asarray(size))
+                    converged = converged or bool((np.abs(step) <= noise).all())
+                    last_noise = float(noise.max())
+                left = 0.0 if converged else left
+            else:
+                last_noise = 0.0
+            previous = size
+            if converged:
                 break
     return Converged(
         y=y,
@@ -126,6 +140,7 @@ def _refine_one(system: QuadraticMap, y: Array, offset: Array | float, tolerance
         left=np.asarray(left),
         last_step=np.asarray(previous),
         work=Work(residuals=iterations, factorisations=iterations),
+        lipschitz=np.asarray(lipschitz),
     )
 
 
@@ -191,12 +206,29 @@ def refine_plainly(
     )
 
 
+def rounding_of(system: QuadraticMap, reached: Converged) -> Array:
+    """Largest component of the rounding error of a last step, shape (...,); zero where that is far larger."""
+    return np.asarray(_noise(system, reached.y, reached.factors, reached.last_step).max(axis=-1))
+
+
 def _noise(system: QuadraticMap, y: Array, factors: Factors, size: Array) -> Array:
     """Rounding error of a Newton step, shape (members, unknowns); zero if every step is far above it."""
     if (size > ROUNDINGS * EPS * factors.condition).all():
         return np.zeros((*size.shape, system.unknowns))
     rows = system.uncertainty(y, np.zeros(y.shape[-1]))
     return np.asarray((np.abs(factors.preconditioner) @ rows[..., None])[..., 0])
+
+
+def left_of_one(system: QuadraticMap, factors: Factors, step: Array, size: float, lipschitz: float) -> float:
+    """What `what_is_left` says of one step, of a size and with a Lipschitz constant that are at hand."""
+    d = np.zeros(system.size)
+    d[: system.unknowns] = step
+    bent = np.abs(factors.preconditioner.dot(system.residual(d))).tolist()
+    q, room = max(bent), 1.0 - lipschitz * size
+    if not (room > 0.0 and isfinite(sum(bent))):
+        return np.inf
+    constant = 2.0 * lipschitz * q / (room * room)
+    return 2.0 * q / (room * (1.0 + sqrt(1.0 - constant))) if constant < 1.0 else np.inf
 
 
 def what_is_left(system: QuadraticMap, factors: Factors, step: Array) -> Array:

@@ -62,9 +62,11 @@ class PartialMap:
         if self.is_whole:
             return known
         first, last = self.system.unknowns, self.whole.unknowns
-        kept = np.zeros((*np.broadcast_shapes(y.shape[:-1], known.shape[:-2]), known.shape[-2], last - first))
-        kept[..., 0, :] = y[..., first:last]
-        return np.concatenate([kept, np.broadcast_to(known, (*kept.shape[:-1], known.shape[-1]))], axis=-1)
+        batch = () if y.ndim + 1 == known.ndim == 2 else np.broadcast_shapes(y.shape[:-1], known.shape[:-2])
+        both = np.zeros((*batch, known.shape[-2], last - first + known.shape[-1]))
+        both[..., 0, : last - first] = y[..., first:last]
+        both[..., last - first :] = known
+        return both
 
 
 @lru_cache(maxsize=64)

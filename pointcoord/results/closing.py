@@ -7,6 +7,7 @@ solved, by as much as its points move: the user is told how far, which point, an
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import hypot
 from types import MappingProxyType
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.vectors import lengths
 
 Array = NDArray[np.float64]
 
@@ -88,11 +90,11 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
         closed: coordinates of the closed drawing, shape (size,).
     """
     topology, unit = mechanism.topology, float(mechanism.unit)
-    residual = np.abs(mechanism.map.residual(mechanism.drawn))
+    residual = mechanism.map.residual(mechanism.drawn).tolist()
     misses, first = {}, 0
     for constraint in topology.constraints:
         last = first + len(constraint.labels)
-        miss = float(np.linalg.norm(residual[first:last]))
+        miss = hypot(*residual[first:last])
         # Rows are sums of a few products of coordinates below 1.
         if constraint.is_length and miss > 64 * EPS:
             misses[constraint.name] = unit * miss
@@ -108,14 +110,13 @@ def movements(mechanism: Mechanism, closed: Array) -> dict[str, Array]:
         closed: coordinates of the closed drawings, shape (..., size).
     """
     topology, drawn = mechanism.topology, mechanism.drawing.vectors
-    places = mechanism.places(closed)
-    return {
-        name: np.asarray(mechanism.unit * np.linalg.norm(places[name] - drawn[name], axis=-1))
-        for name in (*topology.moving, *topology.carried)
-    }
+    places, names = mechanism.places(closed), (*topology.moving, *topology.carried)
+    moved = np.stack([places[name] - drawn[name] for name in names], axis=-2)
+    far = np.asarray(mechanism.unit)[..., None] * lengths(moved)
+    return {name: far[..., i] for i, name in enumerate(names)}
 
 
 def car_size(mechanism: Mechanism) -> Array:
     """Longest side of the box around the points as they are drawn, (...,), mm."""
-    stack = np.stack([mechanism.drawing.vectors[name] for name in mechanism.topology.points], axis=-2)
+    stack = mechanism.drawing.stacked(mechanism.topology.points)
     return np.asarray(mechanism.unit * np.ptp(stack, axis=-2).max(axis=-1))

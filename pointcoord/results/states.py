@@ -303,15 +303,16 @@ class StatesOfChain:
                 series[name] = carried_series(mechanism.carrier_weights[name], *(series[c] for c in carriers))
             columns.append(np.concatenate(list(series.values()), axis=-1) * unit)
         first = {name: 3 * i for i, name in enumerate((*topology.moving, *topology.carried))}
-        wanted = (
+        solved, spare = (
             [
                 [first[name] + axis for d, name in states if d == derivative for axis in range(3)]
                 for derivative in range(self.readout.plan.derivative + 1)
             ]
             for states in (table.moving, table.spare)
         )
-        reported, needed = (SeriesRows.of(self.chain, columns, each) for each in wanted)
-        return reported, needed
+        reported = SeriesRows.of(self.chain, columns, solved)
+        # Where none is only needed nothing is summed from the second.
+        return reported, SeriesRows.of(self.chain, columns, spare) if table.spare else reported
 
     @cached_property
     def still(self) -> Array:

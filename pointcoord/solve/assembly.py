@@ -391,7 +391,8 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
         AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
     """
     own = mechanism.drawn[..., mechanism.map.unknowns :]
-    path = led(mechanism.map, mechanism.drawn, own, tolerance=tolerance)
+    factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
+    path = led(mechanism.map, mechanism.drawn, own, factors, tolerance)
     _require(mechanism, path, own, "the drawing cannot be assembled", instant)
     _require_sense(mechanism, path, instant)
     return path

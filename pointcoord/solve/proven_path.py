@@ -84,35 +84,82 @@ def proven_end(
         return None
     n, left, side = system.unknowns, 1.0, float(orientation(factors))
     here, local, work = y, factors, Work()
+    begun = _begun(system, y, factors, target - y[n:], offset)
+    if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
+        return _end(system, y + begun[1], target, side, tolerance, Work(residuals=1))
     for _ in range(STRETCHES):
-        series, share, spent = _proven_series(system, here, local, target - here[n:], left * offset)
+        series, share, spent = _proven_series(system, begun, local, left * offset)
         work += spent
         if not share > 0.0:
             return None
-        left = 0.0 if share == 1.0 else left * (1.0 - share)
         guess = share ** np.arange(len(series)) @ series
-        guess[n:] = target if share == 1.0 else here[n:] + share * (target - here[n:])
-        reached = newton_refine(system, guess, left * offset, tolerance if share == 1.0 else np.inf)
-        there = factorise(system.jacobian(reached.y))
-        work += reached.work + Work(factorisations=1)
-        # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
-        if not (bool(reached.converged) and float(orientation(there)) == side):
-            return None
         if share == 1.0:
-            return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
-        here, local = reached.y, there
+            return _end(system, guess, target, side, tolerance, work)
+        left *= 1.0 - share
+        guess[n:] = here[n:] + share * (target - here[n:])
+        reached = _end(system, guess, guess[n:], side, np.inf, work, left * offset)
+        if reached is None:
+            return None
+        here, local, work = reached.y, reached.factors, reached.work
+        begun = _begun(system, here, local, target - here[n:], left * offset)
     return None
 
 
-def _proven_series(
-    system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array
-) -> tuple[Array, float, Work]:
-    """The series of a path about its start, the share that it is proven on, and what that takes."""
-    n = system.unknowns
+def _end(
+    system: QuadraticMap,
+    guess: Array,
+    target: Array,
+    side: float,
+    tolerance: float,
+    work: Work,
+    offset: Array | float = 0.0,
+) -> Reached | None:
+    """The assembly near a guess with known coordinates, if Newton's method finds it on the same side."""
+    guess[system.unknowns :] = target
+    reached = newton_refine(system, guess, offset, tolerance)
+    there = factorise(system.jacobian(reached.y))
+    # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
+    if not (bool(reached.converged) and float(orientation(there)) == side):
+        return None
+    work += reached.work + Work(factorisations=1)
+    return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
+
+
+def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array) -> Array:
+    """The first two terms of a path's series, y and its tangent, (2, size)."""
     begun = np.zeros((2, len(y)))
-    begun[0], begun[1, n:] = y, change
+    begun[0], begun[1, system.unknowns :] = y, change
     with np.errstate(all="ignore"):
-        begun[1, :n] = -factors.solve(2.0 * system.polar(y, begun[1]) + offset)
+        begun[1, : system.unknowns] = -factors.solve(2.0 * system.polar(y, begun[1]) + offset)
+    return begun
+
+
+def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bool:
+    r"""Whether the assemblies go on all along a tangent.
+
+    The series ends with it, and X is the inverse at its start: then Z = |X J_1| and Y = |X R_2|. The start is
+    taken for exact, what it is off being counted in the tangent.
+    """
+    with np.errstate(all="ignore"):
+        turn = np.abs(factors.preconditioner @ system.jacobian(begun[1]))
+        bend = np.abs(factors.preconditioner.dot(system.residual(begun[1])))
+        weights = bend + 0.3 * max(float(bend.max()), SMALLEST)
+        z = float((turn.dot(weights) / weights).max())
+        omega = float(system.lipschitz(factors.preconditioner, weights))
+        room = ROOM - z
+        return room > 0.0 and room * room >= 2.0 * omega * float((bend / weights).max())
+
+
+def _proven_series(
+    system: QuadraticMap, begun: Array, factors: Factors, offset: Array
+) -> tuple[Array, float, Work]:
+    """The series of a path about its start, the share that it is proven on, and what that takes.
+
+    Args:
+        begun: its first two terms.
+    """
+    n, y, change = system.unknowns, begun[0], begun[1, system.unknowns :]
+    with np.errstate(all="ignore"):
         order, pieces = FEW if float(np.abs(begun[1, :n]).max()) < SHORT else MANY
         known = np.zeros((order + 1, len(change)))
         known[0], known[1] = y[n:], change
@@ -141,8 +188,9 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset:
     matrices = system.jacobian(series) * factors.row_scale[:, None]
     matrices *= (reach ** np.arange(order + 1.0))[:, None, None]
     local = (_about_middles(order, pieces) @ matrices.reshape(order + 1, -1)).reshape(pieces, -1, n, n)
-    # Of one that has no inverse all that follows is infinite or no number, and nothing is proven.
-    inverse = factorise(local[:, 0]).preconditioner
+    inverse = inverses(local[:, 0])
+    if inverse is None:
+        return 0.0
     flat = np.ascontiguousarray(local.swapaxes(1, 2)).reshape(pieces, n, -1)
     moved = (inverse @ flat).reshape(pieces, n, order + 1, n)
     moved[:, :, 0] -= np.eye(n)
@@ -162,6 +210,14 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset:
         weights = weights + largest.dot(weights) / max(float(z.max()), 1e-300)
         weights /= weights.max()
     return reach * int(np.argmin(proven)) / pieces
+
+
+def inverses(matrices: Array) -> Array | None:
+    """Of the matrices in the middles of the pieces, whose rows are scaled; None where one has none."""
+    try:
+        return np.asarray(np.linalg.inv(matrices))
+    except np.linalg.LinAlgError:
+        return None
 
 
 @cache

@@ -26,8 +26,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
-from functools import cache
-from math import perm
+from functools import cache, cached_property, lru_cache
+from math import isfinite, perm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import on_branch, orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import Converged, newton_refine
+from pointcoord.numerics.newton import Converged, newton_refine, rounding_of
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.rounding import EPS
@@ -87,9 +87,6 @@ SHORT = 6
 FEW = 8
 # Share of the tolerance up to which Newton's method may stop short of a pose.
 SOLVED = 0.1
-# Logarithms of trial lengths, from where the last terms of a series grow as large as earlier ones: first in
-# steps of a half, down to 1e-5, then in fiftieths of that.
-COARSE_TRIALS, FINE_TRIALS = -0.5 * np.arange(24.0), 0.5 - 0.01 * np.arange(51.0)
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,8 @@ class Settings:
     @property
     def kept(self) -> Settings:
         """The same with a tolerance that can be kept."""
-        return replace(self, tolerance=min(max(self.tolerance, FINEST), COARSEST))
+        kept = min(max(self.tolerance, FINEST), COARSEST)
+        return self if kept == self.tolerance else replace(self, tolerance=kept)
 
 
 def build_chain(
@@ -314,6 +312,16 @@ class _Course:
         largest = max(abs(self.start), abs(self.stop))
         return max(SHORTEST * (self.stop - self.start), 4.0 * EPS * largest)
 
+    @cached_property
+    def driven(self) -> list[int]:
+        """Places of the driven coordinates among the known ones."""
+        return [place - self.mechanism.map.unknowns for place in self.mechanism.topology.driven]
+
+    @cached_property
+    def breaks(self) -> tuple[float, ...]:
+        """Instants at which a derivative of a law jumps."""
+        return tuple(b for function in self.functions.values() for b in function.breaks)
+
     def known(self, instant: float, order: int) -> Array:
         """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known)."""
         laws = {name: function.series(instant, order) for name, function in self.functions.items()}
@@ -321,8 +329,7 @@ class _Course:
 
     def next_break(self, instant: float) -> float:
         """Up to where the inputs are analytic: the next instant at which a derivative of one jumps."""
-        breaks = {b for function in self.functions.values() for b in function.breaks}
-        return min((b for b in breaks if instant < b < self.stop), default=self.stop)
+        return min((b for b in self.breaks if instant < b < self.stop), default=self.stop)
 
     def segment_from(self, joint: _Joint) -> Segment:
         """The series about a joint, not yet cut, of the order that the series before it advises.
@@ -375,12 +382,12 @@ class _Course:
             known = self.known(joint.instant, order)
             begun = begun if begun is not None and begun.order < order else None
         scale = max(joint.scale, SHORTEST_UNIT if order <= SAFE else 2.0 ** -(SMALLEST // order))
-        size = np.abs(known[..., 1:, :]).max(axis=tuple(i for i in range(known.ndim) if i != known.ndim - 2))
+        size = np.abs(known[..., 1:, self.driven]).max(axis=(*range(known.ndim - 2), -1))
         orders = np.arange(order + 1.0)
-        if size.any():
-            with np.errstate(over="ignore"):
-                fastest = float(np.min(size[size > 0.0] ** (-1.0 / orders[1:][size > 0.0])))
-            scale = min(scale, power_of_two(min(fastest, scale)))
+        with np.errstate(over="ignore", divide="ignore"):
+            fastest = float((size ** (-1.0 / orders[1:])).min())
+        if fastest < scale:
+            scale = power_of_two(fastest)
         first = None
         if begun is not None:
             count = begun.coefficients.shape[-2]
@@ -421,9 +428,9 @@ class _Course:
             reached = self.solved_end(segment, end)
             work += reached.work
             # What rounding alone makes of a step is no truncation, however small the tolerance.
-            good = reached.converged & (reached.first_step <= tolerance + 2.0 * reached.noise)
+            good = reached.converged & (reached.first_step <= tolerance)
             if not good.all() and reached.converged.all():
-                noise = reached.noise + self.law_noise(reached, end)
+                noise = rounding_of(system, reached) + self.law_noise(reached, end)
                 good = reached.first_step <= tolerance + 2.0 * noise
             if good.all():
                 ahead, spent = self.factors_at(reached)
@@ -450,7 +457,7 @@ class _Course:
         """
         system = self.part.system
         matrix = system.jacobian(reached.y)
-        z = system.lipschitz(reached.factors.preconditioner) * reached.last_step
+        z = reached.lipschitz_with(system, reached.factors) * reached.last_step
         if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
             return reached.factors.moved(matrix), Work()
         members = int(np.prod(reached.y.shape[:-1]))
@@ -492,10 +499,12 @@ class _Course:
 def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
     r"""Length of a segment in its own time unit, from the logarithms of its coefficients, (members, orders).
 
-    With c_k the largest k-th coefficient, the d-th derivative of the last two terms at s is
-    k!/(k-d)! c_k s^(k-d); it must not exceed tolerance times the size of the d-th derivative,
-    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). Last terms that are missing or small by
-    chance are taken for what the ones before them come to (see `_gone_on`).
+    With c_k the largest k-th coefficient, the d-th derivative of either of the last two terms at s is
+    k!/(k-d)! c_k s^(k-d); it must not exceed half the tolerance times the size of the d-th derivative,
+    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). A term j stays below a multiple a of an
+    earlier one k up to s = (a c_k / c_j)^(1/(j-k)), so that the longest s is the least of the greatest of
+    these. Last terms that are missing or small by chance are taken for what the ones before them come to
+    (see `gone_on`).
 
     Args:
         smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
@@ -503,38 +512,36 @@ def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = No
     """
     logs = logs.copy()
     logs[:, 0] = 0.0
-    logs[:, -2:] = _gone_on(logs)
-    if not np.isfinite(logs[:, -2:]).any():
-        return np.inf
-    known = np.maximum(logs, np.log(np.finfo(float).tiny))
-    orders = np.arange(logs.shape[-1], dtype=float)
-    # Where the last terms grow as large as any earlier one: any useful segment is shorter.
-    first = min(settings.derivative, 1)
-    equal = (known[:, None, first:-2] - known[:, -2:, None]) / (orders[-2:, None] - orders[first:-2])
-    start = float(np.min(equal.max(axis=-1)))
-    falling = _falling(len(orders), settings.derivative)
-    terms = logs[:, None, None, :] + falling[:, None, :]  # members, derivatives, trials, orders
-    whole_terms = terms if smallest is None else smallest[:, None, None, :] + falling[:, None, :]
-
-    def fits(trials: Array) -> Array:
-        # In logarithms no power is too large or too small for the arithmetic, and a missing term stays one.
-        powers = trials[:, None] * orders
-        grown = terms + powers
-        whole = (grown if smallest is None else whole_terms + powers).max(axis=-1)
+    logs[:, -2:] = gone_on(logs)
+    room, exponents = _room(logs.shape[-1], settings.derivative, settings.tolerance)
+    whole = logs
+    if smallest is not None:
+        whole = smallest.copy()
         whole[:, 0] = 0.0
-        last = np.logaddexp(grown[..., -2], grown[..., -1])
-        return np.asarray((last <= np.log(settings.tolerance) + whole).all(axis=(0, 1)))
-
-    fit = fits(start + COARSE_TRIALS)
-    longest = start + COARSE_TRIALS[np.argmax(fit) if fit.any() else -1]
-    if fit.any() and not fit[0]:
-        trials = longest + FINE_TRIALS
-        longest = trials[np.argmax(fits(trials))]
-    with np.errstate(over="ignore"):
-        return float(np.exp(longest))
+    # Of two terms that are missing both there is nothing to compare, and without last terms there is no end.
+    with np.errstate(invalid="ignore", over="ignore"):
+        ends = (whole[:, None, None, :] - logs[:, None, -2:, None] + room) * exponents
+        longest = float(np.fmin.reduce(np.fmax.reduce(ends, axis=-1), axis=None))
+        return np.inf if np.isnan(longest) else float(np.exp(longest))
 
 
-def _gone_on(logs: Array) -> Array:
+@lru_cache(maxsize=256)
+def _room(count: int, derivative: int, tolerance: float) -> tuple[Array, Array]:
+    """Logarithms of what two last terms j have beside all terms k, (derivatives, 2, terms), and 1 / (j - k).
+
+    Minus infinity where a term does not count: j itself and later ones, and for d = 0 all but the first,
+    which stands for the mechanism's size.
+    """
+    falling, order = _falling(count, derivative), np.arange(count)
+    with np.errstate(invalid="ignore"):
+        room = np.log(0.5 * tolerance) + falling[:, None, :] - falling[:, -2:, None]
+    ahead = order[-2:, None] - order
+    room[np.broadcast_to(ahead <= 0, room.shape) | np.isnan(room)] = -np.inf
+    room[0, :, 1:] = -np.inf
+    return room, 1.0 / np.maximum(ahead, 1.0)
+
+
+def gone_on(logs: Array) -> Array:
     """Logarithms of the last two coefficients, at least what the ones before them come to, (members, 2).
 
     Every other term is missing where an input is at rest, two of three where it begins as t^3, and close to
@@ -544,11 +551,30 @@ def _gone_on(logs: Array) -> Array:
     """
     if logs.shape[-1] < SHORT:
         return logs[:, -2:]
+    if len(logs) == 1:
+        return np.array([_gone_on_of_one(logs[0].tolist())])
     window, fall = _fall(logs)
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
     last = (later - fall * ahead).max(axis=-1)
     before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
     return np.stack([before, last], axis=-1)
+
+
+def _gone_on_of_one(logs: list[float]) -> tuple[float, float]:
+    """The same of one member, in Python's own numbers."""
+    count, window, latest = len(logs), WINDOW, 0
+    for k in range(1, count):
+        if isfinite(logs[k]):
+            window, latest = max(window, k - latest), k
+    window = min(window, count - 2)
+    middle = count - window
+    first = max(1, middle - window)
+    a = max(range(first, middle), key=logs.__getitem__)
+    b = max(range(middle, count), key=logs.__getitem__)
+    fall = (logs[a] - logs[b]) / (b - a)
+    fall = max(fall, 0.0) if isfinite(fall) else 0.0
+    later = [logs[k] - fall * (count - 1 - k) for k in range(middle, count)]
+    return max(later[:-1]) + fall, max(later)
 
 
 def _fall(logs: Array) -> tuple[int, Array]:
@@ -569,7 +595,7 @@ def _fall(logs: Array) -> tuple[int, Array]:
 
 
 def last_magnitudes(series: Array) -> Array:
-    """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `_gone_on`).
+    """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `gone_on`).
 
     Args:
         series: coefficients, (order + 1, size).

@@ -199,7 +199,7 @@ FIGURES = (
     Figure("dense, both rates", COPY, lambda: dense(BOTH_RATES), 2.0, 3.0),
     Figure("dense, heaving", COPY, lambda: dense(BOTH_RATES, "bounce-on-a-heaving-chassis"), 2.0, 5.4),
     Figure("dense, all effects", COPY, lambda: dense(tuple(EFFECTS)), 6.0, 3.0),
-    Figure("first answer", INVERSES, first_answer, 0.5, 2.3),
+    Figure("first answer", INVERSES, first_answer, 0.5, 2.1),
     Figure("import", "numpy's own import", importing, 2.3, 2.3),
     Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),

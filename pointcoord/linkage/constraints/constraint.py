@@ -8,6 +8,8 @@ beside points, and how it reads that off a drawing, it knows itself: nobody else
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Self
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.drawing import Drawing, Placed
@@ -84,6 +86,13 @@ class Constraint(ABC):
             MechanismError: the drawing gives them no value.
         """
         return ()
+
+    @classmethod
+    def placed_together(
+        cls, constraints: Sequence[Self], layout: Layout, drawing: Drawing
+    ) -> tuple[Placed, ...]:
+        """The same of several of one kind; one after the other unless the kind says otherwise."""
+        return tuple(own for constraint in constraints for own in constraint.placed(layout, drawing))
 
 
 def per_axis(name: str) -> tuple[str, ...]:

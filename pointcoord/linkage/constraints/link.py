@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pointcoord.data_classes import dataclass
@@ -48,13 +50,20 @@ class Link(Constraint):
         return ((self.start, self.end),)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The square of the drawn length; five units of rounding at most, which are measured."""
-        start, end = drawing.vectors[self.start], drawing.vectors[self.end]
-        square = np.sum((start - end) ** 2, axis=-1)
-        if not (square > 0.0).all():
-            raise no_length(self.start, self.end)
-        exact, rest = exact_square(start, end)
-        place = (layout.squared_length(self.start, self.end),)
-        lacks = (exact - square) + rest
-        doubt = 256 * UNIT_ROUNDOFF**2 * square
-        return (Placed(place, square[..., None], lacks[..., None], doubt[..., None]),)
+        """The square of the drawn length."""
+        return self.placed_together((self,), layout, drawing)
+
+    @classmethod
+    def placed_together(
+        cls, constraints: Sequence[Link], layout: Layout, drawing: Drawing
+    ) -> tuple[Placed, ...]:
+        """The squares of the drawn lengths; five units of rounding at most, which are measured."""
+        starts = drawing.stacked([link.start for link in constraints])
+        ends = drawing.stacked([link.end for link in constraints])
+        squares = np.sum((starts - ends) ** 2, axis=-1)
+        if not (squares > 0.0).all():
+            short = constraints[int(np.argwhere(~(squares > 0.0))[0, -1])]
+            raise no_length(short.start, short.end)
+        exact, rest = exact_square(starts, ends)
+        places = tuple(layout.squared_length(link.start, link.end) for link in constraints)
+        return (Placed(places, squares, (exact - squares) + rest, 256 * UNIT_ROUNDOFF**2 * squares),)

@@ -260,8 +260,8 @@ def test_the_order_that_was_chosen_costs_least(monkeypatch: pytest.MonkeyPatch) 
 def test_a_promise_that_is_ten_times_too_good_is_caught(
     strut: Mechanism, pose: Pose, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    right = what_is_left
-    monkeypatch.setattr(newton, "what_is_left", lambda *arguments: 0.1 * right(*arguments))
+    right = newton.left_of_one
+    monkeypatch.setattr(newton, "left_of_one", lambda *arguments: 0.1 * right(*arguments))
     broken = 0
     for seed in range(20):
         start = pose.y.copy()

@@ -9,6 +9,7 @@ from sample_cars import SAMPLES
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.solve import proven_path
@@ -70,7 +71,8 @@ def test_where_a_share_is_proven_the_jacobian_keeps_its_sign_and_newton_finds_th
     system, closed = mechanism.map, close_drawing(mechanism)
     n, offset = system.unknowns, system.residual(closed.y)
     change = known_at(mechanism, angle, rack) - closed.y[n:]
-    series, share, _ = proven_path._proven_series(system, closed.y, closed.factors, change, offset)
+    begun = proven_path._begun(system, closed.y, closed.factors, change, offset)
+    series, share, _ = proven_path._proven_series(system, begun, closed.factors, offset)
     shares = np.linspace(0.0, share, 30)
     places = shares[:, None] ** np.arange(len(series)) @ series
     signs = np.linalg.slogdet(system.jacobian(places))[0]
@@ -85,7 +87,46 @@ def test_where_a_share_is_proven_the_jacobian_keeps_its_sign_and_newton_finds_th
 def proven_on_the_parabola(w: float) -> float:
     factors = factorise(PARABOLA.jacobian(AT_ONE))
     change = np.array([w - 1.0, 0.0, 0.0])
-    return proven_path._proven_series(PARABOLA, AT_ONE, factors, change, np.zeros(1))[1]
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, change, np.zeros(1))
+    return proven_path._proven_series(PARABOLA, begun, factors, np.zeros(1))[1]
+
+
+@by_mechanism
+@few
+@given(angle=st.floats(-0.05, 0.05), rack=st.floats(-10.0, 10.0), away=st.floats(0.0, 0.02))
+def test_where_a_tangent_is_proven_every_place_beside_it_is_the_tangents_own(
+    mechanism: Mechanism, angle: float, rack: float, away: float
+) -> None:
+    system, closed = mechanism.map, close_drawing(mechanism)
+    n, y = system.unknowns, close_drawing(mechanism).y.copy()
+    own = mechanism.input_values(closed.y[n:])
+    y[:n] += away * np.random.default_rng(7).uniform(-1.0, 1.0, n)
+    offset, factors = system.residual(y), factorise(system.jacobian(y))
+    change = known_at(mechanism, float(own["arm_angle"]) + angle, float(own["rack"]) + rack) - y[n:]
+    begun = proven_path._begun(system, y, factors, change, offset)
+    if not proven_path._proven_straight(system, begun, factors):
+        return
+    shares = np.linspace(0.0, 1.0, 20)
+    places = y + shares[:, None] * begun[1]
+    signs = np.linalg.slogdet(system.jacobian(places))[0]
+    assert (signs == signs[0]).all()
+    reached = newton_refine(system, places, (1.0 - shares)[:, None] * offset)
+    assert reached.converged.all()
+    # Both end with a Newton step that has shrunk to rounding.
+    path = follow(system, y, y[n:] + change, factors)
+    assert path.done == 1.0
+    assert np.abs(path.y - reached.y[-1]).max() <= 4 * EPS * float(path.factors.condition)
+
+
+@pytest.mark.parametrize("w", [-1.0, 0.0, 1e-9, 0.09])
+def test_no_tangent_is_proven_near_a_fold(w: float) -> None:
+    # The root of w comes as near as 0.3 to its mirror image; the condition (1 - z)^2 >= 2 omega q is
+    # |1 - w| / 2 <= 1 - |1 - w| / 2 there and fails at the fold itself.
+    factors = factorise(PARABOLA.jacobian(AT_ONE))
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([w - 1.0, 0.0, 0.0]), np.zeros(1))
+    assert not proven_path._proven_straight(PARABOLA, begun, factors)
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([-0.5, 0.0, 0.0]), np.zeros(1))
+    assert proven_path._proven_straight(PARABOLA, begun, factors)
 
 
 @pytest.mark.parametrize("w", [-1.0, -1e-3, 0.0, 1e-9])
