@@ -65,6 +65,13 @@ class SolvedDesigns:
         """The numbers of all that were solved, in increasing order."""
         return np.union1d(self.alive, self.mapped)
 
+    @property
+    def bytes_of_a_design(self) -> int:
+        """What the series of one design take, of those that take most."""
+        chain = sum(8 * s.coefficients[0].size for s in self.chain.segments) if self.chain else 0
+        boxes = self.boxes.boxes if self.boxes else ()
+        return max(chain, sum(8 * group.series[..., 0].size for box in boxes for group in box.groups))
+
 
 def solve_designs(
     mechanism: Mechanism,

@@ -62,11 +62,27 @@ Points = Mapping[str, Array]
 
 # Designs that are solved together at most: of 128 to 2048 tried, the quickest or near it.
 TOGETHER = 1024
-# Bytes that solving takes on the way: of a design for its matrices, series and their products, and of a
-# number of the results at an instant for what the effects are made of.
-OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
+# Bytes that solving takes on the way: of a design for its matrices and for products of its series, beside
+# these themselves, twice, because they are put together from parts; before they are known, for all of it; and
+# of a number of the results at an instant for what the effects are made of.
+OF_A_DESIGN, BEFORE, OF_A_NUMBER = 150_000, 450_000, 16
+# Designs that are solved first, to know what one takes.
+FIRST = 64
 # Two orders of summing the same three products differ by less than this part of the largest.
 SLACK = 1e-12
+
+
+class Pace:
+    """How many designs are solved at a time, by what those before them took."""
+
+    def __init__(self, memory: float, of_effects: int, first: int) -> None:
+        self.together = first
+        self._memory, self._of_effects = memory, of_effects
+
+    def learn(self, series: int) -> None:
+        """What the series of a design took at most, in bytes."""
+        each = OF_A_DESIGN + 2 * series + self._of_effects
+        self.together = int(min(TOGETHER, max(self._memory // each, 1)))
 
 
 @dataclass(frozen=True)
@@ -121,27 +137,46 @@ class Course:
 
     @property
     def bytes_on_the_way(self) -> int:
-        """What solving one design takes beside its numbers."""
-        return OF_A_DESIGN + OF_A_NUMBER * self.table.height * min(len(self.scene.instants), INSTANTS)
+        """What solving one design takes beside its numbers, before more is known."""
+        return BEFORE + self._of_effects
 
-    def solve(self, first: int, last: int, together: int) -> Sweep:
+    @property
+    def _of_effects(self) -> int:
+        table, count = self.table, min(len(self.scene.instants), INSTANTS)
+        return (OF_A_NUMBER * table.height * bool(table.computed) + 24 * len(table.spare)) * count
+
+    def pace(self, memory: float = np.inf) -> Pace:
+        """How many designs are solved at a time in so many bytes beside their numbers."""
+        return Pace(memory, self._of_effects, int(min(FIRST, max(memory // self.bytes_on_the_way, 1))))
+
+    def room(self, count: int) -> Array:
+        """Room for the numbers of so many designs."""
+        return np.empty((count, self.table.height, len(self.scene.instants)))
+
+    def solve(self, first: int, last: int, pace: Pace, room: Array | None = None) -> Sweep:
         """What becomes of the designs from number `first` to before `last`.
 
         Args:
-            together: how many are solved at a time.
+            pace: how many are solved at a time, which it learns on the way.
+            room: for the numbers of as many designs or more; new if not given.
         Raises:
             InputOutOfRange, InputNotKnown: a law that all designs share.
         """
-        block = _Block.empty(self, first, last)
-        for low in range(first, last, together):
-            numbers = np.arange(low, min(low + together, last))
+        rows = self.room(last - first) if room is None else room[: last - first]
+        block = _Block.empty(self, first, rows)
+        low = first
+        while low < last:
+            numbers = np.arange(low, min(low + pace.together, last))
+            low += len(numbers)
+            taken = 0
             for law, members in self._by_laws(numbers):
                 try:
-                    block.solve(law, members)
+                    taken = max(taken, block.solve(law, members))
                 except PointcoordError as error:
                     if self.which is None:
                         raise
                     block.fail(members, error)
+            pace.learn(taken)
         return block.sweep()
 
     def _by_laws(self, numbers: Numbers) -> Iterator[tuple[int, Numbers]]:
@@ -192,9 +227,8 @@ class _Block:
     readouts: list[Readout]
 
     @classmethod
-    def empty(cls, course: Course, first: int, last: int) -> _Block:
-        count = last - first
-        rows = np.empty((count, course.table.height, len(course.scene.instants)))
+    def empty(cls, course: Course, first: int, rows: Array) -> _Block:
+        count = len(rows)
         names = [
             name
             for effect in course.plan.computed
@@ -235,8 +269,9 @@ class _Block:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
             self.filled[int(number) - self.first] = False
 
-    def solve(self, law: int, members: Numbers) -> None:
-        """Solve designs that share their laws, by their number."""
+    def solve(self, law: int, members: Numbers) -> int:
+        """Solve designs that share their laws, by their number; the bytes that the series of one take."""
+        taken = 0
         course = self.course
         points = course.designs.points(members)
         sound = np.ones(len(members), dtype=bool)
@@ -249,7 +284,8 @@ class _Block:
         for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
             places = np.searchsorted(members, own)
             self._look_at(own, {name: place[places] for name, place in points.items()})
-            self._move(law, own, mechanism)
+            taken = max(taken, self._move(law, own, mechanism))
+        return taken
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
         """The mechanism of all that have one, found in halves where some have none."""
@@ -288,8 +324,8 @@ class _Block:
             weight = 0.0 if weights is None else float(weights[place])
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
-    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> None:
-        """Close, assemble and move designs, and read their numbers."""
+    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> int:
+        """Close, assemble and move designs, and read their numbers; the bytes that the series of one take."""
         course, scene = self.course, self.course.laws[law]
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
@@ -311,6 +347,7 @@ class _Block:
                 self._alone(int(members[place]))
                 continue
             self.fail([members[place]], _error(status))
+        return solved.bytes_of_a_design
 
     def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
         """Refuse drawings whose closing makes another car of them, and note how far the others move."""

@@ -11,7 +11,7 @@ from pointcoord.errors import SweepError
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
-from pointcoord.sweeping.solving import TOGETHER, Course, require_room
+from pointcoord.sweeping.solving import Course, require_room
 from pointcoord.sweeping.swept import Sweep
 
 MEMORY = 256e6  # bytes
@@ -59,7 +59,7 @@ def sweep(
             f"has {count} designs, whose numbers take {needed / 1e9:.3g} GB",
             f"what fits into this machine's {room / 1e9:.3g} GB; use sweep_blocks, which takes any number",
         )
-    return course.solve(0, count, TOGETHER)
+    return course.solve(0, count, course.pace())
 
 
 def sweep_blocks(
@@ -69,12 +69,15 @@ def sweep_blocks(
     offsets: Mapping[str, ArrayLike] | None = None,
     grid: bool = False,
     memory: float = MEMORY,
+    reuse: bool = False,
 ) -> Iterator[Sweep]:
     """The same in blocks of consecutive designs: any number of them, in a block's memory.
 
     Args:
         memory: bytes that a block and solving it take at most; one that is still held when the next is asked
             for comes to that.
+        reuse: whether the numbers of a block are written over those of the block before: the quickest, for
+            who is done with a block when asking for the next.
     Raises:
         SweepError: as `sweep`; or one design takes more memory than that.
 
@@ -86,11 +89,11 @@ def sweep_blocks(
     course = Course.of(_designs(designs, points, offsets, grid))
     require_room(course, memory)
     # Half for the numbers of a block and half for what is solved together.
-    together = int(min(TOGETHER, max(0.5 * memory // course.bytes_on_the_way, 1)))
-    left = memory - together * course.bytes_on_the_way
-    size = int(max(left // course.bytes_of_a_design, 1))
-    together, count = min(together, size), course.designs.count
-    return (course.solve(first, min(first + size, count), together) for first in range(0, count, size))
+    pace = course.pace(max(0.5 * memory, course.bytes_on_the_way))
+    left = memory - max(0.5 * memory, course.bytes_on_the_way)
+    size, count = int(max(left // course.bytes_of_a_design, 1)), course.designs.count
+    room = course.room(min(size, count)) if reuse else None
+    return (course.solve(first, min(first + size, count), pace, room) for first in range(0, count, size))
 
 
 def _designs(

@@ -249,6 +249,24 @@ def test_blocks_are_the_sweep_in_parts() -> None:
             )
 
 
+def test_blocks_that_are_written_over_are_the_blocks_until_then() -> None:
+    offsets = {"lower_ball_joint.z": np.array([-5.0, 0.0, 150.0, 4.0, 5.0])}
+    course = solving.Course.of(designs_of(WISHBONE, offsets=offsets))
+    memory = float(course.bytes_of_a_design + course.bytes_on_the_way)
+    kept = list(sweep_blocks(WISHBONE, offsets=offsets, memory=memory))
+    places = []
+    for block, own in zip(
+        sweep_blocks(WISHBONE, offsets=offsets, memory=memory, reuse=True), kept, strict=True
+    ):
+        assert block.failures.keys() == own.failures.keys()
+        for quantity, channel in own.numbers.items():
+            for name, array in channel.items():
+                np.testing.assert_array_equal(block.numbers[quantity][name], array)
+        places.append(block.position["wheel_centre"].__array_interface__["data"][0])
+    assert len(kept) > 1
+    assert len(set(places)) == 1
+
+
 @pytest.mark.parametrize(("samples", "count", "memory"), [(101, 300, 20e6), (2001, 30, 40e6)])
 def test_blocks_take_no_more_memory_than_is_stated(samples: int, count: int, memory: float) -> None:
     scene = few_instants(WISHBONE, samples)
