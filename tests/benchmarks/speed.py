@@ -203,7 +203,7 @@ FIGURES = (
     Figure("import", "numpy's own import", importing, 2.3, 2.3),
     Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
-    Figure("a call of a map for one pose", INVERSE, single, 0.3, 0.9),
+    Figure("a call of a map for one pose", INVERSE, single, 0.3, 1.5),
     Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),
     Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
     Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),
