@@ -67,7 +67,7 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     Raises:
         SceneError: the hardpoints do not make a mechanism, or closing the drawing makes another car of it.
         UnknownName: an input that the suspension does not have, or one that is missing.
-        InputOutOfRange: a value that is not finite or has no meaning.
+        InputOutOfRange: a value that is not finite or has no meaning; a tolerance too.
         AssemblyError: the drawing cannot be closed.
 
     >>> angles, racks = np.linspace(1.5, 1.8, 7)[:, None], np.linspace(-10.0, 10.0, 5)
@@ -92,6 +92,8 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     require_the_drawn_car(scene, closing(mechanism, close_drawing(mechanism).y))
     driving = {name: flat[name] for name in topology.required_inputs}
     wanted = scene.tolerance if tolerance is None else tolerance
+    if not (np.isfinite(wanted) and wanted > 0.0):
+        raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
     found = solve_unrelated(mechanism, driving, wanted)
     shift: Array | None = None
     for name, along in topology.chassis_motion.items():

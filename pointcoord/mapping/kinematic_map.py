@@ -61,6 +61,8 @@ MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
 # Patches of one map: a few hundred MB while it is made.
 MOST = 4096
 VARIABLES = 3
+# Widths and ends between which squares and products of series are numbers; no car has others.
+NARROWEST, FARTHEST = 1e-100, 1e12
 
 
 @dataclass(frozen=True)
@@ -260,6 +262,7 @@ class KinematicMap:
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
             NotComputed: accelerations without rates.
+            MapError: what is no number, or shapes that do not broadcast.
         """
         given = [inputs] if rates is None else [inputs, rates]
         if accelerations is not None:
@@ -293,15 +296,16 @@ class KinematicMap:
         Raises:
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
-            MapError: an array without a column for each input.
+            MapError: an array without a column for each input, or not of numbers.
         """
-        states = [np.asarray(values, dtype=float)]
+        states = [_numbers(STATES[0], values)]
         if rates is None and accelerations is None and states[0].shape == self._single_shape:
             place = states[0].tolist()
             return self._ready[self._patch_of(place)].at(place).reshape(1, -1, 3)
         if accelerations is not None and rates is None:
             raise _needs_rates()
-        states += [np.asarray(state, dtype=float) for state in (rates, accelerations) if state is not None]
+        given = zip(STATES[1:], (rates, accelerations), strict=True)
+        states += [_numbers(what, state) for what, state in given if state is not None]
         for d, state in enumerate(states):
             if state.shape[-1:] != (len(self.inputs),):
                 allowed = f"(..., {len(self.inputs)}), a column for each of {', '.join(self.inputs)}"
@@ -316,7 +320,7 @@ class KinematicMap:
         if all(state.ndim == 1 for state in states):
             single = [state.tolist() for state in states]
             return self._ready[self._patch_of(single[0])].moving(single).reshape(len(states), -1, 3)
-        batch = np.broadcast_shapes(*(state.shape[:-1] for state in states))
+        batch = _common_shape([state.shape[:-1] for state in states], "arrays")
         flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
         patch = self._patches_of(flat[0])
         found = sum_series(table, middle, half, order, patch, flat)
@@ -442,12 +446,14 @@ class KinematicMap:
         topology, vectors = self.mechanism.topology, self.mechanism.drawing.vectors
         held = {name: low for name, (low, high) in self.stored.ranges.items() if low == high}
         for d, state in enumerate(given):
+            if not isinstance(state, Mapping):
+                raise MapError(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
             kind = ("input", "input with a rate", "input with an acceleration")[d]
             for name in state:
                 if name not in topology.inputs:
                     raise UnknownName(kind, name, topology.inputs)
                 wanted = held.get(name) if d == 0 else 0.0 if name in held else None
-                value = np.ravel(np.asarray(state[name], dtype=float))
+                value = np.ravel(_numbers(f"values of {kind} {name!r}", state[name]))
                 if wanted is not None and (value != wanted).any():
                     worst = float(value[np.argmax(value != wanted)])
                     raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
@@ -455,7 +461,7 @@ class KinematicMap:
                 if name not in state:
                     raise UnknownName(f"given {kind}", name, state)
         arrays = [{name: np.asarray(value, dtype=float) for name, value in state.items()} for state in given]
-        shape = np.broadcast_shapes(*(value.shape for state in arrays for value in state.values()))
+        shape = _common_shape([value.shape for state in arrays for value in state.values()], "inputs")
         columns = [
             np.stack([np.broadcast_to(state[name], shape) for name in self.inputs], axis=-1)
             for state in arrays
@@ -595,7 +601,7 @@ def kinematic_map(
     domain = Domain(mechanism, _checked_ranges(mechanism, ranges), _checked_halvings(halvings))
     if not 1 <= len(domain.free) <= VARIABLES:
         raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
+    if not (_is_number(tolerance) and np.isfinite(tolerance) and tolerance > 0.0):
         raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
     domain.known_at(np.stack(domain.ends))
     closed = close_drawing(mechanism)
@@ -615,9 +621,31 @@ def kinematic_map(
 
 
 def _checked_halvings(halvings: int) -> int:
-    if not (isinstance(halvings, int) and 0 <= halvings <= MOST_HALVINGS):
+    whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
+    if not (whole and 0 <= halvings <= MOST_HALVINGS):
         raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
-    return halvings
+    return int(halvings)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def _numbers(what: str, value: ArrayLike) -> Array:
+    """Numbers as doubles."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise MapError(what, f"cannot be read as numbers: {error}", "numbers or arrays of them") from error
+
+
+def _common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...]:
+    """The shape that some broadcast to."""
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError as error:
+        told = ", ".join(map(str, dict.fromkeys(shapes)))
+        raise MapError(what, f"have the shapes {told}", "shapes that broadcast to one") from error
 
 
 def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
@@ -647,6 +675,12 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
                 f"ranges[{name!r}]",
                 f"is {ranges[name]!r}",
                 "two finite numbers, the lower first; the same to hold it",
+            )
+        if max(abs(low), abs(high)) > FARTHEST or 0.0 < high - low < NARROWEST:
+            raise MapError(
+                f"ranges[{name!r}]",
+                f"is {ranges[name]!r}",
+                f"ends within {FARTHEST:g} that are {NARROWEST:g} apart at least, or the same to hold it",
             )
         found[name] = (low + 0.0, high + 0.0)
     return found

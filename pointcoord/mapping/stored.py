@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from os import PathLike, fspath
 from typing import Any, BinaryIO
@@ -32,6 +33,18 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 FORMAT, VERSION = "pointcoord kinematic map", 1
+DAMAGED = (
+    ValueError,
+    EOFError,
+    AttributeError,
+    KeyError,
+    TypeError,
+    MemoryError,  # a size that was never written
+    RuntimeError,  # a way of packing that there is not, or a password
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading other bytes than those of a map's file ends with."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +123,7 @@ class Stored:
 
 def write(path: str | PathLike[str], scene: Scene, tolerance: float, stored: Stored) -> None:
     """Write a map; see `KinematicMap.save`."""
+    what = _named(path)
     head = {
         "scene": scene.model_dump(mode="json", exclude_none=True),
         "tolerance": tolerance,
@@ -129,9 +143,18 @@ def write(path: str | PathLike[str], scene: Scene, tolerance: float, stored: Sto
         with open(path, "wb") as stream:
             _save(stream, words | stored.arrays)
     except OSError as error:
-        raise MapError(
-            f"file {fspath(path)!r}", f"cannot be written: {error.strerror}", "a path to write to"
-        ) from error
+        raise MapError(what, f"cannot be written: {error.strerror}", "a path to write to") from error
+
+
+def _named(path: object) -> str:
+    """A file in words.
+
+    Raises:
+        MapError: what is given is no path.
+    """
+    if not isinstance(path, str | PathLike):
+        raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
+    return f"file {fspath(path)!r}"
 
 
 def _save(stream: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -144,7 +167,7 @@ def _save(stream: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
 
 def read(path: str | PathLike[str]) -> tuple[Scene, float, Stored]:
     """Read a map; see `KinematicMap.load`."""
-    what = f"file {fspath(path)!r}"
+    what = _named(path)
     allowed = "a map as KinematicMap.save writes it"
     try:
         with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
@@ -153,7 +176,7 @@ def read(path: str | PathLike[str]) -> tuple[Scene, float, Stored]:
         raise MapError(what, "does not exist", allowed) from error
     except OSError as error:
         raise MapError(what, f"cannot be read: {error.strerror or error}", allowed) from error
-    except (ValueError, EOFError, AttributeError, KeyError, TypeError, zipfile.BadZipFile) as error:
+    except DAMAGED as error:
         raise MapError(what, "is no npz file, or a damaged one", allowed) from error
     if str(found.get("format", "")) != FORMAT:
         raise MapError(what, "is no kinematic map", allowed)

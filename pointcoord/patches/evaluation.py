@@ -137,12 +137,21 @@ class _Exponents:
     Attributes:
         each: 0 .. order. which: exponents of every power but the first, by variable.
         lowered, factors: exponents and factors of x^k and of its first two derivatives, (3, order + 1).
+        signs: of powers of negative numbers with these exponents, likewise.
     """
 
     each: Array
     which: tuple[NDArray[np.intp], ...]
     lowered: Array
     factors: Array
+    signs: Array
+
+
+def _powers(x: float, exponents: Array, signs: Array) -> Array:
+    """Powers of a number; those of a negative one take three times as long as those of its magnitude."""
+    if x >= 0.0:
+        return np.asarray(x**exponents)
+    return np.asarray((-x) ** exponents * signs)
 
 
 @lru_cache(maxsize=32)
@@ -152,7 +161,7 @@ def exponents(inputs: int, order: int) -> _Exponents:
     lowered = np.maximum(each - np.arange(3.0)[:, None], 0.0)
     factors = np.stack([np.ones(order + 1), each, each * (each - 1.0)])
     which = tuple(np.ascontiguousarray(k) for k in powers(inputs, order).exponents[1:].T)
-    return _Exponents(each, which, lowered, factors)
+    return _Exponents(each, which, lowered, factors, np.where(lowered % 2.0 == 1.0, -1.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -178,9 +187,9 @@ class OnePatch:
     def at(self, values: Sequence[float]) -> Array:
         """The sums, (m,)."""
         row: Array | None = None
-        each = self.exponents.each
+        each, signs = self.exponents.each, self.exponents.signs[0]
         for value, (middle, half), k in zip(values, self.places, self.exponents.which, strict=True):
-            own = (((value - middle) / half) ** each).take(k)
+            own = _powers((value - middle) / half, each, signs).take(k)
             row = own if row is None else row * own
         assert row is not None  # a map has an input
         found: Array = row.dot(self.later)
@@ -200,7 +209,7 @@ class OnePatch:
         rows: list[Array] = []
         lowered, factors = self.exponents.lowered[:count], self.exponents.factors[:count]
         for i, ((middle, half), k) in enumerate(zip(self.places, self.exponents.which, strict=True)):
-            by_x = ((states[0][i] - middle) / half) ** lowered
+            by_x = _powers((states[0][i] - middle) / half, lowered, self.exponents.signs[:count])
             by_x *= factors
             rate = states[1][i] / half
             own = [by_x[0], rate * by_x[1]]

@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import doubled_residual
-from pointcoord.numerics.kantorovich import INFLATION
+from pointcoord.numerics.kantorovich import INFLATION, ball
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
@@ -99,23 +99,18 @@ def prove_patches(
         z = ((change.value @ weights[..., None])[..., 0] / weights).max(axis=-1)
         eta = (remaining.value / weights).max(axis=-1)
         omega = system.lipschitz(factors.preconditioner, weights)
-        room = 1.0 - z
-        constant = 2.0 * omega * eta / room**2
-        root = np.sqrt(np.maximum(1.0 - constant, 0.0))
-        radius = INFLATION * 2.0 * eta / (room * (1.0 + root))
-        outer = room * (1.0 + root) / omega / INFLATION
-        contraction = INFLATION * (z + omega * radius)
-        proven = (room > 0.0) & (constant < 1.0) & (contraction < 1.0) & np.isfinite(radius)
-        error = _errors(remaining, change, weights, omega, radius, contraction)
+        found = ball(eta, z, omega)
+        proven = found.proven & (found.contraction < 1.0)
+        error = _errors(remaining, change, weights, omega, found.radius, found.contraction)
         spread = ((change.first @ weights[:, None, :, None])[..., 0] / weights[:, None]).max(axis=-1)
         left_out = (remaining.first / weights[:, None]).max(axis=-1)
     return PatchProof(
         proven=proven,
         error=error.scaled(INFLATION).where(proven),
-        unique_within=np.where(proven[:, None], weights * outer[:, None], 0.0),
+        unique_within=np.where(proven[:, None], weights * found.outer[:, None], 0.0),
         change=spread,
         left_out=left_out,
-        contraction=np.where(proven, contraction, np.inf),
+        contraction=np.where(proven, found.contraction, np.inf),
     )
 
 

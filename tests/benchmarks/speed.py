@@ -135,6 +135,13 @@ def mapped() -> Race:
     return Race(lambda: made(inputs), inverses, len(inputs["rack"]) / 1000)
 
 
+def single() -> Race:
+    """One pose through a map, as another program's time loop asks for it, 1,000 times."""
+    made = kinematic_map(scene("bounce", ()), {"arm_angle": (1.5, 1.9), "rack": (-30.0, 30.0)})
+    values = np.stack(list(pairs(1000).values()), axis=-1)
+    return Race(lambda: [made.evaluate(value) for value in values], inverses)
+
+
 def one_by_one() -> Race:
     """Unrelated inputs, each solved and proven."""
     asked, inputs = scene("bounce", ()), pairs(size(1_000_000, 50_000))
@@ -207,6 +214,7 @@ FIGURES = (
     Figure("import", "numpy's own import", importing, 2.3, 2.3),
     Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
+    Figure("a call of a map for one pose", INVERSE, single, 0.3, 1.5),
     Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),
     Figure("a configuration of the absolute model", INVERSE, absolute_model, 8.0, 15.0),
     Figure("a proof of an instant", INVERSE, proofs, 0.3, 0.6),

@@ -104,6 +104,9 @@ def test_inputs_without_meaning_are_refused() -> None:
         solve_poses(scene, {"arm_angle": 1.6, "rack": np.nan})
     with pytest.raises(InputOutOfRange):
         solve_poses(scene, {"arm_angle": 88.0, "rack": 0.0})
+    for tolerance in (np.nan, np.inf, 0.0, -1e-9):
+        with pytest.raises(InputOutOfRange, match="tolerance"):
+            solve_poses(scene, {"arm_angle": 1.6, "rack": 0.0}, tolerance)
 
 
 @pytest.mark.parametrize("name", CARS)

@@ -44,8 +44,11 @@ MODULES: Mapping[Part, str] = {
     "effects": "effects",
     "growth": "growth.rows",
     "loading": "loading",
+    "unrelated": "unrelated",
 }
 ROWS = "pointcoord-cost.jsonl"
+RACED = "bounce-and-steer"
+"""The scene of the study whose car is solved at unrelated inputs if none is named."""
 PAUSE = 0.2  # seconds between two lines of progress
 
 DESCRIPTION = """\
@@ -53,7 +56,8 @@ Measure what accuracy costs in time: every way to solve a scene, over the range 
 held to a many-digit reference and timed phase by phase. Said is who reaches an accuracy of
 1e-3, 1e-6 and 1e-9 in what time, where another way is quicker than ours, and from how many
 instants on; what each effect costs; how time and memory grow with instants, designs and
-unknowns; what loading takes.
+unknowns; what loading takes; what a pose takes at inputs that have nothing to do with each
+other.
 
 A row is kept in a file when it is measured: a run that is stopped goes on where it was, and
 --from-rows makes the report again without measuring."""
@@ -106,10 +110,12 @@ class Study:
 
     Attributes:
         scenes: for the accuracy; the first one's cost is measured as it grows.
+        raced: for unrelated inputs.
     """
 
     parts: tuple[Part, ...]
     scenes: tuple[StudyScene, ...]
+    raced: tuple[StudyScene, ...]
     ways: tuple[Way, ...]
     quick: bool
 
@@ -208,7 +214,7 @@ def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
             raise UsageError("--effects and --parts both say what to measure; give one of them")
         return ("effects",)
     if options.parts is None:
-        about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth")
+        about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth", "unrelated")
         return about_scenes if options.scenes and not options.from_rows else PARTS
     asked = _listed(options.parts, "--parts", PARTS)
     for name in asked:
@@ -239,7 +245,8 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
     chosen = tuple(scenes) or of_study.own_scenes(quick=options.quick)
-    return Study(parts, chosen, ways, options.quick)
+    raced = tuple(scenes) or tuple(study for study in chosen if study.name == RACED)
+    return Study(parts, chosen, raced, ways, options.quick)
 
 
 def _measured(
@@ -282,8 +289,10 @@ def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tupl
         found = module.measure_effects(store, study.scenes, study.quick, progress)
     elif part == "growth":
         found = module.measure_growth(store, study.scenes, study.ways, study.quick, progress)
-    else:
+    elif part == "loading":
         found = module.measure_loading(store, study.quick, progress)
+    else:
+        found = module.measure_unrelated(store, study.raced, study.ways, study.quick, progress)
     return tuple(found)
 
 

@@ -81,6 +81,11 @@ class Report:
             told.append(("quick", "fewer settings, instants and repeats: no more than a first look"))
         return told
 
+    @property
+    def _said(self) -> list[str]:
+        """The sentences; that there are none only where nothing was measured."""
+        return self.sentences or ([] if self.measured else [NOTHING])
+
     def _counted(self) -> str:
         states = {state: sum(row.status == state for row in self.rows) for state in ("failed", "left out")}
         rest = "".join(f", {count} {state}" for state, count in states.items() if count)
@@ -89,7 +94,7 @@ class Report:
     def text(self) -> str:
         """For a terminal: sentences first, then short tables."""
         head = "\n".join(wrapped(f"{name}: {value}", "  ") for name, value in self.head())
-        blocks = [f"{TITLE}\n{head}", *(map(wrapped, self.sentences or [NOTHING]))]
+        blocks = [f"{TITLE}\n{head}", *map(wrapped, self._said)]
         tables = [table.text() for table in short_tables(self.rows, self.found)]
         return "\n\n".join(["\n".join(blocks), *tables])
 
@@ -98,7 +103,7 @@ class Report:
         blocks = [
             f"# {TITLE}",
             "\n".join(f"- {name}: {_literal(value)}" for name, value in self.head()),
-            "\n".join(f"- {_literal(sentence)}" for sentence in self.sentences or [NOTHING]),
+            "\n".join(f"- {_literal(sentence)}" for sentence in self._said),
             *(f"![{name.removesuffix('.svg')}]({name})" for name in pictures),
             *(table.markdown().rstrip() for table in full_tables(self.rows, self.found)),
         ]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-Part = Literal["accuracy", "effects", "growth", "loading"]
+Part = Literal["accuracy", "effects", "growth", "loading", "unrelated"]
 NO_EFFECT = "no effect"
 """The setting of a row of the part effects that asks for none."""
 Status = Literal["measured", "failed", "left out"]

@@ -81,12 +81,19 @@ class Table:
 
 
 def short_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
-    """What a terminal shows: times to reach accuracies, the ways of each scene, effects, growth, loading."""
+    """What a terminal shows: times to reach accuracies, the ways of each scene, effects, growth, loading, and
+    unrelated inputs."""
     tables = []
     for scene in scenes_of(accuracy_rows(rows)):
         here = [row for row in accuracy_rows(rows) if row.scene == scene]
         tables += [reach_table(here, "position"), scene_table(here)]
-    return [*tables, *effects_tables(rows), *growth_tables(found), *loading_tables(rows)]
+    return [
+        *tables,
+        *effects_tables(rows),
+        *growth_tables(found),
+        *loading_tables(rows),
+        *unrelated_tables(rows),
+    ]
 
 
 def full_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
@@ -96,7 +103,19 @@ def full_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
         here = [row for row in accuracy_rows(rows) if row.scene == scene]
         tables += [reach_table(here, quantity) for quantity in quantities_of(here)]
         tables += [error_table(here), time_table(here)]
-    return [*tables, *effects_tables(rows), *growth_tables(found), *loading_tables(rows)]
+    return [
+        *tables,
+        *effects_tables(rows),
+        *growth_tables(found),
+        *loading_tables(rows),
+        *unrelated_tables(rows),
+    ]
+
+
+def other_tables(rows: Sequence[Row], found: Findings) -> list[Table]:
+    """Of the parts of the study that are not about accuracy."""
+    of_scenes = [*effects_tables(rows), *growth_tables(found)]
+    return [*of_scenes, *loading_tables(rows), *unrelated_tables(rows)]
 
 
 def name_of(row: Row, short: bool = False) -> str:
@@ -446,3 +465,34 @@ def _time_cells(time: Time | None) -> list[str]:
 def _cell(value: object) -> str:
     """A number with all its digits; nothing for what is not there."""
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+
+
+def unrelated_tables(rows: Iterable[Row]) -> list[Table]:
+    """Of each scene what a pose takes at inputs that have nothing to do with each other, quickest first."""
+    tables = []
+    for scene in scenes_of([row for row in rows if row.part == "unrelated"]):
+        here = [row for row in rows if row.part == "unrelated" and row.scene == scene]
+        timed = [(each, row) for row in here if (each := row.seconds("solve")) is not None]
+        timed.sort(key=lambda one: one[0])
+        alone = next((each for each, row in timed if row.way == "one by one"), None)
+        lines, notes = [], list(absences(here))
+        for each, row in timed:
+            time = row.times["solve"]
+            lines.append(
+                (
+                    f"{row.way}, {row.setting}" if row.setting else row.way,
+                    f"{row.configurations:,}",
+                    duration(each),
+                    f"{50.0 * (time.upper - time.lower) / time.median:.0f} %",
+                    "-" if alone is None else f"{each / alone:.2g}",
+                    _error_words(row.errors["position"].largest),
+                )
+            )
+            if "set-up" in row.times:
+                notes.append(f"{row.way}: made in {duration(row.times['set-up'].median)}, which is not in it")
+        numbers = max((row.errors["position"].numbers for _, row in timed), default=0)
+        notes.append(f"errors are those of the first poses, {numbers} numbers, against the reference")
+        head = ("way", "poses", "a pose", "+-", "of one by one", "error, mm")
+        title = f"A pose of {scene} at inputs that have nothing to do with each other"
+        tables.append(Table(title, head, tuple(lines), tuple(notes)))
+    return tables

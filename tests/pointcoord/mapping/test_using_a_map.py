@@ -348,3 +348,69 @@ def test_a_file_that_is_no_map_is_refused_in_words(
     spoil(path)
     with pytest.raises(MapError, match=words):
         KinematicMap.load(path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"tolerance": "1e-9"}, ["tolerance", "'1e-9'", "finite number of mm above 0"]),
+        ({"tolerance": None}, ["tolerance", "None"]),
+        ({"tolerance": True}, ["tolerance", "True"]),
+        ({"halvings": True}, ["halvings", "True", "whole number"]),
+        ({"ranges": {**RANGES, "rack": (0.0, 5e-324)}}, ["rack", "5e-324", "the same to hold it"]),
+        ({"ranges": {**RANGES, "rack": (-1e300, 1e300)}}, ["rack", "1e+300", "ends within"]),
+    ],
+)
+def test_what_makes_no_map_is_refused_in_one_line(arguments: dict[str, Any], words: list[str]) -> None:
+    asked = {"ranges": RANGES, **arguments}
+    with pytest.raises(MapError) as refused:
+        kinematic_map(Scene.load("steer"), **asked)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers() -> None:
+    halvings: Any = np.int64(2)
+    assert kinematic_map(Scene.load("steer"), RANGES, halvings=halvings).domain.parts == 4
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda m: m({"arm_angle": "x", "rack": 0.0}), ["arm_angle", "numbers", "'x'"]),
+        (lambda m: m({"arm_angle": [1.0, 1.0], "rack": [0.0, 1.0, 2.0]}), ["(2,)", "(3,)", "broadcast"]),
+        (lambda m: m([1.0, 0.0]), ["values", "list", "by input"]),
+        (lambda m: m.covers({"arm_angle": "x", "rack": 0.0}), ["arm_angle", "numbers"]),
+        (lambda m: m.evaluate("ab"), ["values", "numbers"]),
+        (lambda m: m.evaluate(np.ones((2, 2)), np.ones((3, 2))), ["(2,)", "(3,)", "broadcast"]),
+        (lambda m: m.evaluate([1.0, 0.0], "ab"), ["rates", "numbers"]),
+        (lambda m: m.save(None), ["None", "path of a file"]),
+        (lambda m: m.load(3.5), ["3.5", "path of a file"]),
+    ],
+)
+def test_what_is_no_number_or_no_file_is_refused_in_one_line(
+    steered: KinematicMap, ask: Callable[[Any], Any], words: list[str]
+) -> None:
+    with pytest.raises(MapError) as refused:
+        ask(steered)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_a_file_with_any_byte_of_its_ends_changed_gives_the_same_map_or_is_refused(
+    steered: KinematicMap, tmp_path: Path
+) -> None:
+    """The ends hold what says how the archive is packed."""
+    path = tmp_path / "map.npz"
+    steered.save(path)
+    whole, pose = path.read_bytes(), steered.evaluate([1.0, 2.0]).tobytes()
+    refused = 0
+    for place in (*range(0, 200, 3), *range(len(whole) - 400, len(whole), 3)):
+        changed = bytearray(whole)
+        changed[place] ^= 255
+        path.write_bytes(bytes(changed))
+        try:
+            assert KinematicMap.load(path).evaluate([1.0, 2.0]).tobytes() == pose
+        except MapError:
+            refused += 1
+    assert refused > 100

@@ -41,6 +41,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
             "growth.rows": {"measure_growth": lambda *_: ()},
             "effects": {"measure_effects": lambda *_: ()},
             "loading": {"measure_loading": lambda *_: ()},
+            "unrelated": {"measure_unrelated": lambda *_: ()},
         }
         for name, content in modules.items():
             module = ModuleType(name)
@@ -397,13 +398,19 @@ def test_named_scenes_are_measured_in_the_parts_that_are_about_a_scene(
     assert asked == [("steer", "near-toggle")]
     nothing: Any = None
     with pytest.raises(AssertionError, match="not asked for"):
-        cost._of_part("loading", cost.Study((), (), (), False), nothing, nothing)
+        cost._of_part("loading", cost.Study((), (), (), (), False), nothing, nothing)
 
 
 def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["cost", "--list"]) == 0
     out = capsys.readouterr().out
-    for name in ("series", "newton", "bounce", "near-toggle", "accuracy, effects, growth, loading"):
+    for name in (
+        "series",
+        "newton",
+        "bounce",
+        "near-toggle",
+        "accuracy, effects, growth, loading, unrelated",
+    ):
         assert name in out
 
 
