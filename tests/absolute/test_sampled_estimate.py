@@ -79,7 +79,7 @@ def test_an_interpolated_error_is_no_smaller_than_computed_and_little_larger(
 ) -> None:
     both = compared(model, kind.inputs(WAYS[way](np.linspace(0.0, 1.0, 800))), monkeypatch, rates)
     assert both.every == 800
-    assert both.computed < 0.3 * both.every
+    assert both.computed < 0.5 * both.every
     # Another order of sums of positive numbers: some roundings.
     assert both.least >= 1.0 - 1e-12
     # MARGIN, what the middle allows, and dust on top of a number that is not much more.
