@@ -39,12 +39,16 @@ else:
                 fields[name] = _own_field(cls, name, annotation)
             cls.__dataclass_fields__, cls.__dataclass_params__ = fields, PARAMETERS
             cls.__match_args__ = tuple(fields)
-            cls.__init__ = _on_first_use(cls, fields)
             cls.__setattr__, cls.__delattr__ = _refuse_to_set, _refuse_to_delete
+            made_here = {"__init__": _on_first_use(cls, fields)}
             if eq:
-                cls.__eq__, cls.__hash__ = _compared(tuple(fields))
+                made_here["__eq__"], made_here["__hash__"] = _compared(tuple(fields))
             if repr:
-                cls.__repr__ = _shown
+                made_here["__repr__"] = _shown
+            for name, function in made_here.items():
+                # What a class says itself stays; Python gives one that says `__eq__` alone a hash of None.
+                if vars(cls).get(name) is None:
+                    setattr(cls, name, function)
             return cls
 
         return made
@@ -68,7 +72,8 @@ else:
 
     def _compiled(cls, fields: dict[str, Field]):
         """The function that takes the fields as arguments and sets them."""
-        names, arguments, lines = {"MISSING": MISSING}, ["self"], ["own = self.__dict__"]
+        # No field can have the name that the fields are set by.
+        names, arguments, lines = {"MISSING": MISSING}, ["self"], ["__fields__ = self.__dict__"]
         for name, own in fields.items():
             value = name
             if own.default_factory is not MISSING:
@@ -80,7 +85,7 @@ else:
                 arguments.append(f"{name}=_default_{name}")
             else:
                 arguments.append(name)
-            lines.append(f"own[{name!r}] = {value}")
+            lines.append(f"__fields__[{name!r}] = {value}")
         if hasattr(cls, "__post_init__"):
             lines.append("self.__post_init__()")
         exec(f"def __init__({', '.join(arguments)}):\n " + "\n ".join(lines), names)

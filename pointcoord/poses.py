@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, PointcoordError, UnknownName
 from pointcoord.linkage.carried_points import carried_gain
 from pointcoord.linkage.mechanism import Mechanism
@@ -20,6 +20,9 @@ from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.unrelated_poses import solve_unrelated
 
 Array = NDArray[np.float64]
+
+# Poses whose points are placed at a time: their coordinates stay in a cache.
+BLOCK = 2048
 
 
 @dataclass(frozen=True)
@@ -90,14 +93,14 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     driving = {name: flat[name] for name in topology.required_inputs}
     wanted = scene.tolerance if tolerance is None else tolerance
     found = solve_unrelated(mechanism, driving, wanted)
-    shift = np.zeros((len(found.bound), 3))
+    shift: Array | None = None
     for name, along in topology.chassis_motion.items():
         if name in flat:
-            shift += flat[name][:, None] * mechanism.drawing.vectors[along]
-    shifted = 2.0 * EPS * np.abs(shift).max(axis=-1, initial=0.0)
-    position = {
-        name: place.reshape(*shape, 3) for name, place in _positions(mechanism, found.unknowns, shift).items()
-    }
+            part = flat[name][:, None] * mechanism.drawing.vectors[along]
+            shift = part if shift is None else shift + part
+    shifted = 0.0 if shift is None else 2.0 * EPS * np.abs(shift).max(axis=-1)
+    places = _positions(mechanism, found.unknowns, shift)
+    position = {name: place.reshape(*shape, 3) for name, place in places.items()}
     gain = max(
         (
             carried_gain(mechanism.carrier_weights[n], mechanism.drawing, c)
@@ -120,26 +123,32 @@ def _error(error: PointcoordError | None) -> PointcoordError:
     return error
 
 
-def _positions(mechanism: Mechanism, unknowns: Array, shift: Array) -> dict[str, Array]:
-    """Every point from the unknowns, shape (unknowns, N), each (N, 3), mm."""
+def _positions(mechanism: Mechanism, unknowns: Array, shift: Array | None) -> dict[str, Array]:
+    """Every point from the unknowns, shape (N, unknowns), each (N, 3), mm."""
     topology, layout, unit = mechanism.topology, mechanism.layout, float(mechanism.unit)
-    rows = {name: unknowns[layout.vector(name)[0] : layout.vector(name)[2] + 1] for name in topology.moving}
-    for name, carriers in topology.carried.items():
-        base, first, second = (rows[carrier] for carrier in carriers)
-        e1, e2 = first - base, second - base
-        a, b, c = mechanism.carrier_weights[name]
-        normal = np.stack(
-            [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]]
-        )
-        rows[name] = base + a * e1 + b * e2 + c * normal
-    found = {}
-    lost = np.isnan(unknowns[0])
-    for name in topology.points:
-        place = np.empty((unknowns.shape[-1], 3))
-        row = rows[name] if name in rows else mechanism.drawing.vectors[name][:, None]
-        np.multiply(row.T, unit, out=place)
-        place += mechanism.origin
-        place += shift
-        place[lost] = np.nan
-        found[name] = place
+    count = len(unknowns)
+    found = {name: np.empty((count, 3)) for name in topology.points}
+    places = {name: layout.vector(name)[0] for name in topology.moving}
+    for low in range(0, count, BLOCK):
+        here = slice(low, low + BLOCK)
+        block, added = unknowns[here], mechanism.origin if shift is None else mechanism.origin + shift[here]
+        lost = np.isnan(block[:, 0])
+        some = bool(lost.any())
+        rows = {name: block[:, first : first + 3] for name, first in places.items()}
+        for name, carriers in topology.carried.items():
+            rows[name] = _carried(mechanism.carrier_weights[name], *(rows[carrier].T for carrier in carriers))
+        for name in topology.points:
+            place = found[name][here]
+            np.multiply(rows[name] if name in rows else mechanism.drawing.vectors[name], unit, out=place)
+            place += added
+            if some:
+                place[lost] = np.nan
     return found
+
+
+def _carried(weights: Array, base: Array, first: Array, second: Array) -> Array:
+    """A point that rides on three, from their coordinates, (3, N) each, in rows, (N, 3)."""
+    (x1, y1, z1), (x2, y2, z2) = e1, e2 = first - base, second - base
+    a, b, c = weights
+    normal = np.stack([y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2])
+    return np.asarray((base + a * e1 + b * e2 + c * normal).T)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from pointcoord.bounds.body_fixed import apart, carried_errors
 from pointcoord.bounds.certified_poses import CertifiedPoses, Certifier
 from pointcoord.bounds.reported_bounds import POSITION, Numbers, Proven, Reported, reported_bounds
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
@@ -183,7 +185,7 @@ def _reported_bound(
     return np.asarray(INFLATION * found)
 
 
-@dataclass
+@dataclasses.dataclass
 class _Bounds:
     """Bounds of every number at some instants, written block by block.
 

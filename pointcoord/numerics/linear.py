@@ -4,20 +4,26 @@ The rows are first scaled by powers of two to a largest entry near 1, which chan
 LU with partial pivoting then gives the inverse, because the condition number and the error bound of
 a pose need it anyway; each solution is refined once with its own residual, which gives it the accuracy
 of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 and 14). A large matrix of
-few entries is inverted block after block (see `block_inverse`).
+few entries is inverted block after block (see `block_inverse`), and its solutions are found so too.
 """
 
 from __future__ import annotations
+
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics import block_inverse
-from pointcoord.numerics.block_inverse import inverse_by_blocks
+from pointcoord.numerics.block_inverse import Substitution, inverse_by_blocks
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+# Rows of a large matrix at a time: what is made of them stays in a second-level cache.
+ROWS = 32
 
 
 @dataclass(frozen=True)
@@ -31,6 +37,7 @@ class Factors:
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
             where the matrix is exactly singular.
         sign: of the determinant, shape (...,), if it came with the inverse.
+        substitution: solutions of the scaled matrix by its blocks, if it was inverted so.
     """
 
     matrix: Array
@@ -38,9 +45,14 @@ class Factors:
     row_scale: Array
     condition: Array
     sign: Array | None = None
+    substitution: Substitution | None = None
 
     def solve(self, right: Array) -> Array:
         """x with matrix x = right, shapes (..., n), refined once."""
+        if self.substitution is not None:
+            rows = right * self.row_scale
+            found = self.substitution.solve(rows)
+            return np.asarray(found + self.substitution.solve(rows - self._times(found)))
         if right.ndim == 1 and self.matrix.ndim == 2:
             # Of vectors, `dot` takes half the time that the operator @ does.
             rows = right * self.row_scale
@@ -58,7 +70,20 @@ class Factors:
         is that of the old one. The determinant's sign is the same: no matrix between the two is singular.
         """
         scaled = matrix * self.row_scale[..., None]
-        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sign)
+        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sign, self.substitution)
+
+    def _times(self, x: Array) -> Array:
+        """The product with vectors of shape (..., n), of the matrix' entries only."""
+        rows, columns, starts = self._entries
+        return np.add.reduceat(self.matrix[..., rows, columns] * x.take(columns, axis=-1), starts, axis=-1)
+
+    @cached_property
+    def _entries(self) -> tuple[Indices, Indices, Indices]:
+        """Rows and columns of the entries of any member, row after row, and where each row begins."""
+        n = self.matrix.shape[-1]
+        filled = (self.matrix != 0.0).reshape(-1, n, n).any(axis=0)
+        rows, columns = np.divmod(np.flatnonzero(filled), n)
+        return rows, columns, np.searchsorted(rows, np.arange(n))
 
     def reshaped(self, batch: tuple[int, ...]) -> Factors:
         """The same factors with other batch dimensions."""
@@ -69,6 +94,7 @@ class Factors:
             self.row_scale.reshape(*batch, n),
             self.condition.reshape(batch),
             None if self.sign is None else self.sign.reshape(batch),
+            None if self.substitution is None else self.substitution.reshaped(batch),
         )
 
     def taken(self, members: NDArray[np.intp]) -> Factors:
@@ -79,6 +105,7 @@ class Factors:
             self.row_scale[members],
             self.condition[members],
             None if self.sign is None else self.sign[members],
+            None if self.substitution is None else self.substitution.taken(members),
         )
 
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
@@ -143,7 +170,8 @@ def factorise_plainly(matrix: Array) -> Factors:
     safe = scaled if sound.all() else _with_identity(scaled, sound)
     blocks = inverse_by_blocks(safe) if sound.all() else None
     if blocks is not None:
-        return Factors(scaled, blocks.inverse, row_scale, _condition(scaled, blocks.inverse), blocks.sign)
+        condition = _condition(scaled, blocks.inverse)
+        return Factors(scaled, blocks.inverse, row_scale, condition, blocks.sign, blocks.substitution)
     try:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:
@@ -160,9 +188,15 @@ def factorise_plainly(matrix: Array) -> Factors:
 def _condition(matrix: Array, inverse: Array) -> Array:
     """|A| |A^-1| in the maximum norm, shape (...,)."""
     with np.errstate(invalid="ignore", over="ignore"):
-        return np.asarray(
-            np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
-        )
+        return _norm(matrix) * _norm(inverse)
+
+
+def _norm(matrix: Array) -> Array:
+    """The largest sum of magnitudes of a row, shape (...,)."""
+    if matrix.shape[-2] < block_inverse.LARGE:
+        return np.asarray(np.abs(matrix).sum(axis=-1).max(axis=-1))
+    parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))
+    return np.asarray(np.max([np.abs(part).sum(axis=-1).max(axis=-1) for part in parts], axis=0))
 
 
 def _with_identity(matrix: Array, sound: NDArray[np.bool_]) -> Array:

@@ -8,12 +8,12 @@ the blocks that are left out read none, and their s, once solved, is right for g
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.quadratic import Product, QuadraticMap
 
 Array = NDArray[np.float64]

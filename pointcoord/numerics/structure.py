@@ -14,8 +14,9 @@ pass over the entries; so does the matching of a linkage, where few rows have to
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import Protocol
+
+from pointcoord.data_classes import dataclass
 
 FREE = -1
 

@@ -1,8 +1,6 @@
 r"""Sums of series in several inputs at many values, and their time derivatives along any laws.
 
-The powers of a total degree are those of the degree below times one variable each: s_1 times all of them, s_2
-times those without s_1, and so on. With batch last every such product is one call on contiguous numbers, and
-its rates follow Leibniz' rule, (s m)' = s' m + s m' and (s m)'' = s'' m + 2 s' m' + s m''. So
+With the powers of a pose's inputs and their time derivatives (see `numerics.monomials`),
 
     p = Y(a, b),  v = Y_a a' + Y_b b',  acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb
     b'^2
@@ -13,13 +11,13 @@ are three products with one and the same matrix of coefficients.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
+from pointcoord.numerics.monomials import monomials
 from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]
@@ -27,66 +25,6 @@ Whole = NDArray[np.int64]
 
 # Poses per matrix product: their powers, 90 in two inputs, stay in a second-level cache.
 BLOCK = 512
-
-
-@dataclass(frozen=True)
-class Step:
-    """Powers low .. high are variable `variable` times the powers first .. last."""
-
-    low: int
-    high: int
-    variable: int
-    first: int
-    last: int
-
-
-@lru_cache(maxsize=32)
-def steps(inputs: int, order: int) -> tuple[Step, ...]:
-    """How the powers are made of each other, in the order of `multi_index.powers`."""
-    found, last = [], 1
-    for degree in range(1, order + 1):
-        place = last
-        for variable in range(inputs):
-            # Of the degree below, those without the variables before this one come last.
-            others = inputs - variable
-            count = comb(degree - 1 + others - 1, others - 1)
-            found.append(Step(place, place + count, variable, last - count, last))
-            place += count
-        last = place
-    return tuple(found)
-
-
-def monomials(states: Sequence[Array], order: int, room: Array | None = None) -> list[Array]:
-    """Powers of the variables, and their time derivatives.
-
-    Args:
-        states: the variables and as many of their derivatives as are wanted, each (p, N).
-        room: where they go, of at least so many derivatives and instants, (derivatives + 2, powers, N); a
-            new array has to be mapped by the system, which takes longer than filling it.
-    Returns:
-        As many arrays of shape (powers, N).
-    """
-    inputs, count = states[0].shape
-    every = comb(order + inputs, inputs)
-    if room is None:
-        room = np.empty((len(states) + 1, every, count))
-    *found, spare = (part[:, :count] for part in room[: len(states) + 1])
-    found[0][0] = 1.0
-    for rates in found[1:]:
-        rates[0] = 0.0
-    twice = 2.0 * states[1] if len(states) > 2 else states[0]
-    for step in steps(inputs, order):
-        here, before, i = slice(step.low, step.high), slice(step.first, step.last), step.variable
-        np.multiply(states[0][i], found[0][before], out=found[0][here])
-        if len(states) > 1:
-            product = spare[here]
-            np.multiply(states[0][i], found[1][before], out=found[1][here])
-            found[1][here] += np.multiply(states[1][i], found[0][before], out=product)
-            if len(states) > 2:
-                np.multiply(states[0][i], found[2][before], out=found[2][here])
-                found[2][here] += np.multiply(twice[i], found[1][before], out=product)
-                found[2][here] += np.multiply(states[2][i], found[0][before], out=product)
-    return found
 
 
 def sum_series(

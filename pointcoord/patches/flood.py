@@ -14,16 +14,18 @@ other.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.monomials import monomials
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import monomials
 from pointcoord.patches.expansion import expand_in_inputs
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
@@ -172,7 +174,7 @@ class Cover:
     work: Work
 
 
-@dataclass
+@dataclasses.dataclass
 class _Flood:
     """Boxes on their way to being covered.
 

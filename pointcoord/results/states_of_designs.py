@@ -17,13 +17,13 @@ together at each instant what rides on them,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.results.states import StatesOfChain
 from pointcoord.results.table import State, vectors
 

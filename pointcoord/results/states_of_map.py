@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
 
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_rates import Summed
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
 from pointcoord.patches.evaluation import sum_rows, sum_series

@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.branch import orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
@@ -134,7 +135,7 @@ def proven_step(
         return np.asarray(np.abs(inverse @ rows[..., None])[..., 0])
 
     bend = bent(system.residual(tangent))
-    turn = np.abs(inverse @ system.jacobian(tangent))
+    turn = np.abs(product_of_few_entries(inverse, system.jacobian(tangent)))
     largest = bend.max(axis=-1, keepdims=True)
     best = np.zeros(tangent.shape[:-1])
     if correction is not None:

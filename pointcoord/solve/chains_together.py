@@ -12,11 +12,11 @@ whoever asked solves it by itself, and either takes it out or says that it is to
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.batch_last.elimination import Eliminated
 from pointcoord.numerics.batch_last.series import ColumnSeries

@@ -11,11 +11,11 @@ reason. Few designs, and whatever the columns cannot do at all, are solved in th
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism

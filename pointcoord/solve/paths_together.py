@@ -16,11 +16,13 @@ solves it by `assembly.follow`, which decides, and tells why.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import dataclasses
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.batch_last.block_proof import BlockProof, block_proof
 from pointcoord.numerics.batch_last.column_map import ColumnMap, column_map
 from pointcoord.numerics.batch_last.elimination import Eliminated, Elimination, eliminate_like
@@ -128,7 +130,7 @@ class Reached:
     steps: int
 
 
-@dataclass
+@dataclasses.dataclass
 class _Travelling:
     """Members on their way, a column each.
 

@@ -25,13 +25,14 @@ every series (see `partial_map`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache
 from math import perm
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import on_branch, orientation

@@ -8,13 +8,14 @@ designs it has.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.errors import SceneError, SweepError, UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.messages import shown

@@ -76,6 +76,40 @@ def test_those_that_are_compared_by_identity_are_equal_to_themselves_only() -> N
     assert len({one, other}) == 2
 
 
+@pytest.mark.parametrize("define", [dataclass, dataclasses.dataclass])
+def test_what_a_class_says_itself_stays(define: Callable[..., Any]) -> None:
+    @define(frozen=True)
+    class Spoken:
+        """With words of its own, and one number that counts when two are compared."""
+
+        value: float
+        note: str = ""
+
+        def __repr__(self) -> str:
+            return f"<{self.value}>"
+
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, Spoken) and other.value == self.value
+
+        def __hash__(self) -> int:
+            return 7
+
+    @define(frozen=True)
+    class Compared:
+        """As its own comparison says, and hashed by all fields."""
+
+        value: float
+
+        def __eq__(self, other: object) -> bool:
+            return True
+
+    assert repr(Spoken(1.0)) == "<1.0>"
+    assert Spoken(1.0, "one") == Spoken(1.0, "other")
+    assert hash(Spoken(2.0)) == 7
+    assert Compared(1.0) == Compared(2.0)
+    assert hash(Compared(1.0)) == hash(Compared(1.0)) != hash(Compared(2.0))
+
+
 def test_none_of_them_changes() -> None:
     for thing in (OURS[0](1), OURS[1](1), Work()):
         name = dataclasses.fields(thing)[0].name
@@ -95,3 +129,15 @@ def test_the_standard_library_makes_classes_from_them() -> None:
         five: int = 5
 
     assert dataclasses.asdict(Further(1)) == {"one": 1, "two": 2.0, "three": [], "five": 5}
+
+
+def test_a_field_may_have_any_name() -> None:
+    @dataclass(frozen=True)
+    class Named:
+        """Names that the making of a class uses too."""
+
+        names: int
+        own: str
+        value: float
+
+    assert dataclasses.astuple(Named(1, "own", 2.0)) == (1, "own", 2.0)

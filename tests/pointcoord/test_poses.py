@@ -104,3 +104,40 @@ def test_inputs_without_meaning_are_refused() -> None:
         solve_poses(scene, {"arm_angle": 1.6, "rack": np.nan})
     with pytest.raises(InputOutOfRange):
         solve_poses(scene, {"arm_angle": 88.0, "rack": 0.0})
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_the_bound_of_a_step_holds_where_it_starts_far_off_and_is_not_far_from_the_error(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From a parabola a step leaves some 1e-6 mm: enough to be seen beside rounding."""
+    scene, rng = Scene.load(name), np.random.default_rng(13)
+    inputs = {"arm_angle": CARS[name] + rng.uniform(-0.1, 0.1, 3000), "rack": rng.uniform(-10.0, 10.0, 3000)}
+    finest = solve_poses(scene, inputs, tolerance=1e-9)
+    monkeypatch.setattr(unrelated_poses, "ORDERS", {2: 2})
+    coarse = solve_poses(scene, inputs, tolerance=1e-2)
+    assert coarse.bound.max() > 1e-6
+    moving = scene_mechanism(scene).topology.moving
+    off = np.max([np.abs(coarse.position[p] - finest.position[p]).max(axis=-1) for p in moving], axis=0)
+    assert (off <= coarse.bound + finest.bound).all()
+    far = coarse.bound > 1e-7
+    assert (off[far] / coarse.bound[far]).max() > 0.03
+
+
+def test_a_box_does_not_hold_what_lies_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its series and its proof end where it ends: such a pose goes along a path of its own."""
+    scene, rng = Scene.load("bounce"), np.random.default_rng(14)
+    inputs = {"arm_angle": 1.6 + rng.uniform(-0.05, 0.05, 3000), "rack": rng.uniform(-5.0, 5.0, 3000)}
+    right = solve_poses(scene, inputs, tolerance=1e-9)
+    in_order = unrelated_poses._Solver._in_order
+
+    def moved(solver: unrelated_poses._Solver, low: np.ndarray, half: np.ndarray) -> object:
+        order, code = in_order(solver, low, half)
+        return np.concatenate([order[1000:], order[:1000]]), code
+
+    monkeypatch.setattr(unrelated_poses._Solver, "_in_order", moved)
+    elsewhere = solve_poses(scene, inputs, tolerance=1e-9)
+    assert not elsewhere.failures
+    for point in scene_mechanism(scene).topology.moving:
+        off = np.abs(elsewhere.position[point] - right.position[point]).max(axis=-1)
+        assert (off <= elsewhere.bound + right.bound).all()

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.relative.linkage import CHASSIS, Drive, Linkage, Place
-from validate.relative.tree import Settled, Tree
+from validate.relative.linkage import Drive, Linkage
+from validate.relative.tree import Places, Settled, Tree
 
 Array = NDArray[np.float64]
 Path = Callable[[float], tuple[Array, Sequence[Array] | None]]
@@ -104,28 +104,26 @@ def row_targets(tree: Tree, inputs: Array) -> Array:
     return np.concatenate([np.zeros((*values.shape[:-1], tree.first_drive)), values], axis=-1)
 
 
-def at_place(tree: Tree, poses: Poses, place: Place) -> Array:
-    """Where a point of a body is, (N, 3)."""
-    if place.body == CHASSIS:
-        return np.broadcast_to(place.at, (len(poses.q), 3))
-    body, local = tree.place_in_body(place)
-    return np.asarray(poses.rotations[:, body] @ local + poses.translations[:, body])
+def at_places(poses: Poses, places: Places) -> Array:
+    """Where points of bodies are, (N, P, 3)."""
+    found = np.empty((len(poses.q), *places.at.shape))
+    found[...] = places.at
+    body, moving = places.body[places.moving], places.moving
+    turned = poses.rotations[:, body] @ places.at[moving][:, :, None]
+    found[:, moving] = turned[..., 0] + poses.translations[:, body]
+    return found
 
 
 def sides(tree: Tree, poses: Poses) -> Array:
     """How far each side is from where it would lock, positive as drawn, in parts of its size, (N, sides)."""
-    found = []
-    for side in tree.linkage.sides:
-        a, b, c = (at_place(tree, poses, place) for place in side.points[:3])
-        first, second, last = b - a, c - a, side.points[3]
-        if last is None:
-            value = np.einsum("ni,ni->n", first, second)
-        else:
-            third = at_place(tree, poses, last) - a
-            value = np.einsum("ni,ni->n", np.cross(first, second), third)
-        # Vectors of no length have no side.
-        found.append(value * (np.sign(side.drawn) / (side.size or 1.0)))
-    return np.stack(found, axis=-1)
+    linkage_sides = tree.linkage.sides
+    corners = at_places(poses, tree.corners).reshape(len(poses.q), len(linkage_sides), 4, 3)
+    first, second, third = (corners[:, :, k] - corners[:, :, 0] for k in (1, 2, 3))
+    flat = np.array([side.points[3] is None for side in linkage_sides])
+    volume, along = (np.cross(first, second) * third).sum(axis=-1), (first * second).sum(axis=-1)
+    # Vectors of no length have no side.
+    scale = np.array([np.sign(side.drawn) / (side.size or 1.0) for side in linkage_sides])
+    return np.asarray(np.where(flat, along, volume) * scale)
 
 
 def room(tree: Tree, count: int) -> Poses:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,17 +24,18 @@ from validate.relative.accuracy import (
     angle_claims,
     body_claims,
     deviations,
+    line_derivatives,
     line_vector,
     point_claims,
 )
 from validate.relative.angles import ANGLES, car_directions
 from validate.relative.errors import HardpointsError, InputError, PoseError
-from validate.relative.follow import Blocked, Poses, at_place, closed, follow, room
-from validate.relative.linkage import Linkage, Place
-from validate.relative.rates import Rates, point_acceleration, point_velocity, rates_of
+from validate.relative.follow import Blocked, Poses, at_places, closed, follow, room
+from validate.relative.linkage import Linkage
+from validate.relative.rates import Rates, point_accelerations, point_velocities, rates_of
 from validate.relative.suspensions import SUSPENSIONS
 from validate.relative.suspensions.steered_arm import Axes
-from validate.relative.tree import Tree, U
+from validate.relative.tree import Places, Tree, U
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
@@ -89,10 +91,15 @@ class Model:
     def closing(self) -> dict[str, float]:
         """How far each point moves when the drawing is closed, mm."""
         found = {}
-        for name, place in self.linkage.points.items():
-            moved = at_place(self.tree, self.home, place)[0] - (self.drawn[name] - self.origin) / self.unit
+        for name, place in zip(self.linkage.points, at_places(self.home, self._places)[0], strict=True):
+            moved = place - (self.drawn[name] - self.origin) / self.unit
             found[name] = self.unit * float(np.linalg.norm(moved))
         return found
+
+    @cached_property
+    def _places(self) -> Places:
+        """All points that are reported."""
+        return self.tree.together(tuple(self.linkage.points.values()))
 
     def poses(self, inputs: Inputs, times: ArrayLike, tolerance: float = 0.0) -> Poses:
         """Solve the poses at instants one after the other, from the closed drawing.
@@ -156,25 +163,18 @@ class Model:
 
     def positions(self, poses: Poses) -> Arrays:
         """Every point, (N, 3), mm."""
-        return {name: self._place(poses, place) for name, place in self.linkage.points.items()}
+        return self._by_point(at_places(poses, self._places) * self.unit + self.origin)
 
     def velocities(self, poses: Poses, motion: Motion) -> Arrays:
         """Every point's, (N, 3), mm/s."""
-        twists = motion.rates.twists
-        return {
-            name: self._timed(motion, 1, self.unit, point_velocity(self.tree, poses, twists, place))
-            for name, place in self.linkage.points.items()
-        }
+        found = point_velocities(poses, motion.rates.twists, self._places)
+        return self._by_point(self._timed(motion, 1, self.unit, found))
 
     def accelerations(self, poses: Poses, motion: Motion) -> Arrays:
         """Every point's, (N, 3), mm/s^2."""
-        twists, second = motion.rates.twists, motion.rates.accelerations
-        return {
-            name: self._timed(
-                motion, 2, self.unit, point_acceleration(self.tree, poses, twists, second, place)
-            )
-            for name, place in self.linkage.points.items()
-        }
+        rates = motion.rates
+        found = point_accelerations(poses, rates.twists, rates.accelerations, self._places)
+        return self._by_point(self._timed(motion, 2, self.unit, found))
 
     def angular_velocities(self, motion: Motion) -> Arrays:
         """Of the bodies that are reported, (N, 3), rad/s."""
@@ -229,13 +229,12 @@ class Model:
 
     def point_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays, Arrays]:
         """How far places, velocities and accelerations may be off, by point, (N, 3), mm and s."""
-        found: tuple[Arrays, Arrays, Arrays] = ({}, {}, {})
-        for name, place in self.linkage.points.items():
-            claims = point_claims(self.tree, poses, motion.rates, known, place)
-            for order, (arrays, claim) in enumerate(zip(found, claims, strict=True)):
-                arrays[name] = self._timed(motion, order, self.unit, claim)
-            found[0][name] = found[0][name] + U * np.abs(self._place(poses, place))
-        return found
+        claims = point_claims(self.tree, poses, motion.rates, known, self._places)
+        place, velocity, acceleration = (
+            self._timed(motion, order, self.unit, claim) for order, claim in enumerate(claims)
+        )
+        place += U * np.abs(at_places(poses, self._places) * self.unit + self.origin)
+        return self._by_point(place), self._by_point(velocity), self._by_point(acceleration)
 
     def body_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays]:
         """How far angular velocities and accelerations may be off, by body, (N, 3), rad and s."""
@@ -248,24 +247,22 @@ class Model:
 
     def angle_claims(self, poses: Poses, known: Deviations) -> Arrays:
         """How far the angles may be off, (N,), rad."""
+        lines = {"spin": self.linkage.spin_axis, "steering": self.linkage.steering_axis}
+        moved = {of: line_derivatives(self.tree, poses, known, line) for of, line in lines.items()}
         return {
             name: angle_claims(
-                self.tree,
-                poses,
-                known,
-                self.linkage.spin_axis if angle.of == "spin" else self.linkage.steering_axis,
-                self.directions[angle.sine],
-                self.directions[angle.cosine],
+                known, moved[angle.of], self.directions[angle.sine], self.directions[angle.cosine]
             )
             for name, angle in ANGLES.items()
         }
 
-    def _place(self, poses: Poses, place: Place) -> Array:
-        return np.asarray(at_place(self.tree, poses, place) * self.unit + self.origin)
+    def _by_point(self, array: Array) -> Arrays:
+        """Of all points, (N, P, 3), by name."""
+        return {name: array[:, k] for k, name in enumerate(self.linkage.points)}
 
     def _timed(self, motion: Motion, order: int, unit: float, array: Array) -> Array:
         """In mm and s."""
-        exponent = (-order * motion.exponent)[:, None]
+        exponent = (-order * motion.exponent).reshape(-1, *[1] * (array.ndim - 1))
         with np.errstate(over="ignore", under="ignore"):
             return np.ldexp(array, exponent) * unit if order else np.asarray(array * unit)
 

@@ -20,9 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.relative.follow import Poses, at_place
-from validate.relative.linkage import CHASSIS, Coincide, Distance, Place
-from validate.relative.tree import Tree
+from validate.relative.follow import Poses, at_places
+from validate.relative.tree import Places, Tree
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,8 @@ class Rates:
     Attributes:
         jacobian: of the rows, (N, size, size).
         first, second: rates of the joint coordinates, (N, size).
-        twists, accelerations: of the bodies, (N, bodies, 6); linear, of the point at the origin, and angular.
+        twists, accelerations: of the bodies and of the chassis, which rests, (N, bodies + 1, 6); linear, of
+            the point at the origin, and angular.
     """
 
     jacobian: Array
@@ -47,15 +47,22 @@ class Rates:
 def cross(a: Array, b: Array) -> Array:
     """The vector product, (..., 3); quicker than numpy's own."""
     a0, a1, a2, b0, b1, b2 = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], axis=-1)
+    first = a1 * b2 - a2 * b1
+    found = np.empty((*first.shape, 3))
+    found[..., 0] = first
+    found[..., 1] = a2 * b0 - a0 * b2
+    found[..., 2] = a0 * b1 - a1 * b0
+    return found
 
 
 def screw_product(a: Array, b: Array) -> Array:
     """Rate of a screw b that moves with a twist a, (..., 6)."""
     turn = a[..., 3:]
-    return np.concatenate(
-        [cross(turn, b[..., :3]) + cross(a[..., :3], b[..., 3:]), cross(turn, b[..., 3:])], axis=-1
-    )
+    turned = cross(turn, b[..., 3:])
+    found = np.empty((*turned.shape[:-1], 6))
+    found[..., :3] = cross(turn, b[..., :3]) + cross(a[..., :3], b[..., 3:])
+    found[..., 3:] = turned
+    return found
 
 
 def screws_by_joint(poses: Poses) -> Array:
@@ -64,86 +71,64 @@ def screws_by_joint(poses: Poses) -> Array:
 
 
 def chain_sum(tree: Tree, terms: Array) -> Array:
-    """Sums over each body's chain of joints, (..., size, 6) to (..., bodies, 6)."""
+    """Sums over each body's chain of joints, (..., size, 6) to (..., bodies + 1, 6); the chassis rests."""
     return np.asarray(tree.chains @ terms)
 
 
-def point_jacobian(tree: Tree, screws: Array, poses: Poses, place: Place) -> Array:
-    """Velocity of a point per rate of each joint coordinate, (N, size, 3)."""
-    if place.body == CHASSIS:
-        return np.zeros((*screws.shape[:2], 3))
-    p = at_place(tree, poses, place)[:, None, :]
-    chain = tree.chains[tree.bodies.index(place.body)][:, None]
-    return np.asarray((screws[..., :3] + cross(screws[..., 3:], p)) * chain)
+def carried(twist: Array, at: Array) -> Array:
+    """Velocity of points at places by the twists of their bodies, (..., 6) and (..., 3) to (..., 3)."""
+    return np.asarray(twist[..., :3] + cross(twist[..., 3:], at))
+
+
+def closure_gaps(tree: Tree, ends: Array) -> Array:
+    """First points of the closures less their second ones, of numbers of all ends, (..., closures, 3)."""
+    count = len(tree.linkage.closures)
+    return np.asarray(ends[..., :count, :] - ends[..., count : 2 * count, :])
+
+
+def as_rows(tree: Tree, apart: Array, along: Array, driven: Array) -> Array:
+    """Rows, (..., size).
+
+    Args:
+        apart: of the closures, (..., closures, 3). along: of the rods, (..., rods).
+        driven: of the drives, (..., drives, 3).
+    """
+    found = np.empty((*apart.shape[:-2], tree.size))
+    found[..., tree.ball_rows] = apart[..., tree.balls, :]
+    found[..., tree.rod_rows] = along
+    found[..., tree.first_drive :] = (driven * tree.directions).sum(axis=-1)
+    return found
 
 
 def row_jacobian(tree: Tree, screws: Array, poses: Poses) -> Array:
     """Of the rows, (N, size, size)."""
-    found = np.empty((len(screws), tree.size, tree.size))
-    row = 0
-    for closure in tree.linkage.closures:
-        apart = point_jacobian(tree, screws, poses, closure.first) - point_jacobian(
-            tree, screws, poses, closure.second
-        )
-        if isinstance(closure, Coincide):
-            found[:, row : row + 3] = np.swapaxes(apart, 1, 2)
-            row += 3
-        else:
-            found[:, row] = np.einsum("nki,ni->nk", apart, link(tree, poses, closure)) / closure.length
-            row += 1
-    for drive in tree.linkage.drives:
-        found[:, row] = point_jacobian(tree, screws, poses, drive.place) @ drive.direction
-        row += 1
-    return found
+    at = at_places(poses, tree.ends)
+    chain = tree.chains[tree.ends.body].T[:, :, None]
+    by_joint = carried(screws[:, :, None], at[:, None]) * chain
+    apart, rods = closure_gaps(tree, by_joint), closure_gaps(tree, at)[:, tree.rods]
+    along = (apart[:, :, tree.rods] * rods[:, None]).sum(axis=-1) / tree.lengths
+    drives = by_joint[:, :, 2 * len(tree.linkage.closures) :]
+    return np.swapaxes(as_rows(tree, apart, along, drives), 1, 2)
 
 
-def link(tree: Tree, poses: Poses, closure: Distance) -> Array:
-    """From the second to the first point of a link, (N, 3)."""
-    return at_place(tree, poses, closure.first) - at_place(tree, poses, closure.second)
+def point_velocities(poses: Poses, twists: Array, places: Places) -> Array:
+    """Of points of bodies, (N, P, 3)."""
+    return carried(twists[:, places.body], at_places(poses, places))
 
 
-def point_velocity(tree: Tree, poses: Poses, twists: Array, place: Place) -> Array:
-    """Of a point of a body, (N, 3)."""
-    if place.body == CHASSIS:
-        return np.zeros((len(twists), 3))
-    twist = twists[:, tree.bodies.index(place.body)]
-    return np.asarray(twist[:, :3] + cross(twist[:, 3:], at_place(tree, poses, place)))
-
-
-def point_acceleration(tree: Tree, poses: Poses, twists: Array, accelerations: Array, place: Place) -> Array:
-    """Of a point of a body, (N, 3)."""
-    if place.body == CHASSIS:
-        return np.zeros((len(twists), 3))
-    body = tree.bodies.index(place.body)
-    twist, acceleration = twists[:, body], accelerations[:, body]
-    p = at_place(tree, poses, place)
-    velocity = twist[:, :3] + cross(twist[:, 3:], p)
-    return np.asarray(acceleration[:, :3] + cross(acceleration[:, 3:], p) + cross(twist[:, 3:], velocity))
+def point_accelerations(poses: Poses, twists: Array, accelerations: Array, places: Places) -> Array:
+    """Of points of bodies, (N, P, 3)."""
+    at, twist = at_places(poses, places), twists[:, places.body]
+    return carried(accelerations[:, places.body], at) + cross(twist[..., 3:], carried(twist, at))
 
 
 def row_accelerations(tree: Tree, poses: Poses, twists: Array, accelerations: Array) -> Array:
     """Second rates of the rows, without what the inputs give, (N, size)."""
-    found = np.empty((len(twists), tree.size))
-    row = 0
-    for closure in tree.linkage.closures:
-        one, two = (
-            point_acceleration(tree, poses, twists, accelerations, place)
-            for place in (closure.first, closure.second)
-        )
-        if isinstance(closure, Coincide):
-            found[:, row : row + 3] = one - two
-            row += 3
-        else:
-            fast = point_velocity(tree, poses, twists, closure.first) - point_velocity(
-                tree, poses, twists, closure.second
-            )
-            products = (link(tree, poses, closure) * (one - two)).sum(-1) + (fast * fast).sum(-1)
-            found[:, row] = products / closure.length
-            row += 1
-    for drive in tree.linkage.drives:
-        found[:, row] = point_acceleration(tree, poses, twists, accelerations, drive.place) @ drive.direction
-        row += 1
-    return found
+    ends = point_accelerations(poses, twists, accelerations, tree.ends)
+    apart, rods = closure_gaps(tree, ends), closure_gaps(tree, at_places(poses, tree.ends))[:, tree.rods]
+    fast = closure_gaps(tree, point_velocities(poses, twists, tree.ends))[:, tree.rods]
+    along = ((rods * apart[:, tree.rods]).sum(-1) + (fast * fast).sum(-1)) / tree.lengths
+    return as_rows(tree, apart, along, ends[:, 2 * len(tree.linkage.closures) :])
 
 
 def drive_rates(tree: Tree, inputs: Array) -> tuple[Array, Array]:

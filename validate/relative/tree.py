@@ -40,6 +40,21 @@ STALLED = 16.0
 
 
 @dataclass(frozen=True)
+class Places:
+    """Points of bodies, taken together.
+
+    Attributes:
+        body: numbers of the bodies, that of the chassis is the last, (P,).
+        at: from the body's joint, of the chassis from the origin, (P, 3).
+        moving: those that are not of the chassis.
+    """
+
+    body: NDArray[np.int64]
+    at: Array
+    moving: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
 class Settled:
     """Where Newton's method came to an end.
 
@@ -64,7 +79,12 @@ class Tree:
         size: number of unknowns, which is that of the rows.
         noise: standard deviation of what rounding does to each row, (size,).
         bodies: names in the order of the joints; `body_of` the place of each joint coordinate's body in them;
-            `chains` whether a coordinate moves a body, (bodies, size).
+            `chains` whether a coordinate moves a body, with the chassis as the last, (bodies + 1, size).
+        ends: points of the rows: first ones of the closures, second ones, then those of the drives.
+        balls, rods: closures by number that are coincidences and distances, `ball_rows` (balls, 3) and
+            `rod_rows` their rows, `lengths` of the rods.
+        directions: of the drives, (drives, 3).
+        corners: points of the sides, (4 sides), a point that a side has not is its first one.
         driven, free: joint coordinates that the drives' rows have alone, in their order, and the others.
     """
 
@@ -112,6 +132,7 @@ class Tree:
         self.bodies = tuple(joint.body for joint in linkage.joints)
         self._describe_chains()
         self._find_driven()
+        self._describe_rows()
         self.noise = self._row_noise()
 
     @property
@@ -119,10 +140,15 @@ class Tree:
         """The reference pose."""
         return np.array(pinocchio.neutral(self._model))
 
-    def place_in_body(self, place: Place) -> tuple[int, Array]:
-        """Place of the body among `bodies`, -1 for the chassis, and the point from the body's joint, (3,)."""
-        index = -1 if place.body == CHASSIS else self.bodies.index(place.body)
-        return index, place.at - self._origins[place.body][1]
+    def number(self, body: str) -> int:
+        """Of a body among `bodies`; the chassis comes after them."""
+        return len(self.bodies) if body == CHASSIS else self.bodies.index(body)
+
+    def together(self, places: Sequence[Place]) -> Places:
+        """Several points at once."""
+        body = np.array([self.number(place.body) for place in places], dtype=np.int64)
+        at = np.array([place.at - self._origins[place.body][1] for place in places]).reshape(-1, 3)
+        return Places(body, at, np.flatnonzero(body < len(self.bodies)))
 
     def rows(self, q: Array, targets: Array, gaps: Sequence[Array] | None = None) -> Array:
         """The closure equations at a pose, in a workspace that the next call overwrites, (size,).
@@ -218,7 +244,7 @@ class Tree:
         self.parents = np.array(
             [-1 if j.parent == CHASSIS else self.bodies.index(j.parent) for j in self.linkage.joints]
         )
-        self.chains = np.zeros((len(self.bodies), self.size))
+        self.chains = np.zeros((len(self.bodies) + 1, self.size))
         for k, body in enumerate(self.bodies):
             name = body
             while name != CHASSIS:
@@ -232,6 +258,24 @@ class Tree:
             raise ValueError("a drive moves a body on more than one joint coordinate")
         self.driven = np.concatenate(columns)
         self.free = np.setdiff1d(np.arange(self.size), self.driven)
+
+    def _describe_rows(self) -> None:
+        closures, sides = self.linkage.closures, self.linkage.sides
+        self.ends = self.together(
+            [
+                *(closure.first for closure in closures),
+                *(closure.second for closure in closures),
+                *(drive.place for drive in self.linkage.drives),
+            ]
+        )
+        self.balls = np.array([k for *_, k in self._balls], dtype=np.int64)
+        first_rows = np.array([row for row, *_ in self._balls], dtype=np.int64)
+        self.ball_rows = first_rows[:, None] + np.arange(3)
+        self.rods = np.array([k for *_, k, _ in self._rods], dtype=np.int64)
+        self.rod_rows = np.array([row for row, *_ in self._rods], dtype=np.int64)
+        self.lengths = np.array([length for *_, length in self._rods])
+        self.directions = np.array([drive.direction for drive in self.linkage.drives])
+        self.corners = self.together([p or side.points[0] for side in sides for p in side.points])
 
     def _row_noise(self) -> Array:
         noise = np.zeros(self.size)

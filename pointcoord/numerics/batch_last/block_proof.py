@@ -20,13 +20,13 @@ go together, so that one that moves little counts as much as one that moves far.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.batch_last.column_map import ColumnMap
 from pointcoord.numerics.batch_last.elimination import Elimination
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.structure import Structure
 
 Array = NDArray[np.float64]
@@ -70,7 +70,7 @@ class BlockProof:
         turning, all_turning: sum |2 B_rjk| over a row's own block, and over all unknowns, of each entry of X.
         factors: entries of X and of C_u(p) in each product of a sum (X C_b(p))_ij, sorted by how often their
             sum has had one. layers: how many sums have a first product, a second, and so on.
-        by_row: g_j / g_i where a sum is of unknown i, (unknowns, sums).
+        by_row: g_j / g_i where a sum is of unknown i, (unknowns, sums). diagonal: 1 where i = j, (sums,).
         weights: g, the largest of each block 1, (unknowns,).
     """
 
@@ -82,6 +82,7 @@ class BlockProof:
     factors: tuple[Indices, Indices]
     layers: tuple[int, ...]
     by_row: Array
+    diagonal: Array
     weights: Array
 
     def lipschitz(self, inverse: Array) -> Array:
@@ -104,14 +105,34 @@ class BlockProof:
         Args:
             inverse: entries of X. along: entries of C_u(p), shape (entries, members).
         """
+        total = self._products(inverse, along)
+        return self.by_block(self.by_row @ np.abs(total, out=total))
+
+    def defect(self, inverse: Array, jacobian: Array, doubt: Array) -> Array:
+        """|I - X C_b| of each block, at most, shape (blocks, members).
+
+        Args:
+            inverse: entries of X. jacobian: of C_u, and how far they may be off, (entries, members).
+        """
+        total = self._products(inverse, jacobian)
+        total -= self.diagonal[:, None]
+        # A sum of so many products, and the 1 taken from it.
+        gamma = (len(self.layers) + 2) * UNIT_ROUNDOFF
+        rounded = self._products(np.abs(inverse), gamma * np.abs(jacobian) + doubt)
+        rounded += np.abs(total, out=total)
+        rounded += UNIT_ROUNDOFF * self.diagonal[:, None]
+        return self.by_block(self.by_row @ rounded)
+
+    def _products(self, inverse: Array, entries: Array) -> Array:
+        """The sums (X C_b)_ij that are not zero by their pattern, shape (sums, members)."""
         one, other = self.factors
         products = inverse.take(one, axis=0)
-        products *= along.take(other, axis=0)
+        products *= entries.take(other, axis=0)
         total, first = products[: self.layers[0]], self.layers[0]
         for count in self.layers[1:]:
             total[:count] += products[first : first + count]
             first += count
-        return self.by_block(self.by_row @ np.abs(total, out=total))
+        return total
 
     def largest(self, values: Array) -> Array:
         """Norm of the unknowns of each block, shape (blocks, members)."""
@@ -222,7 +243,7 @@ def block_proof(columns: ColumnMap, plan: Elimination, structure: Structure, g: 
             )
         )
         low += len(mine)
-    factors, layers, by_unknown = _products(plan, entries, block_of, g)
+    factors, layers, by_unknown, diagonal = _products(plan, entries, block_of, g)
     return BlockProof(
         tuple(couplings),
         rows,
@@ -232,13 +253,14 @@ def block_proof(columns: ColumnMap, plan: Elimination, structure: Structure, g: 
         factors,
         layers,
         by_unknown,
+        diagonal,
         g,
     )
 
 
 def _products(
     plan: Elimination, entries: tuple[tuple[int, int], ...], block_of: dict[int, int], g: Array
-) -> tuple[tuple[Indices, Indices], tuple[int, ...], Array]:
+) -> tuple[tuple[Indices, Indices], tuple[int, ...], Array, Array]:
     """The products in X C_b(p), in layers."""
     in_row: dict[int, list[tuple[int, int]]] = {}
     for place, (row, column) in enumerate(plan.entries):
@@ -257,4 +279,5 @@ def _products(
     by_row = np.zeros((len(g), len(by_length)))
     for place, ((i, j), _) in enumerate(by_length):
         by_row[i, place] = g[j] / g[i]
-    return (flat[:, 0].copy(), flat[:, 1].copy()), tuple(len(layer) for layer in layers), by_row
+    diagonal = np.array([float(i == j) for (i, j), _ in by_length])
+    return (flat[:, 0].copy(), flat[:, 1].copy()), tuple(len(layer) for layer in layers), by_row, diagonal

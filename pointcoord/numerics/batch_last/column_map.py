@@ -12,12 +12,12 @@ b hold no constant: steps, tangents and terms of a series.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.quadratic import Product, QuadraticMap
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -192,6 +192,20 @@ class ColumnMap:
         spread = one * (gamma * other + doubt.take(right, axis=0))
         spread += doubt.take(left, axis=0) * (other + doubt.take(right, axis=0))
         return np.asarray(np.abs(q) @ spread + np.abs(linear) @ (gamma * size + doubt))
+
+    def jacobian_uncertainty(self, d: Array, data: Array) -> Array:
+        """How far the computed entries of C_u(y) may be from the exact ones, shape (entries, members).
+
+        Args:
+            d: differences, or what is at least their magnitudes. data: uncertainty of every coordinate,
+                shape (size,), or (size, members).
+        """
+        first, second = self.ends
+        _, by_differences, alone = self._jacobian
+        # A difference is rounded once, and a sum as often as it has terms.
+        gamma = (int(np.count_nonzero(by_differences, axis=-1).max(initial=0)) + 2) * UNIT_ROUNDOFF
+        doubt = gamma * np.abs(d) + (data[first] + data[second]).reshape(len(first), -1)
+        return np.asarray(np.abs(by_differences) @ doubt + gamma * np.abs(alone)[:, None])
 
     @cached_property
     def convolution(self) -> Convolution:

@@ -15,12 +15,12 @@ the way), and whatever it gives is checked by the residual of what was solved fo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.data_classes import dataclass
 from pointcoord.numerics.structure import Block
 
 Array = NDArray[np.float64]

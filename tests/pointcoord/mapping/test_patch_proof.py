@@ -14,9 +14,9 @@ from pointcoord.linkage.drives import ArmAngle, Travel
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import monomials
 from pointcoord.patches.expansion import expand_in_inputs
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.multi_index import powers, products

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pointcoord.numerics import block_inverse, quadratic
-from pointcoord.numerics.block_inverse import inverse_by_blocks
+from pointcoord.numerics.block_inverse import inverse_by_blocks, product_of_few_entries
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
@@ -68,6 +68,33 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
     turned = factorise(matrix[[1]] * np.where(np.arange(N) == 7, -1.0, 1.0))
     replaced = by_blocks.replaced(np.array([1]), turned)
     assert np.array_equal(replaced.orientation, plain.orientation * [1.0, -1.0, 1.0])
+
+
+@pytest.mark.parametrize("batch", [(), (1,), (2, 3)])
+def test_by_blocks_a_nearby_matrix_with_entries_of_its_own_is_solved_with_its_own_residual(
+    batch: tuple[int, ...],
+) -> None:
+    rng = np.random.default_rng(7)
+    matrix, right = hidden_triangle(rng, batch), rng.uniform(-1.0, 1.0, (*batch, N))
+    change = 1e-9 * rng.uniform(-1.0, 1.0, matrix.shape) * (rng.uniform(0.0, 1.0, (N, N)) < 0.02)
+    factors = factorise(matrix)
+    assert factors.substitution is not None
+    moved = factors.moved(matrix + change)
+    for x, exact in ((factors.solve(right), matrix), (moved.solve(right), matrix + change)):
+        wanted = np.linalg.solve(exact, right[..., None])[..., 0]
+        # Rounding; of the moved one also z^2, z = |I - X A| <= 120 entries of 1e-9 times |X|, a few.
+        allowed = (8 * EPS * factors.condition + 1e-13) * np.abs(wanted).max(axis=-1)
+        assert (np.abs(x - wanted).max(axis=-1) <= allowed).all()
+
+
+@pytest.mark.parametrize("columns", [30, N, 200])
+def test_products_with_few_entries_are_the_products(columns: int) -> None:
+    rng = np.random.default_rng(9)
+    left = rng.uniform(-1.0, 1.0, (2, 1, N, N))
+    right = rng.uniform(-1.0, 1.0, (3, N, columns)) * (rng.uniform(0.0, 1.0, (N, columns)) < 0.03)
+    found = product_of_few_entries(left, right)
+    # Sums of at most N products of numbers below 1, of either way.
+    assert np.abs(found - left @ right).max() <= 2 * N * EPS
 
 
 def test_one_large_matrix_is_factorised_by_blocks_as_a_batch_is() -> None:

@@ -79,13 +79,16 @@ def test_derivatives_by_the_rows_are_what_an_error_in_a_row_does(car: SampleCar)
     for row in range(model.tree.size):
         ahead, behind = (with_rows_off(model, row, s * step, laws) for s in (1.0, -1.0))
         for name, place in model.linkage.points.items():
-            found = point_derivatives(model.tree, poses, known.by_pose, place)
+            found = point_derivatives(poses, known.motion, model.tree.together((place,)))
             for order, quantity in enumerate(("position", "velocity", "acceleration")):
                 slope = (ahead[quantity][name] - behind[quantity][name]) / (2.0 * step)
                 largest = max(np.abs(a).max() for a in ahead[quantity].values()) + model.unit
                 # step^2 of third derivatives, some hundreds of the largest number.
                 np.testing.assert_allclose(
-                    found[order][:, row] * scales[order], slope, atol=1e-6 * largest, err_msg=f"{row} {name}"
+                    found[order][:, row, 0] * scales[order],
+                    slope,
+                    atol=1e-6 * largest,
+                    err_msg=f"{row} {name}",
                 )
 
 

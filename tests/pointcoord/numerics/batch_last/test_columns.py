@@ -1,5 +1,7 @@
 """Members as columns give what the plain form gives them one by one."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -151,3 +153,41 @@ def test_omega_of_a_block_bounds_how_far_its_jacobian_turns(name: str) -> None:
         assert (norm <= omega[number] * (1.0 + 1e-12)).all()
         along = columns.jacobian_along(columns.differences(step.T))
         np.testing.assert_allclose(proof.turns(inverse, along)[number], norm, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("fault", [0.0, 1e-6])
+def test_the_defect_of_inverses_of_blocks_is_bounded_by_what_fractions_say(name: str, fault: float) -> None:
+    """Of good inverses it is rounding, of ones that are off it is that."""
+    mechanism, columns, plan, y = case(name)
+    system, n = mechanism.map, mechanism.map.unknowns
+    weights = np.random.default_rng(9).uniform(0.3, 1.0, n)
+    proof = block_proof(columns, plan, system.structure, weights)
+    d = columns.differences(y.T)
+    factors = plan.factorise(columns.jacobian(d))
+    inverse = factors.inverse() * (1.0 + fault)
+    doubt = columns.jacobian_uncertainty(d, np.zeros(system.size))
+    bound = proof.defect(inverse, factors.entries, doubt)
+    assert bound.max() < max(1e-11, 100.0 * fault)
+    member = 2
+    exact = [[Fraction(0)] * n for _ in range(n)]
+    for row, products in enumerate(system.rows):
+        for p in products:
+            for one, other in ((p.left, p.right), (p.right, p.left)):
+                size = Fraction(p.coefficient) * (
+                    Fraction(y[member, other[0]]) - Fraction(y[member, other[1]])
+                )
+                for unknown, sign in zip(one, (1, -1), strict=True):
+                    if unknown < n:
+                        exact[row][unknown] += sign * size
+    entries = dict(zip(plan.inverse_program.entries, inverse[:, member], strict=True))
+    for number, block in enumerate(system.structure.blocks):
+        largest = Fraction(0)
+        for i in block.unknowns:
+            total = Fraction(0)
+            for j in block.unknowns:
+                one = sum((Fraction(entries.get((i, r), 0.0)) * exact[r][j] for r in block.rows), Fraction(0))
+                total += abs(int(i == j) - one) * Fraction(weights[j]) / Fraction(weights[i])
+            largest = max(largest, total)
+        assert largest <= bound[number, member]
+        assert fault == 0.0 or bound[number, member] <= 2 * largest
