@@ -28,6 +28,8 @@ from absolute.solution import Array
 
 # Instants from one that is computed to the next, at first.
 APART = 128
+# A motion of so many instants or fewer is computed: its instants are seldom near enough, and trying costs.
+SHORT = 2 * APART
 # An interval of so many or fewer is computed: another middle and its halves would cost as much.
 FEWEST = 8
 # Instants computed at once: what stays in fast memory.
@@ -98,6 +100,9 @@ def sampled(
                     float(numbers[place]),
                 )
 
+    if count <= SHORT:
+        compute(np.arange(count), hold=False)
+        return found, numbers
     ends = np.unique(np.append(np.arange(0, count, APART), count - 1))
     compute(ends)
     starts, stops = ends[:-1], ends[1:]
