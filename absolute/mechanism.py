@@ -11,6 +11,7 @@ from absolute.branch_signs import BranchSigns, sign_vectors
 from absolute.description import Model
 from absolute.drawing import Drawing
 from absolute.features import Features
+from absolute.groups import groups_of
 from absolute.laws import LAWS
 from absolute.rows import rows_of
 from absolute.solution import Array
@@ -36,6 +37,7 @@ class Mechanism:
 
     Attributes:
         model, drawing, stack, branch_signs: what was described, its lengths, its rows, its branch.
+        groups: bodies that their rows fix one after the other.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
@@ -50,6 +52,7 @@ class Mechanism:
         vectors = sign_vectors(model, drawing, rows.senses, features)
         self.stack = RowStack(rows, features)
         self.branch_signs = BranchSigns(model, vectors, features)
+        self.groups = groups_of(self.stack.first, self.stack.second, len(drawing.bodies))
         self.joint_rows = self.stack.count - len(model.inputs)
         self.pin_model = pin.Model()
         for body in model.moving:
@@ -66,6 +69,8 @@ class Mechanism:
         count = len(drawing.bodies)
         self._rotations = as_strided(rotation, (count, 3, 3), (apart, *rotation.strides))
         self._origins = as_strided(origin, (count, 3), (apart, *origin.strides))
+        # A rotation and the translation after it, column by column.
+        self._placements = as_strided(rotation, (count, 12), (apart, rotation.itemsize))
         self._laws = [
             (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
         ]
@@ -90,12 +95,14 @@ class Mechanism:
 
     def poses_of(self, q: Array) -> Poses:
         """Poses at N configurations (N, 7 * moving bodies): (N, bodies, 3, 3) and (N, bodies, 3)."""
-        many = Poses(np.empty((len(q), *self._rotations.shape)), np.empty((len(q), *self._origins.shape)))
-        for each, rotation, origin in zip(q, *many, strict=True):
-            pin.forwardKinematics(self.pin_model, self.pin_data, each)
-            rotation[...] = self._rotations
-            origin[...] = self._origins
-        return many
+        held = np.empty((len(q), *self._placements.shape))
+        model, data, placements = self.pin_model, self.pin_data, self._placements
+        for each, found in zip(q, held, strict=True):
+            pin.forwardKinematics(model, data, each)
+            found[...] = placements
+        # Pinocchio keeps the columns of a rotation one after the other.
+        rotation = held[..., :9].reshape(*held.shape[:-1], 3, 3).swapaxes(-1, -2)
+        return Poses(rotation.copy(), held[..., 9:].copy())
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configuration after a step [o', w] per body in world axes; Pinocchio takes body axes."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.backend import eigenpy
+from absolute.groups import SERVES, Groups, inverses, magnitude, times
 from absolute.mechanism import Mechanism
 from absolute.newton import MOST_CORRECTIONS, rounding_of
 from absolute.precision import EPS
@@ -17,6 +18,11 @@ BATCH = 64
 
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 32 * EPS
+
+# A solution whose last correction is this share of it is left with SERVES of that: rounding.
+SETTLED = EPS / SERVES
+# From an error of SERVES to rounding takes four; what takes more than eight is all but singular.
+MOST_REFINEMENTS = 8
 
 
 class Refined(NamedTuple):
@@ -53,10 +59,11 @@ class Refined(NamedTuple):
 
 
 def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> Refined:
-    """Newton with a fresh Jacobian each time until corrections and rows are rounding, for all together.
+    """Newton until corrections and rows are rounding, for all together.
 
-    The Jacobian of the last, negligible correction is that of the pose itself: its factors serve
-    velocity and acceleration,  J v = rate,  J a = second - drift(v).
+    The inverses of the Jacobians serve on as long as the pose moves so little that each further correction
+    is some SERVES of the one before; rates are solved with the Jacobian of the pose itself,
+        J v = rate,    J a = second - drift(v).
 
     Args:
         found: configurations close to their poses.
@@ -68,41 +75,41 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     rotation, origin = mechanism.poses_of(q)
     placed = stack.place(rotation, origin)
     jacobian = stack.jacobian(placed)
-    steps = solved_once(jacobian, targets[0] - placed.values)
+    groups = mechanism.groups
+    inverse, signs = inverses(groups, jacobian)
+    steps = solved(groups, jacobian, inverse, targets[0] - placed.values)
     first = previous = lengths(steps)
-    factors: list[eigenpy.PartialPivLU] = [None] * len(q)
+    # How far a pose may move so that its inverse is off by no more than SERVES.
+    reach = SERVES / magnitude(inverse)
     pending = np.arange(len(q))
-    velocity = np.empty((len(q) if rates else 0, stack.count))
     for _ in range(MOST_CORRECTIONS):
-        order = pending.tolist()
+        whole = pending.size == len(q)
         q[pending] = mechanism.moved_all(q[pending], rotation[pending], steps)
         corrections[pending] += 1
         poses = mechanism.poses_of(q[pending])
         fresh = stack.place(*poses)
         renewed = stack.jacobian(fresh)
-        if len(order) == len(q):
+        if whole:
             (rotation, origin), placed, jacobian = poses, fresh, renewed
         else:
             rotation[pending], origin[pending], jacobian[pending] = *poses, renewed
-            for whole, part in zip(placed, fresh, strict=True):
-                whole[pending] = part
-        for instant, each in zip(order, renewed, strict=True):
-            factors[instant] = eigenpy.PartialPivLU(each)
-        those, left = [factors[instant] for instant in order], targets[0, pending] - fresh.values
-        if rates:
-            # Both at once: with factors that small, calls cost more than numbers.
-            both = solved(those, np.stack((left, targets[1, pending]), axis=-1))
-            steps, velocity[pending] = both[..., 0], both[..., 1]
-        else:
-            steps = solved(those, left)
+            for kind, part in zip(placed, fresh, strict=True):
+                kind[pending] = part
+        # Negated, so that what is not a number is stale.
+        stale = pending[~(previous[pending] <= reach[pending])]
+        if stale.size:
+            inverse[stale], signs[stale] = inverses(groups, jacobian[stale])
+            reach[stale] = SERVES / magnitude(inverse[stale])
+        of = slice(None) if whole else pending
+        steps = times(groups, inverse[of], targets[0, of] - fresh.values)
         size = lengths(steps)
         # Negated, so that what is not a number counts as more to do.
         more = ~(size <= ROUNDING)
         for place in np.flatnonzero(more & (size > 0.5 * previous[pending])).tolist():
-            more[place] = not size[place] <= rounding_of(factors[order[place]].rcond())
+            more[place] = not size[place] <= rounding_of(eigenpy.PartialPivLU(renewed[place]).rcond())
         # Near a fold corrections become as small as rounding before the rows close.
         more |= ~stack.closed(fresh, targets[0, pending])
-        if len(order) == len(q):
+        if whole:
             previous = size
         else:
             previous[pending] = size
@@ -111,12 +118,13 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
             break
     closed = np.ones(len(q), dtype=np.bool_)
     closed[pending] = False
-    acceleration = np.empty((0, stack.count))
+    velocity = acceleration = np.empty((0, stack.count))
     if rates:
+        velocity = solved(groups, jacobian, inverse, targets[1])
         moving = np.zeros((*origin.shape[:2], 2, 3))
         moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
         drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
-        acceleration = solved(factors, targets[2] - drift)
+        acceleration = solved(groups, jacobian, inverse, targets[2] - drift)
     left = np.zeros((len(q), 3, stack.count))
     left[:, 0] = targets[0] - placed.values
     if rates:
@@ -124,9 +132,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         left[:, 2] = targets[2] - drift - np.matvec(jacobian, acceleration)
     residual = np.abs(left[:, 0]).max(axis=1)
     kept = mechanism.branch_signs.kept(placed.world)
-    sure = np.ones(len(q), dtype=np.bool_)
-    for place in np.flatnonzero(found.predicted).tolist():
-        sure[place] = first[place] <= SMALL and factors[place].determinant() * found.sign > 0
+    sure = ~found.predicted | ((first <= SMALL) & (signs == found.sign))
     return Refined(
         rotation,
         origin,
@@ -149,15 +155,17 @@ def lengths(steps: Array) -> Array:
     return np.asarray(np.sqrt(np.vecdot(steps, steps)))
 
 
-def solved(factors: list[eigenpy.PartialPivLU], right_hand: Array) -> Array:
-    """Solutions (N, rows), or (N, rows, some), of N factorised systems for such right-hand sides."""
-    return np.array([lu.solve(column) for lu, column in zip(factors, right_hand, strict=True)])
+def solved(groups: Groups, jacobian: Array, inverse: Array, right_hand: Array) -> Array:
+    """Solutions (N, rows) of N systems by inverses that are off by some SERVES.
 
-
-def solved_once(jacobian: Array, right_hand: Array) -> Array:
-    """Solutions (N, rows) of N systems (N, rows, rows) whose factors serve nothing else."""
-    try:
-        solution = np.asarray(np.linalg.solve(jacobian, right_hand[..., None])[..., 0], dtype=float)
-    except np.linalg.LinAlgError:  # one of them is singular to the last digit: not a number for that one
-        return solved([eigenpy.PartialPivLU(each) for each in jacobian], right_hand)
+    Each is corrected by what is left of its equation, which leaves SERVES of its error, until a further
+    correction would be rounding: so it is as good as by factors of the matrix itself (Higham, ch. 12).
+    """
+    solution = times(groups, inverse, right_hand)
+    for _ in range(MOST_REFINEMENTS):
+        change = times(groups, inverse, right_hand - np.matvec(jacobian, solution))
+        solution += change
+        # What is not a number is never corrected.
+        if not (lengths(change) > SETTLED * lengths(solution)).any():
+            break
     return solution

@@ -16,8 +16,8 @@ from absolute.vectors import cross
 
 # Jacobians at once when condition numbers or errors are asked for: what stays in fast memory.
 BATCH = 32
-# Instants among which errors are interpolated: coefficients of all of them at once are some 20 MB at most.
-STRETCH = 512
+# Instants among which errors are interpolated: coefficients of an eighth of them at most are held, 20 MB.
+STRETCH = 4096
 
 
 class Asked(NamedTuple):

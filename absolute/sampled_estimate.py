@@ -28,6 +28,10 @@ from absolute.solution import Array
 
 # Instants from one that is computed to the next, at first.
 APART = 128
+# A motion of so many instants or fewer is computed: its instants are seldom near enough, and trying costs.
+SHORT = 2 * APART
+# An interval of so many or fewer is computed: another middle and its halves would cost as much.
+FEWEST = 8
 # Instants computed at once: what stays in fast memory.
 BATCH = 32
 
@@ -75,7 +79,7 @@ def sampled(
     found, numbers = np.empty((0, 0, 0)), np.ones(count)
     held: dict[int, Computed] = {}
 
-    def compute(places: Places) -> None:
+    def compute(places: Places, hold: bool = True) -> None:
         nonlocal found
         for start in range(0, len(places), BATCH):
             these = places[start : start + BATCH]
@@ -88,7 +92,7 @@ def sampled(
                 stack = mechanism.stack
                 numbers[these] = np.linalg.cond(stack.jacobian(stack.place(part.rotation, part.origin)))
             magnitudes = [np.abs(kind) for kind in made.lengths]
-            for row, place in enumerate(these.tolist()):
+            for row, place in enumerate(these.tolist() if hold else ()):
                 held[place] = Computed(
                     Lengths(*(kind[row] for kind in magnitudes)),
                     made.rounded[:, row],
@@ -96,11 +100,16 @@ def sampled(
                     float(numbers[place]),
                 )
 
+    if count <= SHORT:
+        compute(np.arange(count), hold=False)
+        return found, numbers
     ends = np.unique(np.append(np.arange(0, count, APART), count - 1))
     compute(ends)
     starts, stops = ends[:-1], ends[1:]
-    while (some := stops - starts > 1).any():
-        starts, stops = starts[some], stops[some]
+    while len(starts):
+        few = stops - starts <= FEWEST
+        compute(_inside(starts[few], stops[few])[1], hold=False)
+        starts, stops = starts[~few], stops[~few]
         share, straight = along(z, starts, stops)
         middles = (starts + stops) // 2
         compute(middles)
@@ -114,11 +123,8 @@ def sampled(
         share, straight = along(z, *halves)
         joined &= straight
         for a, b in zip(*(half[joined].tolist() for half in halves), strict=True):
-            if b - a > 1:
-                inner = slice(a + 1, b)
-                found[:, inner], numbers[inner] = interpolated(
-                    held[a], held[b], share[inner, None], known[inner]
-                )
+            inner = slice(a + 1, b)
+            found[:, inner], numbers[inner] = interpolated(held[a], held[b], share[inner, None], known[inner])
         starts, stops = (half[~joined] for half in halves)
     return found, numbers
 
@@ -130,9 +136,7 @@ def along(z: Array, starts: Places, stops: Places) -> tuple[Array, NDArray[np.bo
     Args:
         z: (3, N, inputs) targets and their rates.
     """
-    counts = stops - starts - 1
-    owner = np.repeat(np.arange(len(starts)), counts)
-    inner = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts) + starts[owner] + 1
+    owner, inner = _inside(starts, stops)
     first, way = z[:, starts], z[:, stops] - z[:, starts]
     sizes = np.sqrt(np.maximum(*(np.vecdot(z[:, end], z[:, end]) for end in (starts, stops))))
     sizes[0] = np.sqrt(np.vecdot(way[0], way[0]))
@@ -150,6 +154,13 @@ def along(z: Array, starts: Places, stops: Places) -> tuple[Array, NDArray[np.bo
     shares = np.zeros(z.shape[1])
     shares[inner] = share
     return shares, np.bincount(owner, ~good, len(starts)) == 0
+
+
+def _inside(starts: Places, stops: Places) -> tuple[Places, Places]:
+    """Of all instants inside some intervals, the number of the interval and their places."""
+    counts = stops - starts - 1
+    owner = np.repeat(np.arange(len(starts)), counts)
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts) + starts[owner] + 1
 
 
 def fit(first: Computed, middle: Computed, last: Computed, share: float) -> bool:

@@ -39,8 +39,9 @@ def solve(
             points, mm, mm/s, mm/s^2; None for a chassis at rest as drawn.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        errors: also an estimate of the error of each quantity at each instant (see `estimate`); it
-            costs about twice as much as the solution itself, of which nothing changes.
+        errors: also an estimate of the error of each quantity at each instant (see `estimate`), of which
+            long smooth motions have some per cent more (see `sampled_estimate`). It costs several times as
+            much as the solution itself, and half of it where those are dense; nothing of that changes.
         input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
             where it is not given. What the chassis motion is off comes on top of every point alike.
         effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives

@@ -79,7 +79,7 @@ def test_an_interpolated_error_is_no_smaller_than_computed_and_little_larger(
 ) -> None:
     both = compared(model, kind.inputs(WAYS[way](np.linspace(0.0, 1.0, 800))), monkeypatch, rates)
     assert both.every == 800
-    assert both.computed < 0.3 * both.every
+    assert both.computed < 0.5 * both.every
     # Another order of sums of positive numbers: some roundings.
     assert both.least >= 1.0 - 1e-12
     # MARGIN, what the middle allows, and dust on top of a number that is not much more.
@@ -89,9 +89,9 @@ def test_an_interpolated_error_is_no_smaller_than_computed_and_little_larger(
 def test_unrelated_instants_are_all_computed(
     kind: kinds.Kind, model: absolute.Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shuffled = np.random.default_rng(3).permutation(np.linspace(0.0, 1.0, 200))
+    shuffled = np.random.default_rng(3).permutation(np.linspace(0.0, 1.0, 300))
     both = compared(model, kind.inputs(shuffled), monkeypatch)
-    assert both.computed == both.every == 200
+    assert both.computed == both.every == 300
     assert both.least == both.most == 1.0
 
 
@@ -100,8 +100,8 @@ def test_an_instant_beside_the_others_is_computed(
 ) -> None:
     # All but one stand still: a rate there, and a place there, are seen by no middle.
     for column, off in ((0, 1e-3), (1, 0.5), (2, 0.5)):
-        inputs = kind.inputs(np.full(129, 0.5))
+        inputs = kind.inputs(np.full(260, 0.5))
         inputs["arm_angle"][50, column] += off
         both = compared(model, inputs, monkeypatch)
-        assert both.computed < 30
+        assert both.computed < 40
         assert both.least >= 1.0 - 1e-12

@@ -1,0 +1,162 @@
+r"""Groups of bodies that their rows fix one after the other, and the inverses of Jacobians by these.
+
+The bodies of a group have as many rows among themselves, the chassis and the groups before as they have
+freedoms: a driven link alone, then what hangs between such (Assur). In this order of bodies and rows the
+Jacobian J is block triangular, and so is its inverse K,
+
+    K_gg = J_gg^-1,    K_gp = -K_gg J_gp K_pp
+
+with p all groups before g: small inverses and a few products. det J is the product of those of the blocks,
+but for the sign of both orders.
+
+Successive instants are near each other and share the inverse K of a block J: with E = I - K J', |E| < 1,
+
+    (I + E) K,    (I + E^2) (I + E) K,    (I + E^4) (I + E^2) (I + E) K
+
+are off from the inverse of J' by E to the power 2, 4, 8 (Newton, Schulz), and det J' has the sign of det J,
+since no eigenvalue of K J' = I - E is zero on the way from E to nothing.
+"""
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from absolute.solution import Array
+
+Places = NDArray[np.intp]
+
+# An inverse that is off by some such share of itself serves to solve and to correct.
+SERVES = 1e-4
+# Successive instants that share an inverse, tried in turn, and how near their blocks must be for that.
+TOGETHER = (32, 4)
+NEIGHBOUR = 0.3
+
+
+class Groups(NamedTuple):
+    """The order in which a Jacobian is block triangular.
+
+    Attributes:
+        rows, columns: places of the Jacobian's rows and columns in that order.
+        column_place: where each column of the Jacobian is in it.
+        ends: after how many each group ends.
+        sign: of the determinant of both orders together.
+    """
+
+    rows: Places
+    columns: Places
+    column_place: Places
+    ends: tuple[int, ...]
+    sign: float
+
+
+def groups_of(first: Places, second: Places, bodies: int) -> Groups:
+    """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
+
+    Args:
+        first, second: the two bodies of each row.
+    """
+    done, rows, columns, ends = {0}, list[int](), list[int](), list[int]()
+    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
+    while len(done) < bodies:
+        group, own = _next(pairs, done, bodies)
+        done |= group
+        rows += own
+        columns += [6 * (body - 1) + place for body in sorted(group) for place in range(6)]
+        ends.append(len(columns))
+    orders = np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp)
+    signs = [np.linalg.det(np.eye(len(order))[order]) for order in orders]
+    sign = float(np.round(np.prod(signs)))
+    return Groups(*orders, np.argsort(orders[1]), tuple(ends), sign)
+
+
+def _next(pairs: list[tuple[int, int]], done: set[int], bodies: int) -> tuple[set[int], list[int]]:
+    """The smallest group that the next rows fix, and these; all that is left if there is no smaller one."""
+    left = sorted(set(range(bodies)) - done)
+    for count in range(1, len(left)):
+        for some in combinations(left, count):
+            group = set(some)
+            known = done | group
+            own = [row for row, pair in enumerate(pairs) if set(pair) <= known and not set(pair) <= done]
+            if len(own) == 6 * count:
+                return group, own
+    return set(left), [row for row, pair in enumerate(pairs) if not set(pair) <= done]
+
+
+def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
+    """Inverses of Jacobians (N, rows, rows) of successive instants, and signs (N,) of their determinants.
+
+    The inverses are in the order of the groups and off by some SERVES of themselves; not numbers, with a sign
+    of 0, where one is singular.
+    """
+    count, size = jacobian.shape[:2]
+    # Column by column, as they are made.
+    flat = jacobian.swapaxes(-1, -2).reshape(count, -1)
+    places = groups.columns * size + groups.rows[:, None]
+    inverse = np.zeros((count, size, size))
+    signs = np.full(count, groups.sign)
+    start = 0
+    for end in groups.ends:
+        own, before = slice(start, end), slice(start)
+        found, sign = _of_block(flat.take(places[own, own], 1))
+        inverse[:, own, own] = found
+        signs *= sign
+        if start:
+            coupling = flat.take(places[own, before], 1)
+            inverse[:, own, before] = -found @ (coupling @ inverse[:, before, before])
+        start = end
+    return inverse, signs
+
+
+def _of_block(block: Array) -> tuple[Array, Array]:
+    """Inverses of N blocks and signs of their determinants, shared among neighbours that are near enough."""
+    count, size = block.shape[:2]
+    inverse, signs = np.empty_like(block), np.empty(count)
+    left = np.arange(count)
+    for together in TOGETHER:
+        if left.size < together:
+            continue
+        number = np.arange(left.size) // together
+        middles = np.minimum(np.arange(0, left.size, together) + together // 2, left.size - 1)
+        shared, sign = directly(block[left[middles]])
+        found = shared[number]
+        error = np.eye(size) - found @ block[left]
+        off = magnitude(error)
+        near = off <= NEIGHBOUR
+        if not near.all():
+            found, error = found[near], error[near]
+        these, share = left[near], float(off[near].max(initial=0.0))
+        found += error @ found
+        while share * share > SERVES:
+            error, share = error @ error, share * share
+            found += error @ found
+        inverse[these], signs[these] = found, sign[number[near]]
+        left = left[~near]
+    if left.size:
+        inverse[left], signs[left] = directly(block[left])
+    return inverse, signs
+
+
+def directly(block: Array) -> tuple[Array, Array]:
+    """Inverses of N blocks and signs of their determinants by factors of each."""
+    try:
+        inverse = np.linalg.inv(block)
+    except np.linalg.LinAlgError:  # one of them is singular to the last digit
+        if len(block) == 1:
+            return np.full_like(block, np.nan), np.zeros(1)
+        each = [directly(matrix[None]) for matrix in block]
+        return np.concatenate([found for found, _ in each]), np.concatenate([sign for _, sign in each])
+    return np.asarray(inverse), np.asarray(np.linalg.slogdet(block)[0])
+
+
+def magnitude(matrices: Array) -> Array:
+    """(N,) Frobenius norms."""
+    flat = matrices.reshape(len(matrices), -1)
+    return np.asarray(np.sqrt(np.vecdot(flat, flat)))
+
+
+def times(groups: Groups, inverse: Array, right_hand: Array) -> Array:
+    """(N, rows) products of such inverses with right-hand sides in the order of the Jacobian's rows."""
+    product: Array = np.matvec(inverse, right_hand.take(groups.rows, -1))
+    return product.take(groups.column_place, -1)
