@@ -73,7 +73,8 @@ def multiplied(left: Array, right: Array, pairs: Products) -> Array:
         # As many targets as make a block of pairs, one at least.
         high = max(int(np.searchsorted(edges, edges[low] + block, side="right")) - 1, low + 1)
         first, last = edges[low], edges[high]
-        each = left[:, pairs.first[first:last]] * right[:, pairs.second[first:last]]
-        result[:, low:high] = np.add.reduceat(each, pairs.starts[low:high] - first, axis=1)
+        each = left.take(pairs.first[first:last], axis=1)
+        each *= right.take(pairs.second[first:last], axis=1)
+        np.add.reduceat(each, pairs.starts[low:high] - first, axis=1, out=result[:, low:high])
         low = high
     return result

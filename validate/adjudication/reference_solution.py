@@ -19,7 +19,7 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
-from validate.reference import Instant, solve_reference
+from validate.reference import Design, Instant, instants_of, solve_reference
 from validate.reference.candidates import CLEAR_SIGN
 
 Array = NDArray[np.float64]
@@ -68,8 +68,12 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
     Raises:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
-    instants = [reference_instant(scene, inputs_at(scene, t), exact_sides) for t in scene.instants.tolist()]
-    return as_solution(scene, instants)
+    laws = {name: rates(part, scene.instants).tolist() for name, part in scene.inputs.items()}
+    inputs = [{name: law[k] for name, law in laws.items()} for k in range(len(scene.instants))]
+    part = scene.mechanism
+    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure, part.type)
+    clearness = 0.0 if exact_sides else CLEAR_SIGN
+    return as_solution(scene, list(instants_of(design, inputs, DIGITS, clearness)))
 
 
 def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:

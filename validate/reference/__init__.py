@@ -9,6 +9,7 @@ from validate.extras import MissingPackage
 try:
     from validate.reference.assemblies import Assemblies as Assemblies
     from validate.reference.assemblies import count_assemblies as count_assemblies
+    from validate.reference.design import Design as Design
     from validate.reference.drawing import ClosedDrawing as ClosedDrawing
     from validate.reference.drawing import closed_drawing as closed_drawing
     from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
@@ -21,6 +22,7 @@ try:
     from validate.reference.linkage import Choices as Choices
     from validate.reference.sensitivity import Sensitivity as Sensitivity
     from validate.reference.sensitivity import sensitivities as sensitivities
+    from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import solve_reference as solve_reference
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.reference", error) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
@@ -87,16 +87,32 @@ def solve_reference(
     True
     """
     design = Design.from_points(points, up, right, side, closure, suspension)
-    driven = design.driven(inputs)
     if guess is None:
-        choices = choices_of_table(design.table, design.up, design.linkage, clearness)
-    else:
-        near = _local(guess, design)
+        return next(instants_of(design, (inputs,), digits, clearness))
+    near, driven = _local(guess, design), design.driven(inputs)
+    return prove_assembly(design, partial(design.known, driven), lambda known: _nearest(known, near), digits)
+
+
+def instants_of(
+    design: Design,
+    inputs: Iterable[Mapping[str, Sequence[object]]],
+    digits: int = 60,
+    clearness: float = CLEAR_SIGN,
+) -> Iterator[Instant]:
+    """One car at many inputs, each by itself, on the assembly that its points make.
+
+    Args:
+        inputs: of each instant, as for `solve_reference`; also digits, clearness.
+    Raises:
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
+    """
+    choices = choices_of_table(design.table, design.up, design.linkage, clearness)
 
     def choose(known: Known) -> Candidate:
-        return _nearest(known, near) if guess is not None else design.linkage.candidate(known, choices)
+        return design.linkage.candidate(known, choices)
 
-    return prove_assembly(design, partial(design.known, driven), choose, digits)
+    for one in inputs:
+        yield prove_assembly(design, partial(design.known, design.driven(one)), choose, digits)
 
 
 def prove_assembly(

@@ -13,7 +13,14 @@ import pytest
 from exact_time_functions import time_function_value
 from mpmath import mpf
 
-from validate.reference import BadInputError, NoReferenceError, solve_reference
+from validate.reference import (
+    BadInputError,
+    Design,
+    InfeasibleError,
+    NoReferenceError,
+    instants_of,
+    solve_reference,
+)
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction
 from validate.reference.jet import Jet
@@ -171,3 +178,19 @@ def test_a_suspension_or_closure_that_does_not_exist_is_refused(
 ) -> None:
     with pytest.raises(BadInputError, match=message):
         solve_reference(table, STILL, **kind)
+
+
+def test_one_car_at_many_inputs_is_the_car_at_each_of_them(table: Table) -> None:
+    inputs = [{"arm_angle": (1.5 + 0.1 * k, 1.0, -k), "rack": (2.0 * k, k, 0)} for k in range(3)]
+    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left", "collinear")
+    together = list(instants_of(design, inputs, 40))
+    assert together == [solve_reference(table, one, digits=40, closure="collinear") for one in inputs]
+    assert len({instant.position["wheel_centre"] for instant in together}) == 3
+
+
+def test_an_input_that_has_no_pose_is_found_when_its_instant_is_reached(table: Table) -> None:
+    design = Design.from_points(table, (0, 0, 1), (0, 1, 0), "left", "collinear")
+    instants = instants_of(design, [STILL, {**STILL, "rack": (1e4, 0, 0)}])
+    next(instants)
+    with pytest.raises(InfeasibleError):
+        next(instants)
