@@ -36,6 +36,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond
+from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.states import StatesOfChain
@@ -361,10 +362,10 @@ class CloseInstants:
                 low, high = spans[cell]
                 basis, own = room[: DEGREE + 1, start:end], room[DEGREE + 1 :, start:end]
                 if smooth[cell]:
-                    np.matmul(whole[cell], basis, out=rows[:still, low:high])
+                    narrow_product(whole[cell], basis, rows[:still, low:high])
                 else:
                     matrix = np.concatenate([whole[cell], added[:still, :-1]], axis=-1)
-                    np.matmul(matrix, room[:, start:end], out=rows[:still, low:high])
+                    narrow_product(matrix, room[:, start:end], rows[:still, low:high])
                 # A product of matrices takes three times as long for rows that have one law each.
                 for row, law, others in carried:
                     out = rows[row, low:high]

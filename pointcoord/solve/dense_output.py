@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.solve.taylor import Chain
 
 Array = NDArray[np.float64]
@@ -75,7 +76,7 @@ class SeriesRows:
                     block[1] /= self.scales[i]
                 for k in range(2, len(block)):
                     np.multiply(block[k - 1], block[1], out=block[k])
-                np.matmul(table, block, out=out[..., low:high])
+                narrow_product(table, block, out[..., low:high])
 
 
 def evaluate(chain: Chain, columns: Sequence[Array], instants: Array, derivatives: int) -> Array:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import EFFECTS
@@ -107,7 +108,7 @@ def measure_effects(
     instants: int | None = None,
     clock: Clock = time.perf_counter_ns,
 ) -> tuple[Row, ...]:
-    """Measure what the store does not hold yet, and give all rows of effects.
+    """Measure what the store does not hold yet, by one thread, and give all rows of effects.
 
     Args:
         instants: how many, if not what `quick` says.
@@ -121,7 +122,10 @@ def measure_effects(
         # Ratios are of one run: a scene is measured whole.
         if any(store.row(key) is None for key in keys.values()):
             progress(f"effects: {study.name}", number, len(scenes))
-            for choice, row in _measured(study, count, quick, clock).items():
+            # Here as in the other parts.
+            with threadpool_limits(limits=1):
+                measured = _measured(study, count, quick, clock)
+            for choice, row in measured.items():
                 store.write(keys[choice], row)
         found += [row for row in map(store.row, keys.values()) if row is not None]
     return tuple(found)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from pointcoord import Scene, simulate
 from pointcoord.effects.registry import EFFECTS
@@ -12,7 +13,7 @@ from validate.cost import effects
 from validate.cost.effects import ALL, CHOICES, POINT_STATES, RATES, SUMS, Reading, measure_effects
 from validate.cost.row import NO_EFFECT, Row, Time
 from validate.cost.scenes import StudyScene
-from validate.cost.stopwatch import LEAST_REPEATS, Laps
+from validate.cost.stopwatch import LEAST_REPEATS, Clock, Laps
 from validate.cost.store import Header, Store
 from validate.cost.tables import effects_tables
 
@@ -22,7 +23,7 @@ def study(name: str = "bounce", **changes: object) -> StudyScene:
     return StudyScene(name, Scene.load(name).model_copy(update=changes), f"digest {sorted(changes)}")
 
 
-def steady() -> object:
+def steady() -> Clock:
     """A clock that goes on by 50 ms whenever it is read."""
     ticks = count(0, 50_000_000)
     return lambda: next(ticks)
@@ -54,6 +55,19 @@ def test_every_choice_is_read_and_copied_and_counts_what_it_computes(tmp_path: P
     assert counts[RATES] == {"derivatives": 3, "sums": 9 * moving, "numbers": 9 * points}
     assert counts[ALL]["sums"] == counts[RATES]["sums"]
     assert CHOICES[RATES] == POINT_STATES == ("velocity", "acceleration")
+
+
+def test_whatever_it_was_started_with_a_motion_is_read_by_one_thread(tmp_path: Path) -> None:
+    seen: set[int] = set()
+    ticks = steady()
+
+    def clock() -> int:
+        seen.update(pool["num_threads"] for pool in threadpool_info())
+        return ticks()
+
+    with threadpool_limits(limits=2):
+        measure_effects(memory(tmp_path), [study()], True, instants=50, clock=clock)
+    assert seen == {1}
 
 
 @pytest.mark.parametrize("name", ["bounce", "bounce-on-a-heaving-chassis", "double-wishbone"])
