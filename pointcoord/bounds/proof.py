@@ -241,6 +241,7 @@ class _Bounds:
         """Write proven and expected bounds at some of them."""
         for whole, part in zip((self.proven, self.expected), parts, strict=True):
             for quantity, arrays in part.items():
+                whole.setdefault(quantity, {})
                 for name, array in arrays.items():
                     self._room(whole, quantity, name, array.shape[1:])[here] = array
 
@@ -257,6 +258,7 @@ class _Bounds:
         here = slice(first, last + 1) if run else places
         for whole, part in ((self.proven, proven), (self.expected, expected)):
             for quantity, arrays in part.items():
+                whole.setdefault(quantity, {})
                 for name, array in arrays.items():
                     room = self._room(whole, quantity, name, array.shape[2:])
                     kept = array if every else array[sound]
