@@ -47,6 +47,7 @@ ROOMS = {
         "relative",
         "formulations",
         "comparison",
+        "solvers",
         "cars",
         "adjudication",
         "output",

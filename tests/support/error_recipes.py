@@ -30,7 +30,7 @@ from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
-from validate.formulations.protocol import Accuracy
+from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.output.motion_tables import write_motion
@@ -42,6 +42,7 @@ from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
+from validate.solvers.check import check
 from validate.studies.chunk_store import Store
 
 BOUNCE = pointcoord.Scene.load("bounce")
@@ -67,6 +68,14 @@ def changed(**sections: Mapping[str, Any]) -> pointcoord.Scene:
     for section, changes in sections.items():
         content[section].update(changes)
     return pointcoord.Scene.from_mapping(content, "mine")
+
+
+def failing_solver() -> None:
+    """A solver that asks for a hardpoint that no car has."""
+    try:
+        check(lambda given: {"position": given["points"]["strut"]}, BOUNCE)
+    except FormulationError as error:
+        raise error.reason from None
 
 
 def jumping() -> pointcoord.Scene:
@@ -361,6 +370,14 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
         ("pointcoord: ", "rack = 500", "bring 'rack' back"),
         {"formulation": "pointcoord", "reason": lambda it: isinstance(it, pointcoord.AssemblyError)},
+    ),
+    "validate.solvers.plain.NoSolver": Recipe(
+        lambda *_: check(3.0, BOUNCE),
+        ("the solver is a float", "give a function, or an object or a class with a method 'solve'"),
+        {"what": "the solver"},
+    ),
+    "validate.solvers.plain.SolverFailed": Recipe(
+        lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
     ),
     "validate.formulations.registry.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}
