@@ -50,6 +50,7 @@ ROOMS = {
         "cars",
         "adjudication",
         "output",
+        "ci",
         "hard",
         "cost",
         "commands",
