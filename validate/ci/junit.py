@@ -1,8 +1,8 @@
 """A run as JUnit has it: XML that services for continuous integration show as test results.
 
 A suite is a comparison of a scene, and a case of it one quantity of one point, body or angle. The
-`system-out` of a case has a line each for difference, tolerance, instant and difference / tolerance, also where
-it agrees.
+`system-out` of a case has a line each for difference, tolerance, instant and difference / tolerance, also
+where it agrees.
 
 | in the run | in the file |
 |---|---|
