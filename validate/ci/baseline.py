@@ -23,6 +23,7 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import IO, Any, BinaryIO, Literal
 
 import numpy as np
@@ -364,6 +365,8 @@ class Recorder:
 
     def __exit__(self, *_: object) -> None:
         """Give the disk back."""
+        with suppress(OSError):  # of a full one: what is thrown away needs no end
+            self._archive.close()
         self._gathered.close()
 
 
