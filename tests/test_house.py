@@ -51,6 +51,7 @@ ROOMS = {
         "cars",
         "adjudication",
         "output",
+        "ci",
         "hard",
         "cost",
         "commands",

@@ -22,6 +22,8 @@ from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
+from validate.ci.baseline import read_baseline
+from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.growth.unknowns import LongChain
 from validate.cost.loading import Loading
@@ -259,6 +261,16 @@ RECIPES: dict[str, Recipe] = {
             "pose": lambda pose: pose is not None,
             "corrections": bool,
         },
+    ),
+    "validate.ci.baseline.BaselineError": Recipe(
+        lambda folder, _: read_baseline(str(folder / "none.npz")),
+        ("none.npz", "No such file", "--save-baseline"),
+        {"problem": lambda words: "cannot be read" in words, "target": lambda name: "none.npz" in name},
+    ),
+    "validate.ci.scene_folder.SceneFolderError": Recipe(
+        lambda folder, _: scenes_below(str(folder)),
+        ("--scenes-dir", "holds no scene", ".toml"),
+        {"problem": "holds no scene", "folder": lambda name: Path(name).is_dir()},
     ),
     "validate.relative.errors.HardpointsError": Recipe(
         lambda *_: build("macpherson", {**TABLE, "lower_arm_rear": TABLE["lower_arm_front"]}),
