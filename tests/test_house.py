@@ -52,6 +52,7 @@ ROOMS = {
         "output",
         "hard",
         "cost",
+        "hardpoint_files",
         "commands",
         "door",
         "studies",
