@@ -49,8 +49,8 @@ def read(text: str, source: str) -> Contents:
     camber, toe = (_angle(data, key, clean, source) for key in (CAMBER, TOE))
     # The spindle's own y axis, turned about x by the camber and then about z by the toe: R_z R_x e_y.
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
-    given = " and ".join(f"{key} {data[key]}" for key in (CAMBER, TOE) if key in data)
-    words = given or f"no {CAMBER} and no {TOE}, which Chrono takes as 0"
+    taken = (f"{key} {data[key]}" if key in data else f"no {key}, which is 0 then" for key in (CAMBER, TOE))
+    words = " and ".join(taken)
     return Contents(tuple(points), called={"": template}, spin_axis=axis, spin_words=words)
 
 

@@ -50,11 +50,13 @@ class Names:
         called: a pattern of what the format calls it; empty if it does not say.
         names: what it calls each of our points, any of several names.
         derived: points that follow from others where the file does not have them.
+        notes: what the user should know of these points.
     """
 
     called: str
     names: Mapping[str, tuple[str, ...]]
     derived: Mapping[str, Derived]
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -126,6 +128,7 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
                     ours: Derived(rule["rule"], tuple(rule["of"]))
                     for ours, rule in own.get("derived", {}).items()
                 },
+                notes=tuple(own.get("notes", ())),
             )
             for kind, own in table["suspensions"].items()
         },

@@ -171,6 +171,7 @@ class _Import:
         side = self.side(side_said, topology, turned)
         points = self.placed(topology, words, ours, turned, axis, side)
         facts = [f"the file's axes are {axes.words}, in {unit}; here x rearward, y right, z up, in mm"]
+        facts += words.notes
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -267,7 +268,7 @@ class _Import:
         known = [(ours, point) for ours, point in known if point.part in ("", part)]
         others = [point for point in others if point.part in ("", part)]
         labels = {point.side for _, point in known} - {""}
-        side = self.one_of("side", "wheel", self.choices.side if len(labels) > 1 else None, labels)
+        side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
         found: dict[str, FilePoint] = {}
         for ours, point in known:
             if point.side not in ("", side):

@@ -19,8 +19,8 @@ from validate.plain_text import shown
 # Part of the way from the drawing to the nearer end of the driven input that the bounce takes: far from where
 # links lie in line, and still some 50 mm of wheel travel of a road car.
 PART = 0.25
-# A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its rate
-# is rounding alone there, and a comparison of rates would test nothing.
+# A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its
+# rate is rounding alone there, and a comparison of rates would test nothing.
 FREQUENCY, STOP, SAMPLES = 6.0, 1.05, 43
 TOLERANCE = 1e-9
 
