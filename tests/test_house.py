@@ -54,6 +54,7 @@ ROOMS = {
         "ci",
         "hard",
         "cost",
+        "hardpoint_files",
         "commands",
         "door",
         "studies",

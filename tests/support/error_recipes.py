@@ -35,6 +35,8 @@ from validate.cost.ways.scipy_solvers import WAYS as SCIPY
 from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
+from validate.hardpoint_files.axes import Axes
+from validate.hardpoint_files.importing import import_hardpoints
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
@@ -150,7 +152,26 @@ def uncertified() -> object:
         return certify(assembled, known, Fraction(1, 10**60))
 
 
+def report_of_two_numbers(folder: Path) -> object:
+    """A Lotus report in which a coordinate of a point is missing."""
+    report = folder / "report.txt"
+    report.write_text(
+        "LOTUS SUSPENSION ANALYSIS\n\n  257.00  69.00  POINT ( 1 ) = Lower wishbone front pivot\n"
+    )
+    return import_hardpoints(report)
+
+
 RECIPES: dict[str, Recipe] = {
+    "validate.hardpoint_files.contents.HardpointFileError": Recipe(
+        lambda folder, _: report_of_two_numbers(folder),
+        ("report.txt: line 3: has 2 numbers before POINT", "'257.00  69.00'", "allowed: x, y and z"),
+        {"line": 3, "allowed": "x, y and z"},
+    ),
+    "validate.hardpoint_files.axes.UnknownAxes": Recipe(
+        lambda *_: Axes.of("forward,rearward,up"),
+        ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
+        {"text": "forward,rearward,up"},
+    ),
     "pointcoord.errors.SceneError": Recipe(
         lambda *_: changed(time={"stop": -1.0}),
         ("mine: time:", "-1.0", "allowed: start < stop"),
