@@ -113,6 +113,12 @@ def followed_in_the_tree() -> object:
     return follow_tree(model.tree, model.home, np.array([[1.6, 0.0], [3.0, 0.0]]), np.arange(2.0), 1e-14)
 
 
+def frame_without(patch: pytest.MonkeyPatch, *libraries: str) -> object:
+    for name in libraries:
+        patch.setitem(sys.modules, name, None)
+    return pointcoord.simulate(BOUNCE).to_dataframe()
+
+
 def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
     patch.setitem(sys.modules, "pinocchio", None)
     return importlib.reload(absolute.backend)
@@ -186,6 +192,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: pointcoord.simulate(BOUNCE.model_copy(update={"effects": ()})).wheel["camber"],
         ("camber was not computed", "add 'wheel_angles'"),
         {"effect": "wheel_angles", "quantity": lambda name: "camber" in name},
+    ),
+    "pointcoord.errors.MissingLibrary": Recipe(
+        lambda _, pretend: frame_without(pretend, "pandas", "polars"),
+        ("pandas or polars", "is not installed", "pip install 'pointcoord[pandas]'", "pointcoord[polars]"),
+        {"part": "a data frame", "libraries": ("pandas", "polars")},
     ),
     "pointcoord.errors.MechanismError": Recipe(
         lambda *_: build_mechanism(COLLINEAR, {**TABLE, "strut_lower": TABLE["lower_ball_joint"]}, UPRIGHT),
