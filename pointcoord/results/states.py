@@ -258,7 +258,10 @@ class StatesOfChain:
 
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         # Terms that are missing by chance tell nothing of what is left out.
-        lasts = [last_magnitudes(segment.coefficients) for segment in self.chain.segments]
+        lasts = [
+            last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
+            for segment in self.chain.segments
+        ]
         derivative = self.readout.plan.derivative
 
         def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:

@@ -594,18 +594,24 @@ def _fall(logs: Array) -> tuple[int, Array]:
     return window, np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)[:, None]
 
 
-def last_magnitudes(series: Array) -> Array:
+def last_magnitudes(series: Array, length: float = 1.0) -> Array:
     """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `gone_on`).
+
+    How terms fall is looked at where the segment ends, whatever unit of time the coefficients are in: in a
+    longer unit those of a series that serves well may rise.
 
     Args:
         series: coefficients, (order + 1, size).
+        length: of the segment, in their unit of time.
     """
     sizes = np.abs(series)
     if len(sizes) < SHORT:
         return sizes[-2:]
-    window, fall = _fall(_log_sizes(series))
+    unit = np.log(length)
+    logs = _log_sizes(series) + unit * np.arange(len(sizes))
+    window, fall = _fall(logs)
     later = sizes[-window:]
-    ahead = np.exp(-fall[0] * np.arange(window - 1.0, -1.0, -1.0))[:, None]
+    ahead = np.exp(-(fall[0] + unit) * np.arange(window - 1.0, -1.0, -1.0))[:, None]
     return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])
 
 
