@@ -395,7 +395,11 @@ class _Import:
         )
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
-        raise self.refuse(told, f"--axes {seen.option} if that is so, --axes {axes.option} if not")
+        # Which way is left no point shows: it decides which wheel this is.
+        ways = [
+            f"--axes {one.option} of a {_seen_side(one, outboard)} wheel" for one in (seen, seen.other_handed)
+        ]
+        raise self.refuse(told, f"{' or '.join(ways)} if that is so, --axes {axes.option} if not")
 
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -404,8 +408,8 @@ class _Import:
         if SMALLEST <= span * UNITS[unit] <= LARGEST:
             return []
         fitting = {other: span * size for other, size in UNITS.items() if SMALLEST <= span * size <= LARGEST}
-        told = f"spans {span * UNITS[unit]:.4g} mm if its lengths are in {unit}"
-        others = "; ".join(f"--unit {other} makes {size:.4g} mm" for other, size in fitting.items())
+        told = f"spans {float(span * UNITS[unit]):.4g} mm if its lengths are in {unit}"
+        others = "; ".join(f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
         if self.choices.unit is not None:
             return [f"the file {told}" + (f"; {others}" if others else "")]
         raise self.refuse(told, others or f"--unit {unit} if that is so")
@@ -473,6 +477,11 @@ class _Import:
         printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
         return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+
+
+def _seen_side(axes: Axes, outboard: Place) -> str:
+    """The wheel whose outboard direction this is, in these axes."""
+    return SIDES[axes.to_scene(outboard, "mm")[1] > 0]
 
 
 def _difference(one: Place, other: Place) -> Place:
