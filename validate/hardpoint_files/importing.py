@@ -170,7 +170,7 @@ class _Import:
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned)
         points = self.placed(topology, words, ours, turned, axis, side)
-        facts = [f"the file's axes are {axes.words}, in {unit}; here x rearward, y right, z up, in mm"]
+        facts = [self.turning(axes, unit)]
         facts += words.notes
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
@@ -371,6 +371,15 @@ class _Import:
         if said and chosen and said != chosen:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
         return chosen or said or self.format.unit
+
+    def turning(self, axes: Axes, unit: str) -> str:
+        """What becomes of axes and unit, and who said what they are."""
+        axes_by = "its format" if self.choices.axes is None else "--axes"
+        unit_by = "the file" if self.contents.unit else "--unit" if self.choices.unit else "its format"
+        return (
+            f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
+            "here x rearward, y right, z up, in mm"
+        )
 
     def against_axes(self, axes: Axes, topology: Topology, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse axes of the format that the car's points speak against; doubt those of the user."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from math import cos, degrees, radians, sin
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,10 +24,10 @@ MIRRORED = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
 LEFT_CHRONO = chrono("double_wishbone", POINTS, 1)
 
 
-def imported(folder: Path, text: str, name: str = "car.txt", **choices: object) -> Imported:
+def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
     path = folder / name
     path.write_text(text, encoding="utf-8")
-    return import_hardpoints(path, **choices)  # type: ignore[arg-type]
+    return import_hardpoints(path, **choices)
 
 
 def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
@@ -231,6 +232,23 @@ def test_a_table_of_both_wheels_gives_the_one_that_is_asked_for(tmp_path: Path) 
         imported(tmp_path, text, axes="rearward,left,up")
     for side, car in (("left", MIRRORED), ("right", CAR)):
         assert drawn(imported(tmp_path, text, axes="rearward,left,up", side=side)) == car
+
+
+def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
+    rear = {name: (x + 9.0, y, z + 1.0) for name, (x, y, z) in CAR.items()}
+    rear["wheel_axis_inner"] = (10.0, 658.0, 211.0)
+    text = lotus_report() + lotus_report(rear, {"CAMBER ANGLE": 0.0, "TOE ANGLE (SAE)": 0.95}).replace(
+        "FRONT SUSPENSION", "REAR SUSPENSION"
+    )
+    with pytest.raises(HardpointFileError, match="--part front or --part rear"):
+        imported(tmp_path, text)
+    assert drawn(imported(tmp_path, text, part="front")) == CAR
+    found = imported(tmp_path, text, part="rear")
+    assert drawn(found) == rear
+    # The inner point lies 1 mm behind the centre, 60 mm further in: 0.955 deg of toe in.
+    assert [(check.printed, check.verdict) for check in found.angles] == [(0.0, "agrees"), (0.95, "agrees")]
+    with pytest.raises(HardpointFileError, match="has no points of the rear axle"):
+        imported(tmp_path, lotus_report(), part="rear")
 
 
 def test_points_that_are_not_those_of_the_printed_angles_end_with_1(
