@@ -266,7 +266,7 @@ class _Import:
             raise UnknownName(f"point in {self.source}", unused[0], {p.name for p in self.contents.points})
         part = self.one_of("part", "axle", self.choices.part, {point.part for _, point in known})
         known = [(ours, point) for ours, point in known if point.part in ("", part)]
-        others = [point for point in others if point.part in ("", part)]
+        others = [point for point in others if not part or point.part in ("", part)]
         labels = {point.side for _, point in known} - {""}
         side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
         found: dict[str, FilePoint] = {}

@@ -290,6 +290,13 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     assert [point.name for point in found.unknown] == ["Hub"]
 
 
+def test_a_suspension_that_a_format_has_no_names_for_is_asked_for_by_name(tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError) as caught:
+        imported(tmp_path, lotus_report(), suspension="macpherson")
+    for words in ("lacks lower_arm_front", "strut_top", "of a macpherson", "'Wheel centre point' on line 18"):
+        assert words in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
