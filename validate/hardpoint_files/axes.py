@@ -75,6 +75,12 @@ class Axes:
         return ",".join(self.directions)
 
     @property
+    def other_handed(self) -> Axes:
+        """The same axes with left for right."""
+        x, y, z = ({"left": "right", "right": "left"}.get(word, word) for word in self.directions)
+        return Axes((x, y, z))
+
+    @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
         places = [DIRECTIONS[word] for word in self.directions]

@@ -170,7 +170,7 @@ class _Import:
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned)
         points = self.placed(topology, words, ours, turned, axis, side)
-        facts = [f"the file's axes are {axes.words}, in {unit}; here x rearward, y right, z up, in mm"]
+        facts = [self.turning(axes, unit)]
         facts += words.notes
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
@@ -266,7 +266,7 @@ class _Import:
             raise UnknownName(f"point in {self.source}", unused[0], {p.name for p in self.contents.points})
         part = self.one_of("part", "axle", self.choices.part, {point.part for _, point in known})
         known = [(ours, point) for ours, point in known if point.part in ("", part)]
-        others = [point for point in others if point.part in ("", part)]
+        others = [point for point in others if not part or point.part in ("", part)]
         labels = {point.side for _, point in known} - {""}
         side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
         found: dict[str, FilePoint] = {}
@@ -372,6 +372,15 @@ class _Import:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
         return chosen or said or self.format.unit
 
+    def turning(self, axes: Axes, unit: str) -> str:
+        """What becomes of axes and unit, and who said what they are."""
+        axes_by = "its format" if self.choices.axes is None else "--axes"
+        unit_by = "the file" if self.contents.unit else "--unit" if self.choices.unit else "its format"
+        return (
+            f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
+            "here x rearward, y right, z up, in mm"
+        )
+
     def against_axes(self, axes: Axes, topology: Topology, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse axes of the format that the car's points speak against; doubt those of the user."""
         (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
@@ -395,7 +404,11 @@ class _Import:
         )
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
-        raise self.refuse(told, f"--axes {seen.option} if that is so, --axes {axes.option} if not")
+        # Which way is left no point shows: it decides which wheel this is.
+        ways = [
+            f"--axes {one.option} of a {_seen_side(one, outboard)} wheel" for one in (seen, seen.other_handed)
+        ]
+        raise self.refuse(told, f"{' or '.join(ways)} if that is so, --axes {axes.option} if not")
 
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -404,8 +417,8 @@ class _Import:
         if SMALLEST <= span * UNITS[unit] <= LARGEST:
             return []
         fitting = {other: span * size for other, size in UNITS.items() if SMALLEST <= span * size <= LARGEST}
-        told = f"spans {span * UNITS[unit]:.4g} mm if its lengths are in {unit}"
-        others = "; ".join(f"--unit {other} makes {size:.4g} mm" for other, size in fitting.items())
+        told = f"spans {float(span * UNITS[unit]):.4g} mm if its lengths are in {unit}"
+        others = "; ".join(f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
         if self.choices.unit is not None:
             return [f"the file {told}" + (f"; {others}" if others else "")]
         raise self.refuse(told, others or f"--unit {unit} if that is so")
@@ -473,6 +486,11 @@ class _Import:
         printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
         return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+
+
+def _seen_side(axes: Axes, outboard: Place) -> str:
+    """The wheel whose outboard direction this is, in these axes."""
+    return SIDES[axes.to_scene(outboard, "mm")[1] > 0]
 
 
 def _difference(one: Place, other: Place) -> Place:

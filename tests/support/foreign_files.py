@@ -1,0 +1,135 @@
+"""Our built-in cars written as other programs write theirs: small files of our own making, of their forms."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from decimal import Decimal
+
+from pointcoord import Scene
+
+Points = Mapping[str, tuple[float, float, float]]
+
+WISHBONE = Scene.load("double-wishbone")
+STRUT = Scene.load("off-axis-strut")
+
+LOTUS = {
+    "lower_arm_front": "Lower wishbone front pivot",
+    "lower_arm_rear": "Lower wishbone rear pivot",
+    "lower_ball_joint": "Lower wishbone outer ball joint",
+    "upper_arm_front": "Upper wishbone front pivot",
+    "upper_arm_rear": "Upper wishbone rear pivot",
+    "upper_ball_joint": "Upper wishbone outer ball joint",
+    "tie_rod_outer": "Outer track rod ball joint",
+    "tie_rod_inner": "Inner track rod ball joint",
+    "wheel_axis_inner": "Wheel spindle point",
+    "wheel_centre": "Wheel centre point",
+}
+OPTIMUMK = {
+    "lower_arm_front": "CHAS_LowFor",
+    "lower_arm_rear": "CHAS_LowAft",
+    "lower_ball_joint": "UPRI_LowPnt",
+    "upper_arm_front": "CHAS_UppFor",
+    "upper_arm_rear": "CHAS_UppAft",
+    "upper_ball_joint": "UPRI_UppPnt",
+    "tie_rod_outer": "UPRI_TiePnt",
+    "tie_rod_inner": "CHAS_TiePnt",
+    "wheel_centre": "Wheel Center",
+    "wheel_axis_inner": "Wheel Spindle Point",
+}
+ARMS = {
+    "double_wishbone": {"lower": "Lower Control Arm", "upper": "Upper Control Arm"},
+    "macpherson": {"lower": "Control Arm"},
+}
+# What Lotus prints of the built-in car, deg.
+STATIC = {
+    "CAMBER ANGLE": 0.0,
+    "TOE ANGLE (SAE) (+ve TOE IN)": 0.0,
+    "CASTOR ANGLE": 4.94,
+    "KINGPIN ANGLE": 7.0,
+}
+
+
+def lotus_report(points: Points = WISHBONE.mechanism.points, static: Mapping[str, float] = STATIC) -> str:
+    """A report of the right wheel, x rearward, y right, z up; mm."""
+    rows = [
+        f"{x:11.2f}{y:10.2f}{z:10.2f}    POINT ({number:4d} ) = {LOTUS[name]}"
+        for number, (name, (x, y, z)) in enumerate(((n, points[n]) for n in LOTUS), 1)
+    ]
+    return "\n".join(
+        [
+            "*" * 80,
+            "      LOTUS SUSPENSION ANALYSIS v4.03",
+            "",
+            "     FRONT SUSPENSION       FILENAME: own.dat",
+            "     TYPE 1 Double Wishbone, damper to lower wishbone",
+            "",
+            "         X         Y         Z",
+            "      (mm)      (mm)      (mm)",
+            *rows,
+            "     745.00      0.00    270.00    POINT (  20 ) = Part 1 C of G",
+            "       1.00      2.00      3.00    POINT (  31 ) = Bracket of our own",
+            "",
+            "                             STATIC VALUES",
+            *(f"{name:>33}  (deg):{value:9.2f}" for name, value in static.items()),
+            "",
+        ]
+    )
+
+
+def table(
+    points: Points = WISHBONE.mechanism.points,
+    *,
+    order: tuple[int, int, int] = (0, 1, 2),
+    signs: tuple[int, int, int] = (-1, -1, 1),
+    per_unit: str = "1",
+    titles: str = "Point,X,Y,Z\n",
+    separator: str = ",",
+    ending: str = "",
+    names: Mapping[str, str] = OPTIMUMK,
+) -> str:
+    """A table of points; x forward, y left, z up and mm unless said otherwise.
+
+    Args:
+        order, signs: which of our coordinates each of its columns is, and its sign there.
+        per_unit: mm in its unit.
+    """
+    rows = []
+    for ours, theirs in names.items():
+        if ours in points:
+            numbers = [
+                Decimal(repr(n)) * sign / Decimal(per_unit)
+                for n, sign in zip(points[ours], signs, strict=True)
+            ]
+            rows.append(separator.join([theirs + ending, *(f"{numbers[at]:f}" for at in order)]))
+    return titles + "\n".join([*rows, separator.join(["NSMA_PPAttPnt" + ending, "1", "2", "3"])]) + "\n"
+
+
+def chrono(kind: str, points: Points, out: int, camber: str = "", toe: str = "") -> str:
+    """A suspension of Chrono, of its left wheel; m.
+
+    Args:
+        out: 1 if our points are of a right wheel, -1 if they are of a left one.
+    """
+
+    def place(name: str) -> list[Decimal]:
+        x, y, z = (Decimal(repr(number)) / 1000 for number in points[name])
+        return [-x, y * out, z]
+
+    parts: dict[str, object] = {"Name": "our own", "Type": "Suspension"}
+    parts["Template"] = "DoubleWishbone" if kind == "double_wishbone" else "MacPhersonStrut"
+    for key, angle in (("Camber Angle (deg)", camber), ("Toe Angle (deg)", toe)):
+        if angle:
+            parts[key] = Decimal(angle)
+    parts["Spindle"] = {"Mass": 10, "COM": place("wheel_centre")}
+    for arm, called in ARMS[kind].items():
+        parts[called] = {
+            "COM": place(f"{arm}_ball_joint"),
+            "Location Chassis Front": place(f"{arm}_arm_front"),
+            "Location Chassis Back": place(f"{arm}_arm_rear"),
+            "Location Upright": place(f"{arm}_ball_joint"),
+        }
+    parts["Tierod"] = {"Location Chassis": place("tie_rod_inner"), "Location Upright": place("tie_rod_outer")}
+    if kind == "macpherson":
+        parts["Spring"] = {"Location Chassis": place("strut_top"), "Location Upright": place("strut_lower")}
+    return json.dumps(parts, indent=2, default=float)

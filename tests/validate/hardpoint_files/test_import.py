@@ -1,0 +1,424 @@
+"""Hardpoints of other programs become the car that they are, or a line that says why not."""
+
+from collections.abc import Mapping
+from math import cos, degrees, radians, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from foreign_files import ARMS, OPTIMUMK, STRUT, WISHBONE, chrono, lotus_report, table
+
+from pointcoord import PointcoordError, Scene, simulate, standing
+from pointcoord.suspensions import SUSPENSIONS
+from validate.cli import main
+from validate.hardpoint_files.axes import DIRECTIONS, Axes, UnknownAxes
+from validate.hardpoint_files.contents import HardpointFileError
+from validate.hardpoint_files.derived import RULES
+from validate.hardpoint_files.format import FORMS, formats
+from validate.hardpoint_files.importing import Imported, import_hardpoints
+
+POINTS = WISHBONE.mechanism.points
+CAR = {name: place for name, place in POINTS.items() if name != "rack_centre"}
+MIRRORED = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
+LEFT_CHRONO = chrono("double_wishbone", POINTS, 1)
+
+
+def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return import_hardpoints(path, **choices)
+
+
+def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
+    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
+
+
+def curves(scene: Scene) -> dict[str, np.ndarray]:
+    motion = simulate(scene)
+    return {name: motion.wheel[name] for name in ("camber", "toe", "caster", "kingpin")}
+
+
+@pytest.mark.parametrize(
+    ("text", "choices"),
+    [
+        (lotus_report(), {}),
+        (table(), {}),
+        (table(per_unit="1000", titles="Point Name,X (m),Y (m),Z (m)\n"), {}),
+        (table(per_unit="25.4", titles=""), {"unit": "in"}),
+        (table(ending="_FR"), {}),
+        (LEFT_CHRONO, {"mirror": True}),
+    ],
+    ids=["lotus", "optimumk", "metres", "inches", "ending", "chrono"],
+)
+def test_the_built_in_wishbone_comes_back_with_its_digits_and_its_curves(
+    text: str, choices: Mapping[str, object], tmp_path: Path
+) -> None:
+    found = imported(tmp_path, text, **choices)
+    same = {name for name in CAR if name != "wheel_axis_inner"} if text is LEFT_CHRONO else {*CAR}
+    if choices.get("unit") == "in":
+        # A mm is no finite number of inches: 28 digits of them are printed here, and a double holds 16.
+        for name, place in drawn(found).items():
+            assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-24)
+    else:
+        assert {name: place for name, place in drawn(found).items() if name in same} == {
+            name: CAR[name] for name in same
+        }
+    assert found.scene.mechanism.side == "right"
+    motion = {"inputs": found.scene.inputs, "time": found.scene.time, "effects": found.scene.effects}
+    expected, got = curves(WISHBONE.model_copy(update=motion)), curves(found.scene)
+    for name, values in expected.items():
+        # Coordinates of 720 mm round to 1e-13 mm and the shorter axis is 60 mm long: 2e-15 rad for each of
+        # some ten roundings between the drawing and the angle.
+        np.testing.assert_allclose(got[name], values, rtol=0, atol=2e-14, err_msg=name)
+    assert np.ptp(expected["camber"]) > radians(2.0)
+
+
+def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source, target = tmp_path / "report.txt", tmp_path / "scene.toml"
+    source.write_text(lotus_report())
+    assert main(["import", str(source), "-o", str(target)]) == 0
+    out, err = capsys.readouterr()
+    assert "caster: the file prints 4.94 deg, its points give 4.9360: agrees" in out
+    assert "known and not needed: Part 1 C of G" in out
+    assert err.splitlines() == [f"pointcoord: note: {source}: line 20: no point of ours: Bracket of our own"]
+    assert Scene.load(target) == import_hardpoints(source).scene
+    text = target.read_text()
+    assert "lower_arm_front  = [-110, 257, 69]     # Lower wishbone front pivot, line 9" in text
+    assert "# not used: Bracket of our own, line 20" in text
+    assert main(["validate", str(target)]) == 0
+    assert "1 of 1 scenes agree" in capsys.readouterr().out
+    assert main(["import", str(source), "-q"]) == 2
+    assert "unrecognized" in capsys.readouterr().err
+    assert main(["import", str(source)]) == 0
+    assert capsys.readouterr().out == text
+
+
+def test_the_bounce_begins_at_the_drawing_and_stays_far_within_reach(tmp_path: Path) -> None:
+    for found in (
+        imported(tmp_path, lotus_report()),
+        imported(tmp_path, chrono("macpherson", STRUT.mechanism.points, -1)),
+    ):
+        stands, motion = standing(found.scene), simulate(found.scene)
+        law = found.scene.inputs["arm_angle"].sine
+        assert law is not None
+        low, high = (end.value for end in stands.reach["arm_angle"])
+        nearer = min(high - stands.inputs["arm_angle"], stands.inputs["arm_angle"] - low)
+        assert 0.24 * nearer < law.amplitude <= 0.25 * nearer
+        np.testing.assert_allclose(
+            motion.position["wheel_centre"][0], drawn(found)["wheel_centre"], rtol=0, atol=1e-9
+        )
+        assert np.ptp(motion.position["wheel_centre"][:, 2]) > 50.0
+
+
+@pytest.mark.parametrize(("camber", "toe"), [("", ""), ("-1.5", "0.25"), ("2", "")])
+def test_a_strut_of_chrono_has_its_axis_and_the_angles_that_it_says(
+    camber: str, toe: str, tmp_path: Path
+) -> None:
+    points = STRUT.mechanism.points
+    found = imported(tmp_path, chrono("macpherson", points, -1, camber, toe))
+    part = found.scene.mechanism
+    assert (part.type, part.side) == ("macpherson", "left")
+    derived = {"strut_rod_end", "wheel_axis_inner"}
+    assert {point.name for point in found.points if point.derived} == derived
+    for name in {*points} - derived - {"rack_centre"}:
+        assert part.points[name] == points[name], name
+    # The spindle's y axis after Chrono's turns, by matrices: about x by -camber, then about z by -toe.
+    c, t = radians(float(camber or 0)), radians(float(toe or 0))
+    about_x = np.array([[1, 0, 0], [0, cos(c), sin(c)], [0, -sin(c), cos(c)]])
+    about_z = np.array([[cos(t), sin(t), 0], [-sin(t), cos(t), 0], [0, 0, 1]])
+    forward, left, up = about_z @ about_x @ np.array([0.0, 1.0, 0.0])
+    axis = np.subtract(part.points["wheel_centre"], part.points["wheel_axis_inner"])
+    np.testing.assert_allclose(axis / 100.0, [-forward, -left, up], rtol=0, atol=1e-13)
+    assert degrees(found.bounce.angles["toe"]) == pytest.approx(float(toe or 0), abs=1e-11)
+    # Projected, as ours is: tan(camber) over cos(toe).
+    assert np.tan(found.bounce.angles["camber"]) == pytest.approx(np.tan(c) / cos(t), abs=1e-13)
+
+
+def test_no_angle_hangs_on_where_the_rod_ends_on_the_strut_axis(tmp_path: Path) -> None:
+    scene = imported(tmp_path, chrono("macpherson", STRUT.mechanism.points, -1)).scene
+    points = dict(scene.mechanism.points)
+    top, lower = (np.array(points[name]) for name in ("strut_top", "strut_lower"))
+    x, y, z = (top + 0.7 * (lower - top)).tolist()
+    part = scene.mechanism.model_copy(update={"points": points | {"strut_rod_end": (x, y, z)}})
+    expected, got = curves(scene), curves(scene.model_copy(update={"mechanism": part}))
+    for name, values in expected.items():
+        # The moved point misses its axis by rounding, 1e-13 mm, and nothing is told by it.
+        np.testing.assert_allclose(got[name], values, rtol=0, atol=2e-14, err_msg=name)
+
+
+def test_static_angles_make_the_spin_axis_that_a_table_lacks(tmp_path: Path) -> None:
+    text = table({name: place for name, place in CAR.items() if name != "wheel_axis_inner"})
+    with pytest.raises(HardpointFileError, match=r"lacks wheel_axis_inner .* --camber and --toe will do"):
+        imported(tmp_path, text)
+    found = imported(tmp_path, text, camber=-2.0, toe=0.5)
+    assert degrees(found.bounce.angles["camber"]) == pytest.approx(-2.0, abs=1e-11)
+    assert degrees(found.bounce.angles["toe"]) == pytest.approx(0.5, abs=1e-11)
+
+
+# Planted faults: what would make another car is refused, and the line names what it should be.
+
+
+def test_exchanged_columns_are_refused_with_the_axes_that_they_have(tmp_path: Path) -> None:
+    text = table(order=(1, 0, 2))
+    with pytest.raises(HardpointFileError, match="--axes left,forward,up of a right wheel") as caught:
+        imported(tmp_path, text)
+    assert "--axes right,forward,up of a left wheel" in str(caught.value)
+    assert "lower_arm_front" in str(caught.value)
+    # Exchanged columns of right-handed axes are left-handed.
+    found = imported(tmp_path, text, axes="left,forward,up")
+    assert drawn(found) == CAR
+    assert any("left-handed" in doubt for doubt in found.doubts)
+
+
+@pytest.mark.parametrize(
+    "axes", ["rearward,left,up", "left,up,forward", "up,right,forward", "down,left,rearward"]
+)
+def test_any_axes_are_turned_and_any_others_than_the_format_s_are_noticed(axes: str, tmp_path: Path) -> None:
+    words = axes.split(",")
+    order = tuple(DIRECTIONS[word][0] for word in words)
+    signs = [0, 0, 0]
+    for word in words:
+        signs[DIRECTIONS[word][0]] = DIRECTIONS[word][1]
+    text = table(order=order, signs=(signs[0], signs[1], signs[2]))
+    with pytest.raises(HardpointFileError, match="--axes"):
+        imported(tmp_path, text)
+    assert drawn(imported(tmp_path, text, axes=axes)) == CAR
+
+
+def test_a_unit_that_makes_no_car_is_refused_with_those_that_do(tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError, match=r"spans 0\.54 mm .*--unit m makes 540 mm"):
+        imported(tmp_path, table(per_unit="1000"))
+    assert drawn(imported(tmp_path, table(per_unit="1000"), unit="m")) == CAR
+    found = imported(tmp_path, table(per_unit="1000"), unit="in")
+    assert any("spans 13.72 mm" in doubt for doubt in found.doubts)
+    with pytest.raises(HardpointFileError, match="says that its lengths are in mm"):
+        imported(tmp_path, table(titles="Point,X (mm),Y (mm),Z (mm)\n"), unit="m")
+
+
+def test_exchanged_front_and_rear_are_refused(tmp_path: Path) -> None:
+    names = OPTIMUMK | {
+        "lower_arm_front": OPTIMUMK["lower_arm_rear"],
+        "lower_arm_rear": OPTIMUMK["lower_arm_front"],
+    }
+    with pytest.raises(HardpointFileError, match="lower_arm_front seen from lower_arm_rear"):
+        imported(tmp_path, table(names=names))
+
+
+def test_a_wheel_on_the_other_side_than_said_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError, match="a left wheel by --side, but wheel_centre lies"):
+        imported(tmp_path, table(), side="left")
+    with pytest.raises(HardpointFileError, match="a left wheel by the file"):
+        imported(tmp_path, table(ending=" FL"))
+    with pytest.raises(HardpointFileError, match="a left wheel by its format"):
+        imported(tmp_path, chrono("double_wishbone", MIRRORED, 1))
+    assert drawn(imported(tmp_path, table(), side="right", mirror=True)) == MIRRORED
+    moved = {name: (x, y - 700.0, z) for name, (x, y, z) in CAR.items()}
+    moved["wheel_centre"] = (0.0, -5.0, 210.0)
+    with pytest.raises(HardpointFileError, match="--side right if y is not counted from the middle"):
+        imported(tmp_path, table(moved))
+    assert imported(tmp_path, table(moved), side="right").scene.mechanism.side == "right"
+
+
+def test_a_table_of_both_wheels_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
+    rows = [f"{name};{x};{y};{z};{x};{-y};{z}" for name, (x, y, z) in CAR.items()]
+    text = "Point;Left X [mm];Left Y [mm];Left Z [mm];Right X [mm];Right Y [mm];Right Z [mm]\n" + "\n".join(
+        rows
+    )
+    text = text.replace(".0", ",0")
+    with pytest.raises(HardpointFileError, match="--side left or --side right"):
+        imported(tmp_path, text, axes="rearward,left,up")
+    for side, car in (("left", MIRRORED), ("right", CAR)):
+        assert drawn(imported(tmp_path, text, axes="rearward,left,up", side=side)) == car
+
+
+def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
+    rear = {name: (x + 9.0, y, z + 1.0) for name, (x, y, z) in CAR.items()}
+    rear["wheel_axis_inner"] = (10.0, 658.0, 211.0)
+    text = lotus_report() + lotus_report(rear, {"CAMBER ANGLE": 0.0, "TOE ANGLE (SAE)": 0.95}).replace(
+        "FRONT SUSPENSION", "REAR SUSPENSION"
+    )
+    with pytest.raises(HardpointFileError, match="--part front or --part rear"):
+        imported(tmp_path, text)
+    assert drawn(imported(tmp_path, text, part="front")) == CAR
+    found = imported(tmp_path, text, part="rear")
+    assert drawn(found) == rear
+    # The inner point lies 1 mm behind the centre, 60 mm further in: 0.955 deg of toe in.
+    assert [(check.printed, check.verdict) for check in found.angles] == [(0.0, "agrees"), (0.95, "agrees")]
+    with pytest.raises(HardpointFileError, match="has no points of the rear axle"):
+        imported(tmp_path, lotus_report(), part="rear")
+
+
+def test_points_that_are_not_those_of_the_printed_angles_end_with_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source, target = tmp_path / "report.txt", tmp_path / "scene.toml"
+    x, y, z = CAR["upper_ball_joint"]
+    # A mm across a kingpin of 221 mm is 0.26 deg; the printed digits leave 0.005 + 0.019 deg open.
+    source.write_text(lotus_report({**POINTS, "upper_ball_joint": (x, y - 1.0, z)}))
+    assert main(["import", str(source), "-o", str(target)]) == 1
+    out, err = capsys.readouterr()
+    assert "kingpin: the file prints 7 deg, its points give 7.2" in out
+    assert "disagrees" in out
+    assert "KINGPIN ANGLE is printed as 7 deg" in err
+    assert target.exists()
+
+
+# What is not known is asked for.
+
+
+def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_known(tmp_path: Path) -> None:
+    text = table().replace("CHAS_TiePnt", "Rack End").replace("Wheel Center", "Hub")
+    with pytest.raises(HardpointFileError) as caught:
+        imported(tmp_path, text)
+    words = str(caught.value)
+    for part in (
+        "lacks tie_rod_inner",
+        "wheel_centre",
+        "'CHAS_TiePnt'",
+        "'Rack End' on line",
+        "'Hub' on line",
+    ):
+        assert part in words
+    assert "NSMA" not in words
+    names = tmp_path / "names.toml"
+    names.write_text('[names]\ntie_rod_inner = "rack end"\nwheel_centre = [0, -718.0, 210]\n')
+    found = imported(tmp_path, text, names=str(names))
+    assert drawn(found) == CAR
+    assert [point.name for point in found.unknown] == ["Hub"]
+
+
+def test_a_suspension_that_a_format_has_no_names_for_is_asked_for_by_name(tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError) as caught:
+        imported(tmp_path, lotus_report(), suspension="macpherson")
+    for words in ("lacks lower_arm_front", "strut_top", "of a macpherson", "'Wheel centre point' on line 18"):
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[names]\ntie_rod = 'x'", "did you mean 'tie_rod_"),
+        ("[names]\ntie_rod_inner = 'Nothing'", "no point in .* named 'Nothing'"),
+        ("[names]\ntie_rod_inner = [1, 2]", "tie_rod_inner is"),
+        ("[names]\n\ntie_rod_inner = ?", "line 3"),
+        ("tie_rod_inner = 'x'", "has the key 'tie_rod_inner'"),
+    ],
+)
+def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path: Path) -> None:
+    names = tmp_path / "names.toml"
+    names.write_text(text)
+    with pytest.raises((HardpointFileError, PointcoordError), match=words):
+        imported(tmp_path, table(), names=str(names))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (lotus_report().replace("257.00     69.00", "257.00", 1), "line 9: has 2 numbers"),
+        (
+            lotus_report().replace("    69.00", "    6q.00", 1),
+            "line 9: z of 'Lower wishbone front pivot' is '6q.00'",
+        ),
+        (lotus_report().split("POINT")[0], "has no points"),
+        (lotus_report().replace("Double Wishbone", "Trailing arm"), "called 'Trailing arm, damper"),
+        (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,"), "line 3: x of 'CHAS_LowAft' is ''"),
+        (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,nan"), "line 3: x of 'CHAS_LowAft' is 'NaN'"),
+        (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,1e999999"), "line 3: x of 'CHAS_LowAft' is"),
+        (table().replace("CHAS_LowAft,", ","), "line 3: has coordinates without a name"),
+        (table() + "CHAS_LowAft,1,2,3\n", "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
+        (table(titles="Point,X,Y\n"), "line 1: has no column of z"),
+        (table(titles="Point,X (m),Y (mm),Z (m)\n"), "line 1: has lengths in m, mm"),
+        (table(titles="Point,X (furlong),Y,Z\n"), "line 1: has lengths in furlong"),
+        ("", "has no points"),
+        ("only words", "has no points"),
+        (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),
+        (LEFT_CHRONO.replace('"Suspension"', '"Steering"'), "line 3: has Type 'Steering'"),
+        (LEFT_CHRONO.replace("DoubleWishbone", "SolidAxle"), "called 'SolidAxle'"),
+        (LEFT_CHRONO.replace("0.718", '"x"'), "line 7: y of 'Spindle: COM' is 'x'"),
+        (LEFT_CHRONO.replace("0.718", "NaN"), "NaN is no number"),
+        (LEFT_CHRONO.replace('"Tierod"', '"Rod"'), "lacks tie_rod_outer .*not known in it: 'Rod: Location"),
+    ],
+)
+def test_a_broken_file_is_told_in_one_line_with_its_place(
+    text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(HardpointFileError, match=words):
+        imported(tmp_path, text)
+    assert main(["import", str(tmp_path / "car.txt"), "-o", str(tmp_path / "car.toml")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert not (tmp_path / "car.toml").exists()
+
+
+@pytest.mark.parametrize("text", [lotus_report(), table(), LEFT_CHRONO], ids=["lotus", "csv", "chrono"])
+def test_a_file_with_random_damage_is_imported_or_refused_in_one_line(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    random = np.random.default_rng(11)
+    refused = 0
+    for _ in range(60):
+        damaged = text
+        for _ in range(random.integers(1, 4)):
+            at = int(random.integers(len(damaged)))
+            new = ["", "\n", ",", '"', "-", "9", "e", "\t", "\x07", "NaN"][random.integers(10)]
+            damaged = damaged[:at] + new + damaged[at + int(random.integers(4)) :]
+        (tmp_path / "car.txt").write_text(damaged, encoding="utf-8")
+        (tmp_path / "car.toml").unlink(missing_ok=True)
+        status = main(["import", str(tmp_path / "car.txt"), "-o", str(tmp_path / "car.toml")])
+        complaints = [line for line in capsys.readouterr().err.splitlines() if ": note: " not in line]
+        refused += status == 2
+        if status == 2:
+            assert len(complaints) == 1
+            assert complaints[0].startswith(f"pointcoord: {tmp_path / 'car.txt'}: ")
+        else:
+            assert status in (0, 1)
+            Scene.load(tmp_path / "car.toml")
+    assert 5 < refused < 60
+
+
+def test_text_of_a_spreadsheet_is_read_whatever_its_code(tmp_path: Path) -> None:
+    for code in ("utf-8-sig", "utf-16", "cp1252"):
+        path = tmp_path / f"{code}.csv"
+        path.write_bytes(table(separator="\t", titles="Données\tX\tY\tZ\n").encode(code))
+        assert drawn(import_hardpoints(path)) == CAR
+    path.write_bytes(b"PK\x03\x04\x00\x00")
+    with pytest.raises(HardpointFileError, match="is no text"):
+        import_hardpoints(path)
+
+
+def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> None:
+    text = LEFT_CHRONO.replace("{", "{ // Type\n/* a\n\nb */", 1).replace("our own", "our // own")
+    assert drawn(imported(tmp_path, text, mirror=True))["wheel_centre"] == CAR["wheel_centre"]
+    with pytest.raises(HardpointFileError, match="line 10: y of 'Spindle: COM'"):
+        imported(tmp_path, text.replace("0.718", "[]"))
+
+
+@pytest.mark.parametrize("name", formats())
+def test_a_format_s_table_speaks_of_points_and_rules_that_there_are(name: str) -> None:
+    one = formats()[name]
+    assert one.form in FORMS
+    for kind, words in one.suspensions.items():
+        assert {*words.names, *words.derived} <= {*SUSPENSIONS[kind].points}
+        for rule in words.derived.values():
+            assert rule.rule in RULES
+            assert {*rule.of} <= {*SUSPENSIONS[kind].points}
+        theirs = [name for names in words.names.values() for name in names]
+        assert len(theirs) == len({*theirs})
+
+
+def test_axes_are_three_directions_at_right_angles() -> None:
+    assert Axes.of("Forward, left up").words == "x forward, y left, z up"
+    for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
+        with pytest.raises(UnknownAxes):
+            Axes.of(words)
+    assert Axes.of("forward,left,up").right_handed
+    assert Axes.of("rearward,right,up").right_handed
+    assert not Axes.of("forward,right,up").right_handed
+
+
+def test_arms_of_the_written_files_are_those_of_the_suspensions() -> None:
+    assert {*ARMS} == {*SUSPENSIONS}
