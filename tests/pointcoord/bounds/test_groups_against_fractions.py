@@ -13,7 +13,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.bounds.neighbouring_rates import GroupState, neighbouring_poses, neighbouring_rates
+from pointcoord.bounds.neighbouring_rates import (
+    GroupState,
+    _Factors,
+    _twice_polar,
+    neighbouring_poses,
+    neighbouring_rates,
+)
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed
@@ -89,8 +95,11 @@ class Case:
     driven: list[dict[int, EnclosedGroups]]
 
     @classmethod
-    def of(cls, seed: int, off: float, doubt: float) -> "Case":
-        """With coordinates that are computed to `off`, and driven ones that are known to `doubt`."""
+    def of(cls, seed: int, off: float, doubt: float, near: float = NEAR) -> "Case":
+        """With coordinates that are computed to `off`, and driven ones that are known to `doubt`.
+
+        Poses that lie nearer to one another than they are off are off alike.
+        """
         rng = np.random.default_rng(seed)
         system = random_map(rng)
         shape = (SIZE, GROUPS, COUNT)
@@ -98,7 +107,7 @@ class Case:
         lacks[STANDING] = 0.4 * U
         exact = []
         for d in range(3):
-            state = fraction(rng.normal(size=(SIZE, GROUPS, 1)) + NEAR * rng.normal(size=shape))
+            state = fraction(rng.normal(size=(SIZE, GROUPS, 1)) + near * rng.normal(size=shape))
             # Digits below those of doubles.
             state = state + fraction(U * rng.uniform(-1.0, 1.0, size=shape))
             state[[ZERO, ONE, STANDING]] = Fraction(0)
@@ -117,7 +126,8 @@ class Case:
         for state, rest in zip(exact, left, strict=True):
             state[DRIVEN[1:]] = -rest
             known = state[[ZERO, ONE, STANDING]].astype(float)
-            computed.append(state.astype(float) + off * rng.uniform(-1.0, 1.0, size=shape))
+            wrong = off * rng.uniform(-1.0, 1.0, size=shape)
+            computed.append(state.astype(float) + (wrong[..., :1] if near < off else wrong))
             computed[-1][[ZERO, ONE, STANDING]] = known
         driven = [{k: enclosed(state[k], doubt, rng) for k in DRIVEN} for state in exact]
         mechanism = SimpleNamespace(map=system, drawn_lacks=lacks, drawn_doubt=np.zeros(SIZE))
@@ -148,18 +158,18 @@ def off_and_radius(state: GroupState, terms: Terms, exact: Exact) -> tuple[Exact
 
 
 SEEDS = range(24)
-# How far coordinates are computed off, and how far driven ones are uncertain.
-OFF = ((U, 0.0), (1e-9, 0.0), (1e-5, 0.0), (U, 1e-9))
+# How far coordinates are computed off, how far driven ones are uncertain, and how far poses lie apart.
+OFF = ((U, 0.0, NEAR), (1e-9, 0.0, NEAR), (1e-5, 0.0, NEAR), (U, 1e-9, NEAR), (1e-4, 0.0, 1e-8))
 # Radii of y, v, a over the largest of these and of the rounding of a change: some terms of each row times
 # |X|, about 1/4; a rate's come to those of what it is made of.
 MOST = (3e2, 1e3, 1e4)
 
 
-@pytest.mark.parametrize(("off", "doubt"), OFF)
-def test_rates_of_neighbours_lie_within_their_radii(off: float, doubt: float) -> None:
+@pytest.mark.parametrize(("off", "doubt", "near"), OFF)
+def test_rates_of_neighbours_lie_within_their_radii(off: float, doubt: float, near: float) -> None:
     closest = np.zeros(3)
     for seed in SEEDS:
-        case = Case.of(seed, off, doubt)
+        case = Case.of(seed, off, doubt, near)
         for d, (state, exact) in enumerate(zip(case.states, case.exact, strict=True)):
             distance, radius = off_and_radius(state, case.terms, exact)
             assert (distance <= fraction(radius)).all(), (seed, d)
@@ -197,3 +207,38 @@ def test_an_inverse_is_off_by_no_more_than_its_defect_at_every_pose(off: float) 
             assert (left <= fraction(poses.defect[g])).all()
             closest = max(closest, (left / fraction(poses.defect[g] + 1e-300)).max())
     assert closest > 0.9
+
+
+def test_what_rates_leave_of_the_equations_is_known_to_a_rounding_of_how_it_changes() -> None:
+    """2 B(a, b) of states that lie far apart, of which one coordinate or none is uncertain."""
+    closest = 0.0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        terms = Terms.of(random_map(rng), np.array([*range(UNKNOWNS), *DRIVEN]))
+        doubtful = rng.integers(0, UNKNOWNS) if seed % 3 else None
+        (a, x), (b, y) = (uncertain(rng, terms, doubtful if seed % 3 == which else None) for which in (1, 2))
+        for (one, own), (other, its) in (((a, x), (b, y)), ((a, x), (a, x))):
+            rest, change = _twice_polar(terms, _Factors.of(terms, one), _Factors.of(terms, other))
+            middle = (fraction(rest.high) + fraction(rest.low)).T[..., None] + fraction(change)
+            off = np.abs(middle - twice_polar(terms.system, own, its))
+            radius = np.broadcast_to(rest.radius[0].T[..., None], off.shape)
+            assert (off <= fraction(radius)).all(), seed
+            if doubtful is None:
+                assert radius.max() <= 1e4 * U
+            closest = max(closest, (off / fraction(radius)).max())
+    assert closest > 0.99
+
+
+def uncertain(rng: np.random.Generator, terms: Terms, doubtful: int | None) -> tuple[GroupState, Exact]:
+    """A state whose poses lie far apart; the exact one is at an end of the radius of a coordinate."""
+    high = rng.normal(size=(GROUPS, SIZE))
+    change = np.zeros((len(terms.moving) + 1, GROUPS, COUNT))
+    change[:-1] = 0.5 * rng.normal(size=(len(terms.moving), GROUPS, COUNT))
+    change[..., COUNT // 2] = 0.0
+    radius = np.zeros((2, GROUPS, SIZE))
+    exact = fraction(np.repeat(high.T[..., None], COUNT, axis=-1))
+    exact[terms.moving] += fraction(change[:-1])
+    if doubtful is not None:
+        radius[:, :, doubtful] = 1e-3
+        exact[doubtful] += Fraction(1e-3) * rng.choice([-1, 1], size=(GROUPS, COUNT))
+    return GroupState(Enclosed(high, 0.0 * high, radius), change, np.abs(change).max(axis=-1).T), exact
