@@ -92,7 +92,7 @@ class NumbersOfGroups:
         if (rows < 0).all():
             return Enclosed(high, low, radius)
         first = int(rows[0])
-        follow = (rows == np.arange(first, first + len(rows))).all()
+        follow = first >= 0 and (rows == np.arange(first, first + len(rows))).all()
         change = self.state.change[first : first + len(rows)] if follow else self.state.change[rows]
         return EnclosedGroups(
             high, low, radius, change.transpose(1, 2, 0), self.state.reach[:, rows][:, None]

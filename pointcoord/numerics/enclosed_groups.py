@@ -64,9 +64,11 @@ class EnclosedGroups(Enclosed):
         """Scalars that are enclosed at each of G m instants one after the other, (G m,)."""
         high, low = numbers.high.reshape(groups), numbers.low.reshape(groups)
         middle = slice(groups[1] // 2, groups[1] // 2 + 1)
-        change = (high - high[:, middle]) + (low - low[:, middle])
+        less = low - low[:, middle]
+        change = (high - high[:, middle]) + less
         radius = numbers.radius.reshape(2, *groups).max(axis=-1, keepdims=True)
-        lost = UNIT_ROUNDOFF * 3.0 * np.abs(change).max(axis=1, keepdims=True)
+        # The two differences may cancel: each is rounded by what it is.
+        lost = UNIT_ROUNDOFF * (3.0 * np.abs(change) + 3.0 * np.abs(less)).max(axis=1, keepdims=True)
         return cls.around(Enclosed(high[:, middle], low[:, middle], radius), change, lost)
 
     @classmethod

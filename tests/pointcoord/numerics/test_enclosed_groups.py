@@ -141,6 +141,19 @@ def test_other_numbers_of_the_instants_are_enclosed_with_what_they_are_off(seed:
 
 @some
 @given(seed=seeds)
+def test_numbers_of_instants_are_enclosed_also_where_they_lie_next_to_a_tie(seed: int) -> None:
+    # From 1 + 0.9 u to 1 + 1.1 u the high part goes up by 2 u, and the low one back by nearly as much.
+    rng = np.random.default_rng(seed)
+    up = rng.integers(0, 2, size=GROUPS * COUNT)
+    high, low = 1.0 + 2.0 * U * up, U * (0.9 - 1.8 * up) + 0.1 * U * rng.uniform(-1.0, 1.0, size=up.shape)
+    low[rng.integers(0, 2, size=up.shape) == 0] *= 1.0 - 1e-3
+    exact = (fraction(high) + fraction(low)).reshape(GROUPS, COUNT)
+    found = EnclosedGroups.of_instants(Enclosed(high, low, np.zeros((2, *high.shape))), (GROUPS, COUNT))
+    holds(found, exact, 20.0 * U**2)
+
+
+@some
+@given(seed=seeds)
 def test_vectors_are_taken_apart_and_keep_their_numbers(seed: int) -> None:
     a, x = numbers(np.random.default_rng(seed), 5)
     for places in ([1, 2, 3], [4, 0, 2]):
