@@ -12,12 +12,14 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
 from pointcoord.numerics.batch_last import mixed_series
 from pointcoord.numerics.batch_last.elimination import Eliminated
-from pointcoord.simulation import chain_settings, pose_tolerance
+from pointcoord.simulation import TRUNCATION_SHARE, chain_settings, pose_tolerance
 from pointcoord.solve import designs_by_inputs
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
+from pointcoord.solve.designs_by_inputs import rest_of_series
 from pointcoord.solve.ends_together import Confirmed
 from pointcoord.solve.paths_together import Columns
+from pointcoord.solve.taylor import last_and_fall
 from pointcoord.sweeping.solving import way_of_inputs
 from pointcoord.time_functions import TimeFunction
 
@@ -169,6 +171,25 @@ def test_three_inputs_or_none_that_move_are_followed_in_time() -> None:
 
 def laws_of(scene: Scene, inputs: dict[str, dict[str, float]]) -> dict[str, TimeFunction]:
     return laws(scene.model_copy(update={"inputs": inputs}))
+
+
+@pytest.mark.parametrize("turn", [None, 0.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 6.0])
+def test_terms_that_vanish_by_chance_do_not_make_what_is_left_out_small(turn: float | None) -> None:
+    # A singular place at radius 1 / r and angle phi has terms |cos(k phi + delta)| r^k: every second, third,
+    # ... one is missing where phi is that part of pi, and all may vanish by chance.
+    rng = np.random.default_rng(3)
+    k = np.arange(400.0)
+    for _ in range(300):
+        degree, r = int(rng.integers(8, 31)), rng.uniform(0.05, 0.7)
+        phi = np.pi * (rng.uniform() if turn is None else turn)
+        delta = rng.choice([0.0, 0.5 * np.pi, rng.uniform(0.0, np.pi)])
+        cosines = np.abs(np.cos(k * phi + delta))
+        sizes = np.where(cosines > 1e-13, cosines, 0.0) * r**k
+        last, fall = last_and_fall(sizes[: degree + 1, None])
+        claimed = rest_of_series(last, fall, degree, 1.0, 0.0)[:, 0]
+        beyond = [float((factor * sizes)[degree + 1 :].sum()) for factor in (1.0, k, k * (k - 1.0))]
+        # A series is cut at this share of what is claimed of it.
+        assert (beyond <= claimed / TRUNCATION_SHARE).all()
 
 
 def test_a_lost_term_keeps_boxes_from_being_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
