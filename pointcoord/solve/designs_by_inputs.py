@@ -55,13 +55,16 @@ PILOT, PILOTS = 8, 32
 MOST = {1: 30, 2: 20}
 # Degrees that are added where some designs need more, and how often.
 MORE, OFTEN = 2, 2
-# What a box costs beside its powers, in powers: the way to its centre, and its corners.
+# What a box costs beside its powers, in powers: the way to its centre, and its corners. Of 1024 double
+# wishbones a box of degree 15, of 136 powers, took 1.7 s for these under a profiler, and 1.3 s beside them.
 BOX = 100.0
 # Parts that a range is divided into.
 PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
 # A box is halved where it does for less than all but this share of the designs, and a range at most so often.
 FEW, HALVED = 0.25, 4
-# A start is taken for the middle of a range if it is no farther from it, in parts of the range.
+# A start is taken for the middle of a range if it is no farther from it, in parts of the range. A way took as
+# long as 20 powers there; a range that is wider by x on either side asks for 2 p x / ln(1 / f) degrees more,
+# of p + 1 powers each, where terms fall to a part f: some 400 x powers with p = 15 and f = 0.3.
 NEAR_MIDDLE = 0.02
 # Least half width of a range, in parts of its size or of 1, of an input that hardly moves.
 NARROWEST = 2.0**-20

@@ -32,6 +32,10 @@ SWINGS = {
 }
 
 
+# Offsets of the inner end of the tie rod, mm.
+OUTBOARD = np.array([-25.0, -20.0, 5.0, 10.0, 12.0, 15.0, 18.0, 20.0, 25.0])
+
+
 def swinging(name: str) -> Scene:
     scene = Scene.load(name)
     return scene.model_copy(update={"inputs": {**scene.inputs, **SWINGS[name]}})
@@ -129,20 +133,41 @@ def test_designs_that_stop_are_told_of_as_in_the_plain_form_and_others_are_mappe
     assert (mechanism.unit[solved.mapped, None, None] * difference).max() <= 2.0 * 0.1 * scene.tolerance
 
 
-def test_a_design_that_locks_where_the_inputs_never_are_does_not_fail() -> None:
-    # Arm and rack go together, so that the corners of their ranges are never visited; with the last of these
-    # heights the car cannot be in one of them.
+def test_a_design_that_locks_where_the_inputs_never_are_does_not_fail(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The rack goes down as the arm goes up, so that two corners of their ranges are never visited. With
+    # the two longest tie rods the car cannot be in one of these.
     scene = Scene.load("double-wishbone")
-    together = {
-        "arm_angle": {"polynomial": [1.35, 0.16]},
-        "rack": {"polynomial": [-60.0, 60.0]},
-    }
-    scene = scene.model_copy(update={"inputs": together})
-    heights = np.linspace(-5.0, 120.0, 16)
-    mechanism = designs(scene, {"lower_ball_joint.z": heights})
+    arm = {"sine": {"amplitude": 0.25, "angular_frequency": 60.0, "offset": 1.25}}
+    rack = {"sine": {"amplitude": -35.0, "angular_frequency": 60.0, "offset": -40.0}}
+    scene = scene.model_copy(update={"inputs": {"arm_angle": arm, "rack": rack}})
+    mechanism = designs(scene, {"tie_rod_inner.y": OUTBOARD})
+    corner = {"arm_angle": {"polynomial": [1.51, -0.51]}, "rack": {"polynomial": [0.0, -75.0]}}
+    time = {"start": 0.0, "stop": 1.0, "samples": 2}
+    to_corner = scene.model_copy(update={"inputs": corner, "time": time})
+    _, there = both(to_corner, mechanism)
+    locked = sorted(there.failures)
+    assert 0 < len(locked) < len(OUTBOARD)
+
+    # They were met on the way: boxes reach to corners at which these designs are not confirmed.
+    whole, good = designs_by_inputs.confirm, []
+
+    def watched(
+        columns: Columns, y: np.ndarray, begun: Eliminated, left_out: np.ndarray, tolerance: float
+    ) -> Confirmed:
+        found = whole(columns, y, begun, left_out, tolerance)
+        good.append(found.good)
+        return found
+
+    monkeypatch.setattr(designs_by_inputs, "confirm", watched)
     solved, plain = both(scene, mechanism)
-    np.testing.assert_array_equal(solved.solved, plain.alive)
-    assert set(solved.failures) == set(plain.failures)
+    assert not np.all(good, axis=0)[locked].any()
+    assert len(solved.mapped)
+    assert not np.intersect1d(solved.mapped, locked).size
+    np.testing.assert_array_equal(solved.solved, np.arange(len(OUTBOARD)))
+    np.testing.assert_array_equal(plain.alive, solved.solved)
+    assert not solved.failures
 
 
 def test_a_way_that_passes_once_takes_no_more_than_one_box() -> None:
