@@ -10,11 +10,13 @@ rates.
 
 The range of the inputs is one box, or a grid of boxes of which those are solved that the way touches. The
 centre of a box is reached from the start, or from the centre of the box beside it, by proven steps (see
-`paths_together`). A box is held to what a segment of a chain is (see `taylor`): its last terms, and what they
-contribute to the rates that are asked for, are below the tolerance relative to the size of these; at each
-corner Newton's method finds the assembly, from a first step of no more than the tolerance and rounding, on
-the branch of the centre, and boxes that share a corner find one assembly there. A box whose terms do not fall
-is halved. A way that goes over its range once takes fewer series in time than boxes, so there are at most as
+`paths_together`). A box is held to what a segment of a chain is (see `taylor`): its last two degrees, and all
+beyond if these go on to fall as the last ones did, with what they contribute to the rates that are asked for,
+are below the tolerance relative to the size of these. A degree that is missing, or small by chance, as every
+other one is where a car is symmetric, is taken for what the ones before it come to. And at each corner
+Newton's method finds the assembly, from a first step of no more than the tolerance and rounding, on the
+branch of the centre, and boxes that share a corner find one assembly there. A box whose terms do not fall is
+halved. A way that goes over its range once takes fewer series in time than boxes, so there are at most as
 many boxes as passes are begun. A design of which one box is not confirmed so is reported: whoever asked
 follows it in time.
 """
@@ -37,7 +39,7 @@ from pointcoord.numerics.batch_last.mixed_series import MixedSeries
 from pointcoord.numerics.batch_last.series import ColumnSeries
 from pointcoord.solve.ends_together import Confirmed, confirm, noise
 from pointcoord.solve.paths_together import Columns, follow_together
-from pointcoord.solve.taylor import SOLVED, Settings
+from pointcoord.solve.taylor import SOLVED, Settings, last_and_fall
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -53,16 +55,17 @@ PILOT, PILOTS = 8, 32
 MOST = {1: 30, 2: 20}
 # Degrees that are added where some designs need more, and how often.
 MORE, OFTEN = 2, 2
-# What a box costs beside its powers, in powers: the way to its centre, and its corners.
+# What a box costs beside its powers, in powers: the way to its centre, and its corners. Of 1024 double
+# wishbones a box of degree 15, of 136 powers, took 1.7 s for these under a profiler, and 1.3 s beside them.
 BOX = 100.0
 # Parts that a range is divided into.
 PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
 # A box is halved where it does for less than all but this share of the designs, and a range at most so often.
 FEW, HALVED = 0.25, 4
-# A start is taken for the middle of a range if it is no farther from it, in parts of the range.
+# A start is taken for the middle of a range if it is no farther from it, in parts of the range. A way took as
+# long as 20 powers there; a range that is wider by x on either side asks for 2 p x / ln(1 / f) degrees more,
+# of p + 1 powers each, where terms fall to a part f: some 400 x powers with p = 15 and f = 0.3.
 NEAR_MIDDLE = 0.02
-# Boxes that share a corner: what is left of two of Newton's methods, and rounding, in tolerances.
-SAME = 4.0
 # Least half width of a range, in parts of its size or of 1, of an input that hardly moves.
 NARROWEST = 2.0**-20
 
@@ -263,11 +266,11 @@ class _Waiting:
 
 @dataclass(frozen=True)
 class _Tried:
-    """A box, and of whom it is confirmed; by corner the poses there, and what is left of them."""
+    """A box, and of whom it is confirmed; by corner the poses there, (size, members)."""
 
     box: Box
     good: Flags
-    corners: Mapping[Cell, tuple[Array, Array]]
+    corners: Mapping[Cell, Array]
 
 
 @dataclass(frozen=True)
@@ -323,7 +326,7 @@ class _Course:
         poses: list[tuple[Array, Array]] = []
         found: list[Box] = []
         most = max(np.ceil(self.way.passes), 1.0)
-        corners: dict[Cell, tuple[Array, Array]] = {}
+        corners: dict[Cell, Array] = {}
         while waiting:
             if len(found) + len(waiting) > most:
                 return np.zeros_like(alive), None
@@ -341,13 +344,12 @@ class _Course:
             if not alive.any():
                 return alive, None
             found.append(tried.box)
-            for sign, (place, left) in tried.corners.items():
+            for sign, place in tried.corners.items():
                 place_of = (one.centre + one.half * np.array(sign) - low) / width * 2.0**HALVED
                 corner = tuple(np.rint(place_of).astype(int).tolist())
                 if corner in corners:
-                    apart = np.abs(place - corners[corner][0]).max(axis=0)
-                    alive &= apart <= left + corners[corner][1] + SAME * SOLVED * self.settings.tolerance
-                corners[corner] = place, left
+                    alive &= self._same(corners[corner], place)
+                corners[corner] = place
         kept = tuple(
             Box(box.centre, box.half, tuple(group.taken(alive) for group in box.groups))
             if not alive.all()
@@ -355,6 +357,19 @@ class _Course:
             for box in found
         )
         return alive, Boxes(self.way.names, kept, int(np.count_nonzero(alive)))
+
+    def _same(self, one: Array, other: Array) -> Flags:
+        """Whether poses at one corner, of two boxes, are one assembly, (members,).
+
+        Newton's method leaves at most a share of the tolerance of each (see `confirm`), and rounding.
+        """
+        n = self.columns.map.unknowns
+        apart = np.abs(other[:n] - one[:n]).max(axis=0)
+        allowed = np.full_like(apart, 2.0 * SOLVED * self.settings.tolerance)
+        doubtful = np.isfinite(apart) & (apart > allowed)
+        if doubtful.any():
+            allowed[doubtful] += 2.0 * noise(self.columns, other[:, doubtful], np.zeros(len(other)))
+        return np.asarray(apart <= allowed)
 
     def _halves(self, one: _Waiting, axis: int, number: int) -> list[_Waiting]:
         """A box in two, as far as the way touches them."""
@@ -441,8 +456,8 @@ class _Course:
         terms = max(sizes[-1], fall * sizes[-2]) * fall ** (orders - PILOT)
         speed, acceleration = self._rates(parts)
         whole = np.array([1.0, sizes[1] * speed, max(sizes[1] * acceleration, 2.0 * sizes[2] * speed**2)])
-        left_out = _left_out(terms, fall, orders, speed, acceleration)
-        small = left_out <= self.settings.tolerance * whole[:, None]
+        beyond = rest_of_series(terms, fall, orders, speed, acceleration)
+        small = beyond <= self.settings.tolerance * whole[:, None]
         enough = small[: self.settings.derivative + 1].all(axis=0)
         return int(orders[np.argmax(enough)]) if enough.any() else most + 1
 
@@ -485,7 +500,7 @@ class _Course:
         members, n = y.shape[-1], self.columns.map.unknowns
         signs = list(product((-1, 1), repeat=len(self.drives)))
         good = np.zeros(members, dtype=bool)
-        corners = {sign: (np.zeros((n, members)), np.zeros(members)) for sign in signs}
+        corners = {sign: np.zeros(y.shape) for sign in signs}
         most = min(order + MORE * OFTEN, MOST[len(self.drives)])
         spare: _Expanded | None = None
         moves = np.stack(self.moves(), axis=-1)
@@ -520,7 +535,7 @@ class _Course:
             found = self._corners(here, ends, own, centre, half, signs)
             for sign, (end, first) in zip(signs, found, strict=True):
                 confirmed &= end.good & first
-                corners[sign][0][:, part], corners[sign][1][part] = end.y[:n], end.left
+                corners[sign][:, part] = end.y
             good[part] = confirmed
             if low == 0:
                 rooms = [np.empty((*each.shape[:2], members)) for each in terms]
@@ -535,23 +550,20 @@ class _Course:
         return _Tried(Box(centre, half, groups), good, corners)
 
     def _falls(self, here: _Expanded, half: Array) -> Flags:
-        """Whose last two degrees are small enough, (members,)."""
+        """Whose last degrees are small enough, (members,)."""
         sizes, degree = here.sizes(), here.degree
-        n, middle = self.columns.map.unknowns, here.degree // 2
+        n = self.columns.map.unknowns
         speeds, accelerations = self.way.speeds / half, self.way.accelerations / half
         with np.errstate(all="ignore"):
-            # A term that is small by chance is taken for what the ones before it come to.
-            late, early = np.maximum(sizes[-1], sizes[-2]), np.maximum(sizes[middle], sizes[middle - 1])
-            fall = np.minimum((late / np.maximum(early, 1e-300)) ** (1.0 / (degree - middle)), 1.0)
-            last = np.maximum(sizes[-1], fall * np.maximum(sizes[-2], fall * sizes[-3]))
-            left_out = _left_out(last, fall, degree, float(speeds.max()), float(accelerations.max()))
-            whole = np.zeros_like(left_out)
+            last, fall = last_and_fall(sizes)
+            beyond = rest_of_series(last, fall, degree, float(speeds.max()), float(accelerations.max()))
+            whole = np.zeros_like(beyond)
             whole[0] = 1.0
             for series, speed, acceleration in zip(here.alone, speeds, accelerations, strict=True):
                 first, second = (np.abs(series.y[k, :n]).max(axis=0) for k in (1, 2))
                 whole[1] = np.maximum(whole[1], speed * first)
                 whole[2] = np.maximum(whole[2], np.maximum(acceleration * first, 2.0 * speed**2 * second))
-            small = left_out <= self.settings.tolerance * whole
+            small = beyond <= self.settings.tolerance * whole
             return np.asarray(
                 small[: self.settings.derivative + 1].all(axis=0) & np.isfinite(sizes).all(axis=0)
             )
@@ -595,15 +607,30 @@ class _Course:
         return found
 
 
-def _left_out(last: Array, fall: Array, degree: Numbers | int, speed: float, acceleration: float) -> Array:
-    """What the terms beyond the last degree come to in the place and in its rates, (3, ...).
+def rest_of_series(
+    last: Array, fall: Array, degree: Numbers | int, speed: float, acceleration: float
+) -> Array:
+    r"""What the last two degrees come to in the place and in its rates, or all beyond if more, (3, ...).
 
-    Terms that fall at least by half come to no more than the last one, and others in proportion more.
+    Of terms that fall to a part f from degree to degree, with p the last one and g = f / (1 - f), those
+    beyond come to, in parts of the last,
+
+        sum_j f^j = g,    sum_j (p + j) f^j = p g + g / (1 - f),
+        sum_j (p + j) (p + j - 1) f^j = p (p - 1) g + 2 p g / (1 - f) + 2 g f / (1 - f)^2,    j = 1, 2, ...
+
+    The last two count as in a chain: where terms fall fast, how fast is not known so well.
 
     Args:
         last: size of the last degree. fall: from one degree to the next.
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        beyond = last * np.maximum(fall / (1.0 - fall), 1.0)
-        rate = degree * (degree - 1.0) * speed**2 + degree * acceleration
-        return np.stack([beyond, beyond * (degree * speed), beyond * rate])
+    p = degree
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        rest = 1.0 / (1.0 - fall)
+        g = fall * rest
+        place = np.maximum(g, 1.0 + 1.0 / fall) + 0.0 * p
+        slope = np.maximum(g * (p + rest), p + (p - 1.0) / fall)
+        bend = np.maximum(
+            g * (p * (p - 1.0) + 2.0 * rest * (p + fall * rest)), (p - 1.0) * (p + (p - 2.0) / fall)
+        )
+        found = np.stack([place, slope * speed, bend * speed**2 + slope * acceleration])
+        return np.where(last > 0.0, last * found, 0.0)

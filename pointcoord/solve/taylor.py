@@ -560,6 +560,21 @@ def gone_on(logs: Array) -> Array:
     return np.stack([before, last], axis=-1)
 
 
+def last_and_fall(sizes: Array) -> tuple[Array, Array]:
+    """The last term of each member, at least what the ones before it come to, and how terms fall, (members,).
+
+    The fall is the part that is left from one term to the next, at most 1 (see `gone_on`).
+
+    Args:
+        sizes: of the terms, at least SHORT, (orders, members).
+    """
+    with np.errstate(divide="ignore"):
+        window, fall = _fall(np.log(sizes.T))
+    part = np.exp(-fall[:, 0])
+    later = sizes[-window:] * part ** np.arange(window - 1.0, -1.0, -1.0)[:, None]
+    return np.asarray(later.max(axis=0)), part
+
+
 def _gone_on_of_one(logs: list[float]) -> tuple[float, float]:
     """The same of one member, in Python's own numbers."""
     count, window, latest = len(logs), WINDOW, 0
@@ -581,7 +596,8 @@ def _fall(logs: Array) -> tuple[int, Array]:
     """How many terms are looked at, and how much their logarithms fall from one to the next, (members, 1)."""
     count = logs.shape[-1]
     window = WINDOW
-    for member in np.isfinite(logs[:, 1:]):
+    there = np.isfinite(logs[:, 1:])
+    for member in there[~there.all(axis=-1)]:
         # A gap that was there once may come again.
         window = max(window, int(np.diff(np.flatnonzero(member) + 1, prepend=0).max(initial=1)))
     window = min(window, count - 2)

@@ -191,6 +191,9 @@ def _range(extremes: Extremes | None, label: Label) -> str:
         return ""
     factor = 180.0 / np.pi if QUANTITIES[label[0]].unit == "rad" else 1.0
     low, high = (_number(factor * value) for value in (extremes.lowest, extremes.highest))
+    if low == high:
+        # As far as it is shown; which of them is lowest is rounding.
+        return f"{low} in all designs"
     return f"{low} (design {extremes.design_of_lowest}) to {high} (design {extremes.design_of_highest})"
 
 

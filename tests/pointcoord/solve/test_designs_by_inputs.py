@@ -12,12 +12,14 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
 from pointcoord.numerics.batch_last import mixed_series
 from pointcoord.numerics.batch_last.elimination import Eliminated
-from pointcoord.simulation import chain_settings, pose_tolerance
+from pointcoord.simulation import TRUNCATION_SHARE, chain_settings, pose_tolerance
 from pointcoord.solve import designs_by_inputs
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
+from pointcoord.solve.designs_by_inputs import rest_of_series
 from pointcoord.solve.ends_together import Confirmed
 from pointcoord.solve.paths_together import Columns
+from pointcoord.solve.taylor import last_and_fall
 from pointcoord.sweeping.solving import way_of_inputs
 from pointcoord.time_functions import TimeFunction
 
@@ -28,6 +30,10 @@ SWINGS = {
     "off-axis-strut": {},
     "double-wishbone": {},
 }
+
+
+# Offsets of the inner end of the tie rod, mm.
+OUTBOARD = np.array([-25.0, -20.0, 5.0, 10.0, 12.0, 15.0, 18.0, 20.0, 25.0])
 
 
 def swinging(name: str) -> Scene:
@@ -127,20 +133,41 @@ def test_designs_that_stop_are_told_of_as_in_the_plain_form_and_others_are_mappe
     assert (mechanism.unit[solved.mapped, None, None] * difference).max() <= 2.0 * 0.1 * scene.tolerance
 
 
-def test_a_design_that_locks_where_the_inputs_never_are_does_not_fail() -> None:
-    # Arm and rack go together, so that the corners of their ranges are never visited; with the last of these
-    # heights the car cannot be in one of them.
+def test_a_design_that_locks_where_the_inputs_never_are_does_not_fail(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The rack goes down as the arm goes up, so that two corners of their ranges are never visited. With
+    # the two longest tie rods the car cannot be in one of these.
     scene = Scene.load("double-wishbone")
-    together = {
-        "arm_angle": {"polynomial": [1.35, 0.16]},
-        "rack": {"polynomial": [-60.0, 60.0]},
-    }
-    scene = scene.model_copy(update={"inputs": together})
-    heights = np.linspace(-5.0, 120.0, 16)
-    mechanism = designs(scene, {"lower_ball_joint.z": heights})
+    arm = {"sine": {"amplitude": 0.25, "angular_frequency": 60.0, "offset": 1.25}}
+    rack = {"sine": {"amplitude": -35.0, "angular_frequency": 60.0, "offset": -40.0}}
+    scene = scene.model_copy(update={"inputs": {"arm_angle": arm, "rack": rack}})
+    mechanism = designs(scene, {"tie_rod_inner.y": OUTBOARD})
+    corner = {"arm_angle": {"polynomial": [1.51, -0.51]}, "rack": {"polynomial": [0.0, -75.0]}}
+    time = {"start": 0.0, "stop": 1.0, "samples": 2}
+    to_corner = scene.model_copy(update={"inputs": corner, "time": time})
+    _, there = both(to_corner, mechanism)
+    locked = sorted(there.failures)
+    assert 0 < len(locked) < len(OUTBOARD)
+
+    # They were met on the way: boxes reach to corners at which these designs are not confirmed.
+    whole, good = designs_by_inputs.confirm, []
+
+    def watched(
+        columns: Columns, y: np.ndarray, begun: Eliminated, left_out: np.ndarray, tolerance: float
+    ) -> Confirmed:
+        found = whole(columns, y, begun, left_out, tolerance)
+        good.append(found.good)
+        return found
+
+    monkeypatch.setattr(designs_by_inputs, "confirm", watched)
     solved, plain = both(scene, mechanism)
-    np.testing.assert_array_equal(solved.solved, plain.alive)
-    assert set(solved.failures) == set(plain.failures)
+    assert not np.all(good, axis=0)[locked].any()
+    assert len(solved.mapped)
+    assert not np.intersect1d(solved.mapped, locked).size
+    np.testing.assert_array_equal(solved.solved, np.arange(len(OUTBOARD)))
+    np.testing.assert_array_equal(plain.alive, solved.solved)
+    assert not solved.failures
 
 
 def test_a_way_that_passes_once_takes_no_more_than_one_box() -> None:
@@ -169,6 +196,25 @@ def test_three_inputs_or_none_that_move_are_followed_in_time() -> None:
 
 def laws_of(scene: Scene, inputs: dict[str, dict[str, float]]) -> dict[str, TimeFunction]:
     return laws(scene.model_copy(update={"inputs": inputs}))
+
+
+@pytest.mark.parametrize("turn", [None, 0.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 6.0])
+def test_terms_that_vanish_by_chance_do_not_make_what_is_left_out_small(turn: float | None) -> None:
+    # A singular place at radius 1 / r and angle phi has terms |cos(k phi + delta)| r^k: every second, third,
+    # ... one is missing where phi is that part of pi, and all may vanish by chance.
+    rng = np.random.default_rng(3)
+    k = np.arange(400.0)
+    for _ in range(300):
+        degree, r = int(rng.integers(8, 31)), rng.uniform(0.05, 0.7)
+        phi = np.pi * (rng.uniform() if turn is None else turn)
+        delta = rng.choice([0.0, 0.5 * np.pi, rng.uniform(0.0, np.pi)])
+        cosines = np.abs(np.cos(k * phi + delta))
+        sizes = np.where(cosines > 1e-13, cosines, 0.0) * r**k
+        last, fall = last_and_fall(sizes[: degree + 1, None])
+        claimed = rest_of_series(last, fall, degree, 1.0, 0.0)[:, 0]
+        beyond = [float((factor * sizes)[degree + 1 :].sum()) for factor in (1.0, k, k * (k - 1.0))]
+        # A series is cut at this share of what is claimed of it.
+        assert (beyond <= claimed / TRUNCATION_SHARE).all()
 
 
 def test_a_lost_term_keeps_boxes_from_being_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
