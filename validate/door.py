@@ -14,6 +14,8 @@ from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
+from validate.hardpoint_files.axes import UnknownAxes
+from validate.hardpoint_files.contents import HardpointFileError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 
@@ -25,6 +27,7 @@ MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exi
         (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage),
         ExitStatus.WRONG_INPUT,
     ),
+    ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )
