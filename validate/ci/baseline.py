@@ -351,7 +351,10 @@ class Recorder:
         words = {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
         for name, word in words.items():
             self._member(name, np.array(word))
-        self._archive.close()
+        try:
+            self._archive.close()
+        except OSError as error:
+            raise unwritable(tempfile.gettempdir(), error) from None
 
         def put(stream: BinaryIO) -> None:
             self._gathered.seek(0)
@@ -365,9 +368,10 @@ class Recorder:
 
     def __exit__(self, *_: object) -> None:
         """Give the disk back."""
-        with suppress(OSError):  # of a full one: what is thrown away needs no end
-            self._archive.close()
-        self._gathered.close()
+        # A full one takes no end of what is thrown away.
+        for one in (self._archive, self._gathered):
+            with suppress(OSError):
+                one.close()
 
 
 def _gathering_place() -> IO[bytes]:

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from pointcoord.effects.registry import QUANTITIES
 from validate.ci.baseline import Since
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus, combined
-from validate.formulations.protocol import Accuracy, Solution
 from validate.output.report import about
 
 Case = tuple[Examined, Outcome]
@@ -68,7 +65,7 @@ class Record:
 
 def _told(outcome: Outcome) -> Outcome:
     one, two = (
-        Solution(solution.formulation, solution.times, {}, Accuracy(np.ones(0)))
+        replace(solution, numbers={}, accuracy=replace(solution.accuracy, claims={}))
         for solution in outcome.solutions
     )
     return replace(outcome, solutions=(one, two))

@@ -1,0 +1,294 @@
+"""The options of `validate` for services that decide: folders, a factor, a stop at the first fault, files."""
+
+import html
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from junit_schema import checked
+from program import BOUNCE, PAST_ITS_END, complaints, in_shell, run, short_scene
+
+from pointcoord import Scene
+from validate import Solution, compare
+from validate.ci.scene_folder import scenes_below
+from validate.cli import main
+from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+
+PAIR = ("--second", "absolute")
+SOLVE = AbsoluteCoordinates.solve
+
+
+def off_by(patch: pytest.MonkeyPatch, times: float) -> None:
+    """The absolute model's wheel centre is wrong by so many times both claims together, at one instant."""
+
+    def solve(self: AbsoluteCoordinates, scene: Scene) -> Solution:
+        right = compare(scene, "pointcoord", Given(SOLVE(self, scene)))
+        one, two = right.solutions
+        claims = (s.accuracy.claims["position"]["wheel_centre"][2, 0] for s in (one, two))
+        places = two.numbers["position"]["wheel_centre"].copy()
+        places[2, 0] = one.numbers["position"]["wheel_centre"][2, 0] + times * sum(claims)
+        return two.with_numbers({"position": {**two.numbers["position"], "wheel_centre": places}})
+
+    patch.setattr(AbsoluteCoordinates, "solve", solve)
+
+
+class Given:
+    """A formulation that has its answer."""
+
+    def __init__(self, solution: Solution) -> None:
+        self.name, self._solution = solution.formulation, solution
+
+    def solve(self, scene: Scene) -> Solution:
+        return self._solution
+
+
+def test_every_toml_file_below_a_folder_is_compared_in_order_and_a_broken_one_is_its_own_fault(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for folder in ("b", "a/deep", "a.b"):
+        (tmp_path / folder).mkdir(parents=True)
+    wanted = [
+        short_scene(tmp_path / "a/deep", "z.toml"),
+        short_scene(tmp_path / "a", "y.toml"),
+        short_scene(tmp_path / "a.b", "x.toml"),
+        short_scene(tmp_path / "b", "w.toml"),
+    ]
+    (tmp_path / "b" / "notes.txt").write_text("no scene")
+    (tmp_path / "b" / "folder.toml").mkdir()
+    (tmp_path / "a" / "m.toml").write_text("no = [toml")
+    wanted.insert(1, str(tmp_path / "a" / "m.toml"))
+    data = tmp_path / "out.json"
+    assert main(["validate", *PAIR, "--scenes-dir", str(tmp_path), "--json", str(data)]) == 2
+    scenes = json.loads(data.read_text())["scenes"]
+    assert [scene["scene"] for scene in scenes] == wanted
+    assert [scene["exit_status"] for scene in scenes] == [0, 2, 0, 0, 0]
+    (line,) = complaints(capsys.readouterr().err)
+    assert "m.toml" in line
+    assert main(["validate", wanted[0], *PAIR, "--scenes-dir", str(tmp_path / "b"), "--json", str(data)]) == 0
+    both = [scene["scene"] for scene in json.loads(data.read_text())["scenes"]]
+    assert both == [wanted[0], wanted[-1]]
+
+
+@pytest.mark.parametrize(
+    ("folder", "words"),
+    [
+        ("empty", "holds no scene"),
+        ("none", "No such file"),
+        ("file", "Not a directory"),
+        ("a\0b", "names no"),
+    ],
+)
+def test_a_folder_without_scenes_is_an_error_of_the_command(
+    folder: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "file").write_text("")
+    assert main(["validate", "--scenes-dir", str(tmp_path / folder)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith("pointcoord: --scenes-dir ")
+    assert words in line
+
+
+def test_a_link_to_a_folder_above_does_not_lead_in_a_circle(tmp_path: Path) -> None:
+    short_scene(tmp_path)
+    os.symlink(tmp_path, tmp_path / "again")
+    assert scenes_below(str(tmp_path)) == (str(tmp_path / "short.toml"),)
+
+
+@pytest.mark.parametrize(("factor", "status"), [(None, 1), ("1", 1), ("1.9", 1), ("2.1", 0), ("1e3", 0)])
+def test_a_factor_is_what_a_difference_of_twice_the_tolerance_needs_and_every_result_says_it(
+    factor: str | None,
+    status: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    off_by(monkeypatch, 2.0)
+    scene, places = short_scene(tmp_path), [str(tmp_path / f"out.{end}") for end in ("json", "xml", "md")]
+    ends = [word for pair in zip(("--json", "--junit", "--summary"), places, strict=True) for word in pair]
+    words = ["validate", scene, *PAIR, *ends]
+    assert main([*words, *(() if factor is None else ("--tolerance-factor", factor))]) == status
+    out = capsys.readouterr().out
+    held = float(factor or 1.0)
+    data, root = json.loads(Path(places[0]).read_text()), checked(Path(places[1]).read_bytes())
+    assert data["tolerance_factor"] == data["scenes"][0]["comparisons"][0]["tolerance_factor"] == held
+    properties = {one.get("name"): one.get("value") for one in root.iter("property")}
+    assert float(properties["tolerance_factor"] or "") == held
+    told = f"{held!r} times the derived tolerance, which is no longer the derived one"
+    assert out.count(told) == (2 if held != 1.0 else 0)
+    assert (told in Path(places[2]).read_text()) == (held != 1.0)
+    rows = {(r["quantity"], r["name"]): r for r in data["scenes"][0]["comparisons"][0]["rows"]}
+    row = rows["position", "wheel_centre"]
+    assert row["share"] == pytest.approx(2.0 / held, rel=0.15)  # of rounding: the tolerance is some 20 bits
+
+
+@pytest.mark.parametrize("word", ["0", "-1", "inf", "nan", "two", "1e999", ""])
+def test_a_factor_that_is_none_is_refused(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "steer", f"--tolerance-factor={word}"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "allowed: a positive, finite number" in line
+
+
+@pytest.mark.parametrize("fault", ["disagrees", "refused", "broken", "moved"])
+def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
+    fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, last = short_scene(tmp_path, "a.toml"), short_scene(tmp_path, "c.toml")
+    kept = str(tmp_path / "kept.npz")
+    wrong = short_scene(tmp_path, "b.toml", stop="1.5")
+    more: tuple[str, ...] = ()
+    plain = AbsoluteCoordinates.solve
+
+    def off(self: AbsoluteCoordinates, scene: Scene) -> Solution:
+        solution = plain(self, scene)
+        shift = 1e-3 if scene.time.stop == 1.5 else 0.0
+        places = {name: array + shift for name, array in solution.numbers["position"].items()}
+        return solution.with_numbers({"position": places})
+
+    if fault == "moved":  # since the fault was mended that its baseline has
+        with monkeypatch.context() as patch:
+            patch.setattr(AbsoluteCoordinates, "solve", off)
+            assert main(["validate", wrong, *PAIR, "-q", "--save-baseline", kept]) == 1
+        more = ("--baseline", kept)
+    elif fault == "refused":
+        wrong = short_scene(tmp_path, "b.toml", samples="27", **PAST_ITS_END)
+    elif fault == "broken":
+        Path(wrong).write_text(BOUNCE.replace("samples", "sample"))
+    else:
+        monkeypatch.setattr(AbsoluteCoordinates, "solve", off)
+    places = {end: tmp_path / f"out.{end}" for end in ("json", "xml", "md", "npz")}
+    options = ("--json", "--junit", "--summary", "--save-baseline")
+    ends = [word for pair in zip(options, map(str, places.values()), strict=True) for word in pair]
+    status = {"disagrees": 1, "refused": 3, "broken": 2, "moved": 1}[fault]
+    capsys.readouterr()
+    assert main(["validate", first, wrong, last, *PAIR, "--fail-fast", *more, *ends]) == status
+    data = json.loads(places["json"].read_text())
+    assert [scene["scene"] for scene in data["scenes"]] == [first, wrong]
+    assert data["not_run"] == [last]
+    assert f"1 of 3 not run (--fail-fast ended the run at {wrong}): {last}" in capsys.readouterr().out
+    root = checked(places["xml"].read_bytes())
+    (skipped,) = root[-1].iter("skipped")
+    assert (root[-1].get("name"), skipped.get("message")) == (
+        last,
+        f"not run: --fail-fast ended the run at {wrong}",
+    )
+    assert f"scene {last}: --fail-fast ended the run at {wrong}" in html.unescape(places["md"].read_text())
+    with np.load(places["npz"]) as file:
+        names = [one["scene"] for one in json.loads(str(file["head"]))["scenes"]]
+    assert names == ([first, wrong] if fault in ("disagrees", "moved") else [first])
+
+
+def test_without_a_fault_every_scene_is_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
+    assert main(["validate", *scenes, *PAIR, "--fail-fast"]) == 0
+    assert "not run" not in capsys.readouterr().out
+
+
+def test_two_runs_leave_the_same_bytes(tmp_path: Path) -> None:
+    """By processes of their own, with other seeds of the hashes of names."""
+    short_scene(tmp_path, "a.toml")
+    short_scene(tmp_path, "b.toml", samples="27", **PAST_ITS_END)
+    found = []
+    for seed in ("1", "2"):
+        files = [tmp_path / f"{end}{seed}" for end in ("xml", "md", "npz")]
+        options = ("--junit", "--summary", "--save-baseline")
+        ends = [word for pair in zip(options, map(str, files), strict=True) for word in pair]
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        words = ("validate", "--second", "printed", "--scenes-dir", str(tmp_path), "steer", *ends)
+        done = run(*words, env=environment)
+        assert done.returncode == 1, done.stderr
+        found.append([done.stdout, done.stderr, *(file.read_bytes() for file in files)])
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("option", ["--junit", "--summary", "--save-baseline"])
+def test_a_place_that_cannot_be_written_is_refused_before_anything_is_solved(
+    option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda *_: pytest.fail("solved"))
+    scene = short_scene(tmp_path)
+    for target, status, words in (
+        (str(tmp_path / "none" / "x"), 4, "there is no folder"),
+        (str(tmp_path), 4, "Is a directory"),
+        ("", 2, "names no file"),
+        (scene, 2, "would overwrite the scene"),
+    ):
+        assert main(["validate", scene, *PAIR, option, target]) == status
+        out, err = capsys.readouterr()
+        assert out == ""
+        (line,) = err.splitlines()
+        assert words in line
+
+
+def test_results_do_not_share_a_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = str(tmp_path / "x")
+    for words in (
+        ["--junit", target, "--summary", target],
+        ["--json", "-", "--summary", "-"],
+        ["--baseline", target, "--json", os.path.join(tmp_path, ".", "x")],
+        ["--save-baseline", "-"],
+    ):
+        assert main(["validate", "steer", *words]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "give" in line
+
+
+def test_a_text_goes_alone_to_standard_output(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = short_scene(tmp_path)
+    assert main(["validate", scene, *PAIR, "--junit", "-"]) == 0
+    checked(capsys.readouterr().out.encode())
+    assert main(["validate", scene, *PAIR, "--summary", "-"]) == 0
+    assert capsys.readouterr().out.startswith("## pointcoord validate\n\n**Agree**")
+
+
+def test_a_baseline_may_take_the_place_of_the_one_it_was_compared_with(tmp_path: Path) -> None:
+    scene, kept = short_scene(tmp_path), tmp_path / "kept.npz"
+    words = ["validate", scene, *PAIR, "-q", "--save-baseline", str(kept)]
+    assert main(words) == 0
+    before = kept.read_bytes()
+    assert main([*words, "--baseline", str(kept)]) == 0
+    assert kept.read_bytes() == before
+
+
+def test_what_was_there_stays_whole_when_the_disk_is_full(tmp_path: Path) -> None:
+    scene = short_scene(tmp_path)
+    for option, name in (("--junit", "x.xml"), ("--summary", "x.md"), ("--save-baseline", "x.npz")):
+        target = tmp_path / name
+        target.write_text("before")
+        script = 'ulimit -f 1; trap "" XFSZ; exec "$@"'
+        done: subprocess.CompletedProcess[str] = in_shell(
+            script, "validate", scene, scene, "steer", "-q", option, str(target)
+        )
+        assert done.returncode == 4, done.stderr
+        (line,) = complaints(done.stderr)
+        assert "cannot be written (File too large)" in line
+        assert target.read_text() == "before"
+        assert not list(tmp_path.glob(".pointcoord-*"))
+
+
+def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, last = short_scene(tmp_path, "a.toml"), short_scene(tmp_path, "b.toml", stop="1.5")
+
+    def solve(self: AbsoluteCoordinates, scene: Scene) -> Solution:
+        if scene.time.stop == 1.5:
+            raise KeyboardInterrupt
+        return SOLVE(self, scene)
+
+    monkeypatch.setattr(AbsoluteCoordinates, "solve", solve)
+    files = {option: tmp_path / option[2:] for option in ("--junit", "--summary", "--save-baseline")}
+    ends = [word for option, file in files.items() for word in (option, str(file))]
+    assert main(["validate", first, last, *PAIR, "-q", *ends]) == 130
+    root = checked(files["--junit"].read_bytes())
+    assert [suite.get("name") for suite in root] == [f"{first}: pointcoord and absolute", last]
+    assert "**Interrupted**" in files["--summary"].read_text()
+    assert not files["--save-baseline"].exists()
+    kept, interrupted = capsys.readouterr().err.splitlines()
+    assert "not written, because the run did not come to its end" in kept
+    assert f"{files['--junit']} holds 1 of 2 scenes" in interrupted
