@@ -49,6 +49,7 @@ ROOMS = {
         "comparison",
         "cars",
         "adjudication",
+        "measured",
         "output",
         "hard",
         "cost",

@@ -33,6 +33,7 @@ from validate.cost.ways.scipy_solvers import WAYS as SCIPY
 from validate.formulations.protocol import Accuracy
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
+from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
@@ -250,6 +251,11 @@ RECIPES: dict[str, Recipe] = {
             "pose": lambda pose: pose is not None,
             "corrections": bool,
         },
+    ),
+    "validate.measured.errors.ResultsError": Recipe(
+        lambda *_: columns_of_text("time,camber\n0,1.2\n1,l.3\n", "mine.csv"),
+        ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
+        {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
     ),
     "validate.relative.errors.HardpointsError": Recipe(
         lambda *_: build("macpherson", {**TABLE, "lower_arm_rear": TABLE["lower_arm_front"]}),
