@@ -24,7 +24,6 @@ from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
-from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
@@ -79,20 +78,14 @@ class DataOutcome:
         outcome: its comparison as that of any two solutions; its instants are values of the independent
             column, in s, rad or mm, or numbers of rows from 0 on where several inputs are independent.
         over: what these are, with their unit. places: what to call the row of each outcome's row.
-        absent: quantities that the scene asks for and the file does not give, in words.
+        absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
+            the outcome, so that it agrees where all that is given does.
     """
 
     outcome: Outcome
     over: str
     places: tuple[str, ...]
     absent: tuple[str, ...]
-
-    @property
-    def status(self) -> ExitStatus:
-        """Agreement is of what is given; that a file gives no more is told, and is no fault."""
-        if self.outcome.disagreements:
-            return ExitStatus.DISAGREE
-        return ExitStatus.AGREE if self.outcome.agreed else ExitStatus.NO_VERDICT
 
 
 def compare_results(measured: Measured, scene: Scene, name: str, accuracy: float = 0.0) -> DataOutcome:
@@ -296,8 +289,10 @@ def _row(
         nan = math.nan
         return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan), ""
     shares = np.where(compared, gaps / (allowed + SMALLEST), -1.0)
-    worst, when = (int(i) for i in np.unravel_index(int(np.argmax(shares)), shares.shape))
-    share, tolerance = float(shares[worst, when]), float(allowed[worst, when])
+    share = float(shares.max())
+    # The largest difference; of a column that disagrees, the largest of those that are too large.
+    seen = shares > 1.0 if share > 1.0 else compared
+    worst, when = (int(i) for i in np.unravel_index(int(np.argmax(np.where(seen, gaps, -1.0))), gaps.shape))
     verdict: Verdict = "agrees"
     if share > 1.0:
         verdict = "disagrees"
@@ -306,7 +301,7 @@ def _row(
     row = Comparison(
         *ends,
         float(gaps[worst, when]),
-        tolerance,
+        float(allowed[worst, when]),
         share,
         float(_instants(measured)[when]),
         verdict,

@@ -183,9 +183,10 @@ def _delimiter(lines: Sequence[str]) -> str:
     for one in ";\t":
         if sum(one in line for line in lines) * 2 > len(lines):
             return one
-    numbers = [word for line in lines for word in line.split() if len(line.split()) > 1]
-    commas = sum(bool(_DECIMAL_COMMA.fullmatch(word)) for word in numbers)
-    if any("," in line for line in lines) and not (numbers and commas * 2 > len(numbers)):
+    words = [word for line in lines for word in line.split() if len(line.split()) > 1]
+    commas = sum(bool(_DECIMAL_COMMA.fullmatch(word)) for word in words)
+    numbers = commas + sum(bool(_NUMBER.fullmatch(word)) for word in words)
+    if any("," in line for line in lines) and not commas * 2 > numbers:
         return "," if sum("," in line for line in lines) * 2 > len(lines) else ""
     return ""
 
@@ -224,7 +225,8 @@ def _numeric(row: Sequence[str], delimiter: str) -> bool:
 def _width(rows: Sequence[tuple[int, Sequence[str]]], head: Sequence[Sequence[str]]) -> int:
     """How many columns there are, without the empty one behind a delimiter at the end of every line."""
     widths = Counter(len(row) for _, row in rows)
-    count = max(widths, key=lambda width: (widths[width], width))
+    named = {len(row) for row in head} | {len(_joined(row)) for row in head}
+    count = max(widths, key=lambda width: (widths[width], width in named, width))
     while count > 1 and all(not any(row[count - 1 :]) for row in (*head, *(row for _, row in rows))):
         count -= 1
     return count

@@ -1,6 +1,5 @@
 """The table that Lotus' program printed, as a file: the first that was ever held to the built-in car."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,6 @@ import pytest
 from lotus_front import BUMP, ROLLING_RADIUS, STEERING
 
 from pointcoord import Scene
-from validate.exit_status import ExitStatus
 from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import read_results, understood
 from validate.measured.reading import columns_of_text
@@ -48,7 +46,7 @@ def test_the_printed_bump_table_agrees_to_its_four_digits_and_is_held_to_no_more
     data.write_text(CSV)
     map.write_text(MAP)
     found = compare_results(read_results(str(data), str(map), CAR), CAR, "car")
-    assert found.status is ExitStatus.AGREE
+    assert found.outcome.agreed
     assert verdicts(found) == dict.fromkeys(("camber", "kingpin", "toe", "caster"), "agrees")
     for row in found.outcome.rows:
         # Half of the last digit; the rest is rounding in double precision and the map's bound.
@@ -65,7 +63,7 @@ def test_two_units_more_in_the_last_digit_of_any_number_disagree(place: int, col
     cells[column + 1] = f"{float(cells[column + 1]) + 2e-4:.4f}"
     lines[place + 1] = ",".join(cells)
     found = compared("\n".join(lines))
-    assert found.status is ExitStatus.DISAGREE
+    assert found.outcome.disagreements
     assert verdicts(found) == {name: "disagrees" if name == ANGLES[column] else "agrees" for name in ANGLES}
     (row,) = found.outcome.disagreements
     assert found.places[found.outcome.rows.index(row)] == f"line {place + 2}"
@@ -107,9 +105,9 @@ def test_the_steering_table_agrees_with_the_contact_point_held_at_its_height() -
         },
     }
     found = compared(text, content)
-    assert found.status is ExitStatus.AGREE, [(r.name, r.share) for r in found.outcome.rows]
+    assert found.outcome.agreed, [(r.name, r.share) for r in found.outcome.rows]
     loose = {**content, "held": {}}
-    assert compared(text, loose).status is ExitStatus.DISAGREE
+    assert compared(text, loose).outcome.disagreements
 
 
 def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
@@ -123,7 +121,7 @@ def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
     text = "\n".join(lines)
     # The printed degrees are rounded before they are turned into mrad: 0.5e-4 degrees more.
     content["columns"]["camber"]["accuracy"] = 1000.0 * np.radians(0.5e-4)
-    assert compared(text, content).status is ExitStatus.AGREE
+    assert compared(text, content).outcome.agreed
     content["columns"]["camber"]["offset"] = -5.0
     assert verdicts(compared(text, content))["camber"] == "disagrees"
 
@@ -140,14 +138,14 @@ def test_an_arcsine_is_told_from_a_projected_angle() -> None:
         "held": {"travel.contact": 0.0},
         "columns": {"rack": {"is": "input.rack", "printed": 0}, "camber": camber},
     }
-    assert compared("\n".join(lines), content).status is ExitStatus.DISAGREE
+    assert compared("\n".join(lines), content).outcome.disagreements
     camber["definition"] = "arcsine"
-    assert compared("\n".join(lines), content).status is ExitStatus.AGREE
+    assert compared("\n".join(lines), content).outcome.agreed
 
 
 def test_rows_beyond_the_reach_of_the_car_are_named_and_the_others_go_on() -> None:
     found = compared(CSV + "900.0,0.0,0.0,0.0,0.0\n")
-    assert found.status is ExitStatus.AGREE
+    assert found.outcome.agreed
     (note,) = (note for note in found.outcome.notes if "line 13" in note)
     assert "out of reach" in note
 
@@ -157,5 +155,4 @@ def test_a_file_of_another_car_disagrees() -> None:
     other = Scene.from_mapping(
         CAR.model_dump(exclude_none=True) | {"mechanism": CAR.mechanism.model_dump() | {"points": points}}
     )
-    assert compared(CSV, scene=other).status is ExitStatus.DISAGREE
-    assert replace(compared(CSV), places=()).status is ExitStatus.AGREE
+    assert compared(CSV, scene=other).outcome.disagreements
