@@ -50,6 +50,7 @@ ROOMS = {
         "solvers",
         "cars",
         "adjudication",
+        "measured",
         "output",
         "ci",
         "hard",

@@ -37,6 +37,7 @@ from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
+from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
@@ -293,6 +294,11 @@ RECIPES: dict[str, Recipe] = {
             "pose": lambda pose: pose is not None,
             "corrections": bool,
         },
+    ),
+    "validate.measured.errors.ResultsError": Recipe(
+        lambda *_: columns_of_text("time,camber\n0,1.2\n1,l.3\n", "mine.csv"),
+        ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
+        {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
     ),
     "validate.ci.baseline.BaselineError": Recipe(
         lambda folder, _: read_baseline(str(folder / "none.npz")),

@@ -71,6 +71,23 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
     )
     parser.add_argument(
+        "--data",
+        metavar="FILE",
+        help="compare a file of results (CSV, whitespace table, Parquet) with the one SCENE's car, at the "
+        "file's own times, inputs or travels, to the digits that it is written with",
+    )
+    parser.add_argument(
+        "--map",
+        metavar="FILE.toml",
+        help="what the columns of --data are; not needed for files that pointcoord simulate -o writes",
+    )
+    parser.add_argument(
+        "--accuracy",
+        metavar="A",
+        type=float,
+        help="how far off the numbers of --data may be beside their digits, each in its column's unit",
+    )
+    parser.add_argument(
         "--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path"
     )
     parser.add_argument(
@@ -159,6 +176,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         UnknownFormulation, MissingPackage: a formulation is not there.
         OutputError: the results cannot be written.
     """
+    if options.data is not None:
+        # Most runs compare no file.
+        from validate.commands.data import run as run_data
+
+        return run_data(options, console)
+    if options.map is not None or options.accuracy is not None:
+        raise UsageError("--map and --accuracy are about a file of results; give it with --data FILE")
     all_of_ours = not options.scenes and options.scenes_dir is None
     names = _names(options)
     pairs = _pairs(options)

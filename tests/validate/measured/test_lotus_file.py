@@ -1,0 +1,158 @@
+"""The table that Lotus' program printed, as a file: the first that was ever held to the built-in car."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from lotus_front import BUMP, ROLLING_RADIUS, STEERING
+
+from pointcoord import Scene
+from validate.measured.comparing import DataOutcome, compare_results
+from validate.measured.mapping import read_results, understood
+from validate.measured.reading import columns_of_text
+
+CAR = Scene.load("double-wishbone")
+ANGLES = ("camber", "toe", "caster", "kingpin")
+CSV = "bump [mm],camber [deg],toe [deg],caster [deg],kingpin [deg]\n" + "".join(
+    f"{bump:.1f}," + ",".join(f"{angle:.4f}" for angle in angles) + "\n" for bump, *angles in BUMP
+)
+# Its columns are named as we name them but for the bump, which is set and exact.
+MAP = f"""
+rolling_radius = {ROLLING_RADIUS}
+columns.bump = {{ is = "travel.contact", printed = 0 }}
+columns.camber.is = "wheel.camber"
+columns.toe.is = "toe"
+columns.caster = {{}}
+columns.kingpin.unit = "deg"
+"""
+CONTENT: dict[str, Any] = {
+    "rolling_radius": ROLLING_RADIUS,
+    "columns": {"bump": {"is": "travel.contact", "printed": 0}, **{name: {"is": name} for name in ANGLES}},
+}
+
+
+def compared(text: str, content: dict[str, Any] = CONTENT, scene: Scene = CAR) -> DataOutcome:
+    measured = understood(columns_of_text(text, "bump.csv"), content, scene, "map.toml")
+    return compare_results(measured, scene, "car")
+
+
+def verdicts(found: DataOutcome) -> dict[str, str]:
+    return {row.name: row.verdict for row in found.outcome.rows}
+
+
+def test_the_printed_bump_table_agrees_to_its_four_digits_and_is_held_to_no_more(tmp_path: Path) -> None:
+    data, map = tmp_path / "bump.csv", tmp_path / "map.toml"
+    data.write_text(CSV)
+    map.write_text(MAP)
+    found = compare_results(read_results(str(data), str(map), CAR), CAR, "car")
+    assert found.outcome.agreed
+    assert verdicts(found) == dict.fromkeys(("camber", "kingpin", "toe", "caster"), "agrees")
+    for row in found.outcome.rows:
+        # Half of the last digit; the rest is rounding in double precision and the map's bound.
+        assert np.degrees(row.tolerance) == pytest.approx(0.5e-4, rel=1e-5)
+        # A table of 44 rounded numbers that is right uses most of what rounding allows somewhere.
+        assert 0.5 < row.share <= 1.0
+
+
+@pytest.mark.parametrize("place", [0, 5, 10])
+@pytest.mark.parametrize("column", range(4))
+def test_two_units_more_in_the_last_digit_of_any_number_disagree(place: int, column: int) -> None:
+    lines = CSV.splitlines()
+    cells = lines[place + 1].split(",")
+    cells[column + 1] = f"{float(cells[column + 1]) + 2e-4:.4f}"
+    lines[place + 1] = ",".join(cells)
+    found = compared("\n".join(lines))
+    assert found.outcome.disagreements
+    assert verdicts(found) == {name: "disagrees" if name == ANGLES[column] else "agrees" for name in ANGLES}
+    (row,) = found.outcome.disagreements
+    assert found.places[found.outcome.rows.index(row)] == f"line {place + 2}"
+
+
+def test_travel_of_the_wheel_centre_is_another_table() -> None:
+    content = CONTENT | {
+        "columns": {**CONTENT["columns"], "bump": {"is": "travel.wheel_centre", "printed": 0}}
+    }
+    found = compared(CSV, content)
+    camber = next(row for row in found.outcome.rows if row.name == "camber")
+    # Found with an independent solver: 0.008 degrees less camber.
+    assert np.degrees(camber.difference) == pytest.approx(0.008, abs=5e-4)
+    assert camber.verdict == "disagrees"
+
+
+def test_a_bump_that_may_be_rounded_widens_by_slope_times_half_its_digit() -> None:
+    columns = {**CONTENT["columns"], "bump": {"is": "travel.contact"}}
+    found = compared(CSV, CONTENT | {"columns": columns})
+    camber = next(row for row in found.outcome.rows if row.name == "camber")
+    table = np.array(BUMP)
+    slopes = np.abs(np.gradient(table[:, 1], table[:, 0]))
+    widened = np.degrees(camber.tolerance) - 0.5e-4
+    assert 0.05 * slopes.min() < widened < 0.05 * slopes.max()
+    assert any("say printed = 0" in note for note in found.outcome.notes)
+
+
+def test_the_steering_table_agrees_with_the_contact_point_held_at_its_height() -> None:
+    text = "rack;toe;camber\nmm;deg;deg\n" + "".join(
+        f"{-rack:.1f};{toe:.2f};{camber:.2f}\n".replace(".", ",") for rack, toe, camber in STEERING
+    )
+    content = {
+        "rolling_radius": ROLLING_RADIUS,
+        "held": {"travel.contact": 0.0},
+        "columns": {
+            "rack": {"is": "input.rack", "printed": 0},
+            "toe": {"is": "toe"},
+            "camber": {"is": "camber"},
+        },
+    }
+    found = compared(text, content)
+    assert found.outcome.agreed, [(r.name, r.share) for r in found.outcome.rows]
+    loose = {**content, "held": {}}
+    assert compared(text, loose).outcome.disagreements
+
+
+def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
+    lines = CSV.replace("camber [deg]", "camber [mrad]").splitlines()
+    for i, (_, camber, *_) in enumerate(BUMP):
+        cells = lines[i + 1].split(",")
+        cells[1] = f"{5.0 - 1000.0 * np.radians(camber):.3f}"
+        lines[i + 1] = ",".join(cells)
+    camber = {"is": "camber", "sign": -1, "offset": 5.0}
+    content = CONTENT | {"columns": {**CONTENT["columns"], "camber": camber}}
+    text = "\n".join(lines)
+    # The printed degrees are rounded before they are turned into mrad: 0.5e-4 degrees more.
+    content["columns"]["camber"]["accuracy"] = 1000.0 * np.radians(0.5e-4)
+    assert compared(text, content).outcome.agreed
+    content["columns"]["camber"]["offset"] = -5.0
+    assert verdicts(compared(text, content))["camber"] == "disagrees"
+
+
+def test_an_arcsine_is_told_from_a_projected_angle() -> None:
+    # At a toe t and a projected camber c the spin axis has n_z = -tan c / sqrt(1 + tan^2 c + tan^2 t).
+    lines = ["rack [mm],camber [deg]"]
+    for rack, toe, camber in STEERING:
+        t, c = np.tan(np.radians([toe, camber]))
+        lines.append(f"{-rack:.1f},{np.degrees(np.arcsin(c / np.sqrt(1.0 + c**2 + t**2))):.2f}")
+    camber = {"is": "camber", "accuracy": 0.005}  # the printed angle that it is made of is rounded too
+    content: dict[str, Any] = {
+        "rolling_radius": ROLLING_RADIUS,
+        "held": {"travel.contact": 0.0},
+        "columns": {"rack": {"is": "input.rack", "printed": 0}, "camber": camber},
+    }
+    assert compared("\n".join(lines), content).outcome.disagreements
+    camber["definition"] = "arcsine"
+    assert compared("\n".join(lines), content).outcome.agreed
+
+
+def test_rows_beyond_the_reach_of_the_car_are_named_and_the_others_go_on() -> None:
+    found = compared(CSV + "900.0,0.0,0.0,0.0,0.0\n")
+    assert found.outcome.agreed
+    (note,) = (note for note in found.outcome.notes if "line 13" in note)
+    assert "out of reach" in note
+
+
+def test_a_file_of_another_car_disagrees() -> None:
+    points = dict(CAR.mechanism.points) | {"upper_ball_joint": (9.0, 646.0, 315.5)}
+    other = Scene.from_mapping(
+        CAR.model_dump(exclude_none=True) | {"mechanism": CAR.mechanism.model_dump() | {"points": points}}
+    )
+    assert compared(CSV, scene=other).outcome.disagreements

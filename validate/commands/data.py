@@ -1,0 +1,108 @@
+"""`pointcoord validate --data`: a file of results held to the car of a scene."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+from pointcoord import Scene
+from validate.closed_drawing import closing_data, closing_of, warnings_of
+from validate.commands.usage import (
+    STANDARD_INPUT,
+    UsageError,
+    load_scene,
+    name_of,
+    require_target,
+    told_as,
+)
+from validate.comparison.examined import Examined
+from validate.exit_status import ExitStatus
+from validate.measured.comparing import OURS, DataOutcome, compare_results
+from validate.measured.mapping import read_results
+from validate.output import report, results_text
+from validate.output.console import Console
+from validate.output.document import Head, Journal
+from validate.plain_text import shown
+
+# What is not done for files: instants there may be travels, and seconds is what these say.
+OF_SCENES = (
+    "--scenes-dir",
+    "--tolerance-factor",
+    "--fail-fast",
+    "--junit",
+    "--summary",
+    "--save-baseline",
+    "--baseline",
+)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Compare a file with a scene's car.
+
+    Raises:
+        UsageError: the options do not go together.
+        ResultsError: the file, or the map of its columns, is wrong.
+        SceneError: the scene is wrong; PointcoordError: it cannot be solved.
+        MissingPackage: Parquet needs pyarrow.
+        OutputError: the results cannot be written.
+    """
+    _require(options)
+    (given,) = options.scenes
+    files = tuple(file for file in (options.data, options.map) if file is not None)
+    require_target(options.json, "--json", (given, *files))
+    console.quiet, console.mute = options.quiet, options.json == "-"
+    if not console.quiet or console.mute:
+        console.require("use --quiet, or --quiet --json FILE")
+    journal = Journal(options.json, Head.of("validate", options.command), console)
+    done: list[dict[str, Any]] = []
+    results = {
+        "scenes": done,
+        "printed_formulas": [],
+        "printed_tables": None,
+        "tolerance_factor": 1.0,
+        "not_run": [],
+        "baseline": None,
+    }
+    with journal.closing(lambda: results, lambda: done, lambda: f"{len(done)} of 1 scenes") as ending:
+        scene, name = load_scene(given), name_of(given)
+        with told_as(name):
+            measured = read_results(options.data, options.map, scene)
+            found = compare_results(measured, scene, name, options.accuracy or 0.0)
+        examined = _examined(found, scene, name)
+        done.append(report.examined_data(examined) | {"comparisons": [results_text.data_of(found)]})
+        for warning in examined.warnings:
+            console.warn(f"{name}: {warning}")
+        console.say(results_text.text_of(found))
+        ending.status = examined.status
+    return ending.status
+
+
+def _require(options: argparse.Namespace) -> None:
+    if options.first is not None or options.second is not None:
+        raise UsageError("--data is compared with pointcoord; leave --first and --second out")
+    for option in OF_SCENES:
+        value = getattr(options, option.strip("-").replace("-", "_"))
+        if value not in (None, False, 1.0):
+            raise UsageError(f"{option} is about scenes that are solved twice; leave it out with --data")
+    if len(options.scenes) != 1:
+        given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"
+        raise UsageError(f"{given} given with --data; give the one scene that the file is about")
+    if STANDARD_INPUT in (options.data, options.map):
+        raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    accuracy = options.accuracy
+    if accuracy is not None and not (math.isfinite(accuracy) and accuracy >= 0.0):
+        raise UsageError(f"--accuracy is {accuracy}; allowed: a finite number from 0 up")
+
+
+def _examined(found: DataOutcome, scene: Scene, name: str) -> Examined:
+    moved = closing_of(scene)
+    return Examined(
+        name=name,
+        title=shown(scene.title),
+        outcomes=(found.outcome,),
+        solved=(OURS,),
+        warnings=warnings_of(scene, moved),
+        closing=closing_data(moved),
+        defaults=scene.mechanism.defaults_taken,
+    )

@@ -1,0 +1,1 @@
+"""Result files, measured or printed by another program, held to the car of a scene."""

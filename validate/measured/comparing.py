@@ -1,0 +1,331 @@
+r"""A file of results held to what it can carry.
+
+A number q of a file at an independent value x agrees with ours if they differ by at most
+
+    T = h_q + S + a + b + 4 eps |q|,    S = sum over the independent columns of max |q(x -+ h_x) - q(x)|,
+
+h_q and h_x half a unit of the last digit as written, S what the rounding of x may do to the quantity, taken
+at both ends of all x that are written so (to first order |q'| h_x, and monotonic over such a width), a the
+accuracy that the user says the file has, b our own proven bound; and reading, changing the unit and turning
+the sign round four times at most. Where S alone is as wide as half of the whole range that the quantity
+has in the file, no number of it could tell its curve from a level line: it is not tested.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.linkage.car_axes import CarAxes
+from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
+from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.protocol import Accuracy, Solution
+from validate.measured.errors import ResultsError
+from validate.measured.mapping import ARCSINE, TIME, Measured, Series, angle_of
+from validate.measured.poses import Found, poses_of
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+EPS = float(np.finfo(float).eps)
+OURS = "pointcoord"
+# Rows out of reach, or columns, that are named one by one.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class Held:
+    """A column of a file beside ours.
+
+    Attributes:
+        ours, tolerance: (N,), NaN where there is nothing to compare.
+        swing: the part of the tolerance that the independent columns' rounding makes, (N,).
+    """
+
+    series: Series
+    ours: Array
+    tolerance: Array
+    swing: Array
+
+    @property
+    def gap(self) -> Array:
+        """Difference of every number, (N,), NaN where there is none."""
+        gap = np.abs(self.series.values - self.ours)
+        # Whole turns apart is the same angle.
+        return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if self.series.meaning.unit == "rad" else gap
+
+    @property
+    def blind(self) -> bool:
+        """Whether the independent column is too coarse to tell anything of it."""
+        told = self.ours[np.isfinite(self.ours)]
+        wide = float(np.ptp(told)) if len(told) else 0.0
+        swing = self.swing[np.isfinite(self.swing)]
+        return bool(wide > 0.0 and len(swing) and (swing >= 0.5 * wide).all())
+
+
+@dataclass(frozen=True)
+class DataOutcome:
+    """What came of a file.
+
+    Attributes:
+        outcome: its comparison as that of any two solutions; its instants are values of the independent
+            column, in s, rad or mm, or numbers of rows from 0 on where several inputs are independent.
+        over: what these are, with their unit. places: what to call the row of each outcome's row.
+        absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
+            the outcome, so that it agrees where all that is given does.
+    """
+
+    outcome: Outcome
+    over: str
+    places: tuple[str, ...]
+    absent: tuple[str, ...]
+
+
+def compare_results(measured: Measured, scene: Scene, name: str, accuracy: float = 0.0) -> DataOutcome:
+    """Compare a file with the scene's car, at the file's own values.
+
+    Args:
+        name: what to call the scene.
+        accuracy: how far the file's numbers may be off beside their digits, each in its column's own unit;
+            what a map says of a column goes before it.
+    Raises:
+        ResultsError: no row can be reached, or nothing can be compared.
+        PointcoordError: the scene cannot be solved.
+    """
+    held, ours, notes = _held(measured, scene, accuracy)
+    solution = _solution(measured, held, measured.source)
+    rows, places = [], []
+    for quantity, part in _by_name(held).items():
+        for of, columns in part.items():
+            row, place = _row(name, measured, quantity, of, columns)
+            rows.append(row)
+            places.append(place)
+    lacking, absent = _lacking(scene, measured)
+    outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking)
+    return DataOutcome(outcome, _over(measured), tuple(places), absent)
+
+
+def as_solution(measured: Measured, scene: Scene, accuracy: float = 0.0) -> Solution:
+    """A file as a solution; what it claims of each number is the tolerance above.
+
+    Its times are those of `DataOutcome.outcome`; components that the file does not give are NaN, and claim 0.
+
+    Raises:
+        ResultsError, PointcoordError: see `compare_results`.
+    """
+    held, _, _ = _held(measured, scene, accuracy)
+    return _solution(measured, held, measured.source)
+
+
+def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held], Solution, tuple[str, ...]]:
+    poses = poses_of(scene, measured)
+    values = [s.values for s in measured.independent]
+    here = poses.at(values)
+    notes = [*measured.notes, *poses.notes, *_out_of_reach(measured, here)]
+    if not here.reached.any():
+        first = min(here.reasons)
+        problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[first]})"
+        raise ResultsError(
+            measured.source, measured.rows[first], problem, "rows that the scene's car can have"
+        )
+    around: list[tuple[Found, Found]] = []
+    for i, s in enumerate(measured.independent):
+        off = s.off + poses.extra(s)
+        if off.any():
+            ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
+            around.append((poses.at(ends[0]), poses.at(ends[1])))
+    found, unknown = [], []
+    for s in measured.numbers:
+        mine, bound = _ours(s, here, scene)
+        if mine is None or bound is None:
+            unknown.append(s)
+        swing = np.zeros(len(values[0]))
+        for pair in around:
+            change = [np.zeros_like(swing)]
+            for side in pair:
+                there = _ours(s, side, scene)[0]
+                if there is not None and mine is not None:
+                    change.append(np.nan_to_num(_turned(np.abs(there - mine), s)))
+            swing = swing + np.max(change, axis=0)
+        ours = np.full(len(swing), np.nan) if mine is None else mine
+        rounding = 4.0 * EPS * np.abs(s.values)
+        allowed = s.off + swing + s.accuracy_or(accuracy) + rounding + (0.0 if bound is None else bound)
+        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing))
+    if unknown:
+        names = ", ".join(shown(s.column) for s in unknown)
+        notes.append(f"{names} is not tested: rates need a column of {TIME}")
+    notes += _widened(measured, found)
+    instants = _instants(measured)
+    count = len(instants)
+    numbers = {q: {n: np.asarray(a) for n, a in part.items()} for q, part in here.numbers.items()}
+    claims = {
+        q: {n: np.nan_to_num(a) for n, a in part.items()} for q, part in here.bounds.items() if q in numbers
+    }
+    solution = Solution(OURS, instants, numbers, Accuracy(np.ones(count), claims, proven=True))
+    return found, solution, tuple(notes)
+
+
+def _turned(gap: Array, series: Series) -> Array:
+    return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
+
+
+def _ours(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+    """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
+    meaning = series.meaning
+    part = found.numbers.get(meaning.quantity, {})
+    if meaning.name not in part:
+        return None, None
+    if series.definition == ARCSINE:
+        return _arcsine(series, found, scene)
+    bound = found.bounds.get(meaning.quantity, {}).get(meaning.name, np.zeros_like(part[meaning.name]))
+    if meaning.axis is None:
+        return part[meaning.name], bound
+    return part[meaning.name][:, meaning.axis], bound[:, meaning.axis]
+
+
+def _arcsine(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+    """An angle as the arcsine of a component of its line, not as that of a projection of it."""
+    angle = angle_of(series.meaning)
+    (positions,) = (part for quantity, part in found.numbers.items() if quantity == _PLACES)
+    bounds = found.bounds.get(_PLACES, {})
+    assert angle is not None  # the map of columns was checked
+    part = scene.mechanism
+    axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+    start, end = angle.ends(part.topology)
+    line = positions[end] - positions[start]
+    long = np.linalg.norm(line, axis=-1)
+    sine = axes.component(line, angle.sine) / long
+    # Both ends may be off by b along each axis: the line turns by at most 2 sqrt(3) b / its length, and an
+    # arcsine grows by 1 / cosine of that.
+    off = np.max([np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds], axis=0)
+    bound = 2.0 * math.sqrt(3.0) * off / long / np.sqrt(1.0 - sine**2)
+    return np.asarray(np.arcsin(sine)), np.asarray(bound)
+
+
+_PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
+
+
+def _out_of_reach(measured: Measured, found: Found) -> list[str]:
+    lost = sorted(found.reasons)
+    notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
+    if len(lost) > NAMED:
+        others = ", ".join(measured.rows[i] for i in lost[NAMED : 2 * NAMED])
+        more = f" and {len(lost) - 2 * NAMED} more" if len(lost) > 2 * NAMED else ""
+        notes.append(f"likewise left out: {others}{more}")
+    return notes
+
+
+def _widened(measured: Measured, held: Sequence[Held]) -> list[str]:
+    """Which columns are held more loosely by the independent one's rounding than by their own digits."""
+    wide = [h for h in held if np.nanmax(h.swing, initial=0.0) > np.nanmax(h.series.off, initial=0.0) > 0.0]
+    if not wide:
+        return []
+    names = ", ".join(shown(h.series.column) for h in wide[:NAMED])
+    more = f" and {len(wide) - NAMED} more" if len(wide) > NAMED else ""
+    over = " and ".join(shown(s.column) for s in measured.independent)
+    return [
+        f"{names}{more}: held more widely by how {over} is rounded than by their own digits; if its values "
+        "are exact as written, say printed = 0 of it in a map"
+    ]
+
+
+def _solution(measured: Measured, held: Sequence[Held], who: str) -> Solution:
+    instants = _instants(measured)
+    count = len(instants)
+    numbers: dict[str, dict[str, Array]] = {}
+    claims: dict[str, dict[str, Array]] = {}
+    for quantity, part in _by_name(held).items():
+        numbers[quantity], claims[quantity] = {}, {}
+        for name, columns in part.items():
+            shape = (count,) if QUANTITIES[quantity].of == "car" else (count, 3)
+            given, off = np.full(shape, np.nan), np.zeros(shape)
+            for h in columns:
+                axis = h.series.meaning.axis
+                place = (slice(None),) if axis is None else (slice(None), axis)
+                given[place], off[place] = h.series.values, np.nan_to_num(h.tolerance)
+            numbers[quantity][name], claims[quantity][name] = given, off
+    return Solution(who, instants, numbers, Accuracy(np.ones(count), claims), measured.notes)
+
+
+def _by_name(held: Sequence[Held]) -> dict[str, dict[str, list[Held]]]:
+    found: dict[str, dict[str, list[Held]]] = {}
+    for quantity in QUANTITIES:
+        for h in held:
+            if h.series.meaning.quantity == quantity:
+                found.setdefault(quantity, {}).setdefault(h.series.meaning.name, []).append(h)
+    return found
+
+
+def _instants(measured: Measured) -> Array:
+    if len(measured.independent) == 1:
+        return measured.independent[0].values
+    return np.arange(len(measured.rows), dtype=float)
+
+
+def _over(measured: Measured) -> str:
+    if len(measured.independent) == 1:
+        s = measured.independent[0]
+        return f"{s.column} [{s.meaning.unit}]"
+    return "row"
+
+
+def _row(
+    scene: str, measured: Measured, quantity: str, name: str, columns: Sequence[Held]
+) -> tuple[Comparison, str]:
+    """The comparison of a point, body or angle by the columns that are given of it."""
+    unit = QUANTITIES[quantity].unit
+    gaps = np.stack([h.gap for h in columns])
+    allowed = np.stack([h.tolerance for h in columns])
+    ends = (scene, measured.source, OURS, quantity, name, unit)
+    compared = np.isfinite(gaps) & np.isfinite(allowed)
+    if not compared.any():
+        nan = math.nan
+        return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan), ""
+    shares = np.where(compared, gaps / (allowed + SMALLEST), -1.0)
+    share = float(shares.max())
+    # The largest difference; of a column that disagrees, the largest of those that are too large.
+    seen = shares > 1.0 if share > 1.0 else compared
+    worst, when = (int(i) for i in np.unravel_index(int(np.argmax(np.where(seen, gaps, -1.0))), gaps.shape))
+    verdict: Verdict = "agrees"
+    if share > 1.0:
+        verdict = "disagrees"
+    elif all(h.blind for h in columns):
+        verdict = "not tested"
+    row = Comparison(
+        *ends,
+        float(gaps[worst, when]),
+        float(allowed[worst, when]),
+        share,
+        float(_instants(measured)[when]),
+        verdict,
+        measured.source,
+        1.0,
+    )
+    return row, measured.rows[when]
+
+
+def _lacking(scene: Scene, measured: Measured) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What the scene asks for and the file does not give, in lines; and quantities of which it gives none."""
+    given: dict[str, set[str]] = {}
+    for s in measured.numbers:
+        given.setdefault(s.meaning.quantity, set()).add(s.meaning.name)
+    lines, absent = [], []
+    for quantity, names in asked_numbers(scene).items():
+        words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"
+        missing = [name for name in names if name not in given.get(quantity, set())]
+        if of_car:
+            absent += missing
+        elif len(missing) == len(names):
+            absent.append(words)
+        if missing:
+            whole = len(missing) == len(names) and not of_car
+            of = "" if whole else f" of {', '.join(missing)}"
+            lines.append(f"{measured.source} gives no {words}{of}")
+    return tuple(lines), tuple(absent)

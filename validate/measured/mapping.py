@@ -1,0 +1,510 @@
+"""What each column of a file is: by its own name, or by a map that the user writes.
+
+A map is TOML:
+
+    independent = "bump"          # the column that the others are given over; found by itself where it can be
+    rolling_radius = 270.0        # mm; for travel.contact only
+    solve_for = "arm_angle"       # the input that a travel is reached by; found by itself
+
+    [held]                        # what is the same in every row; inputs that nothing is said of: as drawn
+    rack = 0.0
+
+    [columns.camber]              # by the name in the file
+    is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore
+    unit = "deg"                  # if the file does not say it
+    sign = -1                     # ours = sign * theirs + offset, the offset in the column's unit
+    offset = 0.0
+    definition = "arcsine"        # of an angle; projected if not said
+    printed = 0.0001              # unit of the last digit, in the column's unit; 0: written in full or exact
+    accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
+
+`travel.POINT` is how much higher a point is than in the closed drawing; `travel.contact` is that of the
+lowest point of a thin disc of the rolling radius about the wheel's centre. Names are those of the files that
+`pointcoord simulate -o` writes; the last part of a name will do where nothing else ends so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import field, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene, SceneError
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.angle import Angle, WheelAngles
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.scene.messages import meant
+from pointcoord.scene.scene_text import parsed, read_file
+from validate.measured.errors import ResultsError
+from validate.measured.reading import Columns, read_columns
+from validate.measured.units import allowed_units, factor_of, is_unit
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+AXES = "xyz"
+TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
+PROJECTED, ARCSINE = "projected", "arcsine"
+DEFINITIONS = (PROJECTED, ARCSINE)
+KEYS = ("independent", "rolling_radius", "solve_for", "held", "columns")
+COLUMN_KEYS = ("is", "unit", "sign", "offset", "definition", "printed", "accuracy")
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a column is.
+
+    Attributes:
+        kind: time, an input, a travel, or a number of a quantity.
+        quantity: of a number. name: of the input, of the point that travels, or of the number.
+        axis: 0 to 2 of a component of a vector; None of what the car has one number of.
+        unit: ours.
+    """
+
+    kind: Literal["time", "input", "travel", "number"]
+    name: str
+    unit: str
+    quantity: str = ""
+    axis: int | None = None
+
+    @property
+    def words(self) -> str:
+        """Its name as a map says it."""
+        if self.kind == "number":
+            end = () if self.axis is None else (AXES[self.axis],)
+            return ".".join((self.quantity, self.name, *end))
+        return TIME if self.kind == TIME else f"{self.kind}.{self.name}"
+
+
+@dataclass(frozen=True)
+class Series:
+    """A column in our units.
+
+    Attributes:
+        column: its name in the file. meaning: what it is.
+        values: (N,), NaN where the file has none.
+        off: how far what was rounded may be from what is written, half a unit of the last digit, (N,).
+        definition: of an angle.
+        factor: how many of ours its unit is. accuracy: that a map says, in its unit; None if it says none.
+    """
+
+    column: str
+    meaning: Meaning
+    values: Array
+    off: Array
+    definition: str = PROJECTED
+    factor: float = 1.0
+    accuracy: float | None = None
+
+    def taken(self, rows: NDArray[np.bool_]) -> Series:
+        """Some of its rows."""
+        return replace(self, values=self.values[rows], off=self.off[rows])
+
+    def accuracy_or(self, accuracy: float) -> float:
+        """How far its numbers may be off beside their digits, in our unit."""
+        return self.factor * (accuracy if self.accuracy is None else self.accuracy)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A file of results, read and understood.
+
+    Attributes:
+        source: the file.
+        independent: what the others are given over: the time, a travel and inputs, or inputs.
+        numbers: what is to be compared.
+        held: inputs and travels that are the same in every row, in our units.
+        rolling_radius: mm; NaN if not said. solve_for: the input that reaches a travel; empty if not said.
+        rows: what to call each row.
+        notes: what was left out.
+    """
+
+    source: str
+    independent: tuple[Series, ...]
+    numbers: tuple[Series, ...]
+    held: Mapping[str, float] = field(default_factory=dict)
+    rolling_radius: float = math.nan
+    solve_for: str = ""
+    rows: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def read_results(file: str, map: str | None, scene: Scene) -> Measured:
+    """Read a file of results of a scene's car.
+
+    Args:
+        map: file that says what the columns are; None where they carry our own names.
+    Raises:
+        ResultsError: the file or the map is wrong, or nothing in it can be compared.
+        MissingPackage: Parquet needs pyarrow.
+    """
+    columns = read_columns(file)
+    where = columns.source if map is None else shown(map)
+    return understood(columns, {} if map is None else _map_of(map), scene, where)
+
+
+def _map_of(path: str) -> dict[str, Any]:
+    """The content of a map."""
+    try:
+        return parsed(read_file(path, "the path of a map of columns (TOML)"), shown(path))
+    except SceneError as error:
+        raise ResultsError(shown(path), error.key, error.problem, error.allowed or "TOML") from None
+
+
+def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where: str) -> Measured:
+    """What columns mean, by a map as plain data.
+
+    Args:
+        where: what to call the map in messages.
+    Raises:
+        ResultsError: see `read_results`.
+    """
+    map = _Map(where, content, columns, scene)
+    found = map.series()
+    independent = map.independent(found)
+    taken = {s.column for s in independent}
+    numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
+    if not numbers:
+        raise ResultsError(
+            columns.source, "", "holds nothing to compare", f"columns such as {', '.join(map.known[:4])}"
+        )
+    beside = [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]
+    notes = list(map.ignored)
+    if beside:
+        over = " and ".join(s.column for s in independent)
+        notes.append(f"{', '.join(map_shown(beside))} is not compared: rows are taken by {shown(over)}")
+    for s in numbers:
+        lacking = int(np.isnan(s.values).sum())
+        if lacking:
+            notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
+    return _without_repeats(
+        Measured(
+            columns.source,
+            independent,
+            numbers,
+            map.held,
+            map.number_at("rolling_radius", math.nan),
+            map.solve_for,
+            columns.rows,
+            tuple(notes),
+        )
+    )
+
+
+def map_shown(names: Iterable[str]) -> list[str]:
+    """Names of a file that can be shown."""
+    return [shown(name) for name in names]
+
+
+@dataclass(frozen=True)
+class _Map:
+    """A map of columns and what it is about."""
+
+    where: str
+    content: Mapping[str, Any]
+    columns: Columns
+    scene: Scene
+
+    def __post_init__(self) -> None:
+        self._require_keys("", self.content, KEYS)
+        for name, part in self._part("columns").items():
+            if name not in self.columns.names:
+                hint = meant(name, self.columns.names)
+                problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
+                raise ResultsError(self.where, "columns", problem, ", ".join(self.columns.names))
+            if not isinstance(part, Mapping):
+                raise self._wrong(f"columns.{name}", part, "a table such as { is = 'wheel.camber' }")
+            self._require_keys(f"columns.{name}", part, COLUMN_KEYS)
+
+    def _require_keys(self, place: str, part: Mapping[str, Any], known: tuple[str, ...]) -> None:
+        for key in part:
+            if key not in known:
+                problem = f"no key is called {shown(key)!r}{meant(key, known)}"
+                raise ResultsError(self.where, place, problem, ", ".join(known))
+
+    def _part(self, key: str) -> Mapping[str, Any]:
+        part = self.content.get(key, {})
+        if not isinstance(part, Mapping):
+            raise self._wrong(key, part, "a table")
+        return part
+
+    def _wrong(self, place: str, value: object, allowed: str) -> ResultsError:
+        return ResultsError(self.where, place, f"is {shown(repr(value))}", allowed)
+
+    def number_at(
+        self, key: str, default: float, part: Mapping[str, Any] | None = None, at: str = ""
+    ) -> float:
+        """A finite number of the map."""
+        value = (self.content if part is None else part).get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._wrong(f"{at}{key}", value, "a number")
+        if key in (self.content if part is None else part) and not math.isfinite(value):
+            raise self._wrong(f"{at}{key}", value, "a finite number")
+        return float(value)
+
+    @property
+    def solve_for(self) -> str:
+        """The input that a travel is reached by."""
+        value, inputs = self.content.get("solve_for", ""), self.scene.mechanism.topology.required_inputs
+        if value and value not in inputs:
+            raise self._wrong("solve_for", value, ", ".join(inputs))
+        return str(value)
+
+    @property
+    def held(self) -> dict[str, float]:
+        """Inputs and travels that every row has, by their names here: input.NAME and travel.POINT."""
+        found, part = {}, self._part("held")
+        for name in part:
+            every = (*self.scene.mechanism.topology.inputs, *self._travels)
+            if name not in every:
+                problem = f"no input or travel is called {shown(name)!r}{meant(name, every)}"
+                raise ResultsError(self.where, "held", problem, ", ".join(every))
+            key = name if name in self._travels else f"{INPUT}.{name}"
+            found[key] = self.number_at(name, 0.0, part, "held.")
+        return found
+
+    @property
+    def _travels(self) -> tuple[str, ...]:
+        topology = self.scene.mechanism.topology
+        return tuple(f"{TRAVEL}.{n}" for n in (CONTACT, *topology.moving, *topology.carried))
+
+    @property
+    def meanings(self) -> dict[str, Meaning]:
+        """Everything that a column can be, by its whole name."""
+        topology = self.scene.mechanism.topology
+        found = {TIME: Meaning("time", TIME, "s")}
+        for name, unit in topology.input_units.items():
+            found[f"{INPUT}.{name}"] = Meaning("input", name, unit)
+        for name in self._travels:
+            found[name] = Meaning("travel", name.partition(".")[2], "mm")
+        every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
+        for effect in (*ALWAYS, *EFFECTS.values()):
+            for quantity, names in effect.gives_numbers.items():
+                unit, of = QUANTITIES[quantity].unit, QUANTITIES[quantity].of
+                for name in every[of] if names is None else names:
+                    for axis in (None,) if of == "car" else (0, 1, 2):
+                        one = Meaning("number", name, unit, quantity, axis)
+                        found[one.words] = one
+        return found
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """Names of what can be compared, the car's own numbers first."""
+        numbers = [one for one in self.meanings.values() if one.kind == "number"]
+        return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
+
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """Columns that are left out, in words."""
+        out = [name for name in self.columns.names if self._meaning(name) is None]
+        return (f"left out as nothing that we know: {', '.join(map_shown(out))}",) if out else ()
+
+    def _meaning(self, column: str) -> Meaning | None:
+        """What a column is; None for what is to be left out.
+
+        Raises:
+            ResultsError: the map gives it a name that there is not.
+        """
+        part = self._part("columns").get(column)
+        if part is None or "is" not in part:
+            if part is None and self._part("columns"):
+                # A map says it all: a column that it leaves out is none of ours.
+                return self.meanings.get(column)
+            return self._named(column) or self._named(_without_unit(column))
+        named = part["is"]
+        if named == IGNORE:
+            return None
+        found = self._named(named) if isinstance(named, str) else None
+        if found is None:
+            place = f"columns.{column}.is"
+            if not isinstance(named, str):
+                raise self._wrong(place, named, "a name")
+            every = (*self.meanings, IGNORE)
+            ends = {name.partition(".")[2]: name for name in every if "." in name}
+            hint = meant(named, (*every, *ends))
+            raise ResultsError(
+                self.where,
+                place,
+                f"nothing is called {shown(named)!r}{hint}",
+                f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
+                f"{', '.join(self.known[:5])}, or {IGNORE}",
+            )
+        return found
+
+    def _named(self, name: str) -> Meaning | None:
+        """By its whole name, or by an end of it that nothing else has."""
+        meanings = self.meanings
+        if name in meanings:
+            return meanings[name]
+        ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
+        ends = [one for one in ends if one.kind != "travel"]
+        return ends[0] if len(ends) == 1 else None
+
+    def series(self) -> list[Series]:
+        """Every column that means something, in our units."""
+        found: dict[str, Series] = {}
+        for i, column in enumerate(self.columns.names):
+            meaning = self._meaning(column)
+            if meaning is None:
+                continue
+            if meaning.words in found:
+                first = found[meaning.words].column
+                problem = f"columns {shown(first)!r} and {shown(column)!r} are both {meaning.words}"
+                raise ResultsError(self.where, "columns", problem, "one column for each")
+            found[meaning.words] = self._one(i, column, meaning)
+        if not found:
+            names = ", ".join(map_shown(self.columns.names))
+            near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
+            raise ResultsError(
+                self.columns.source,
+                "names of the columns",
+                f"none of {names} is a name that we know{near}",
+                f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)",
+            )
+        return list(found.values())
+
+    def _one(self, i: int, column: str, meaning: Meaning) -> Series:
+        part, place = self._part("columns").get(column, {}), f"columns.{column}."
+        factor = self._factor(i, column, meaning, part)
+        sign = self.number_at("sign", 1.0, part, place)
+        if abs(sign) != 1.0:
+            raise self._wrong(f"{place}sign", part["sign"], "1 or -1")
+        offset = self.number_at("offset", 0.0, part, place)
+        values = factor * (sign * self.columns.values[i] + offset)
+        steps = self.columns.steps[i]
+        if "printed" in part:
+            printed = self.number_at("printed", 0.0, part, place)
+            if printed < 0.0:
+                raise self._wrong(f"{place}printed", part["printed"], "0 or a number above")
+            steps = np.full(len(values), printed)
+        definition = part.get("definition", PROJECTED)
+        if definition not in DEFINITIONS:
+            raise self._wrong(f"{place}definition", definition, ", ".join(DEFINITIONS))
+        if definition != PROJECTED and angle_of(meaning) is None:
+            allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
+            raise self._wrong(f"{place}definition", definition, allowed)
+        accuracy = self.number_at("accuracy", 0.0, part, place) if "accuracy" in part else None
+        if accuracy is not None and accuracy < 0.0:
+            raise self._wrong(f"{place}accuracy", accuracy, "0 or a number above")
+        return Series(column, meaning, values, 0.5 * factor * steps, definition, factor, accuracy)
+
+    def _factor(self, i: int, column: str, meaning: Meaning, part: Mapping[str, Any]) -> float:
+        said = part.get("unit", self.columns.units[i] or _unit_at_the_end(column))
+        allowed = allowed_units(meaning.unit)
+        if not isinstance(said, str):
+            raise self._wrong(f"columns.{column}.unit", said, allowed)
+        where = (
+            (self.where, f"columns.{column}.unit")
+            if "unit" in part
+            else (self.columns.source, f"column {shown(column)!r}")
+        )
+        if not said:
+            raise ResultsError(*where, "its unit is not said, neither behind its name nor in a map", allowed)
+        factor = factor_of(said, meaning.unit)
+        if factor is None:
+            raise ResultsError(*where, f"{shown(said)!r} is no unit of {meaning.words}", allowed)
+        return factor
+
+    def independent(self, found: list[Series]) -> tuple[Series, ...]:
+        """What the rows are taken by: as the map says it, or time, or a travel and inputs, or inputs."""
+        said = self.content.get("independent")
+        if said is not None:
+            chosen = [s for s in found if s.column == said or s.meaning.words == said]
+            if not chosen:
+                every = [s.column for s in found]
+                hint = meant(str(said), every)
+                problem = f"no column that we know is called {shown(str(said))!r}{hint}"
+                raise ResultsError(self.where, "independent", problem, ", ".join(map_shown(every)))
+            if chosen[0].meaning.kind == "number":
+                raise ResultsError(
+                    self.where,
+                    "independent",
+                    f"{shown(str(said))!r} is {chosen[0].meaning.words}",
+                    "a time, an input or a travel",
+                )
+        else:
+            chosen = [s for s in found if s.meaning.kind == TIME]
+        if chosen and chosen[0].meaning.kind == TIME:
+            return tuple(chosen)
+        travels = chosen if said is not None else [s for s in found if s.meaning.kind == TRAVEL]
+        if len([s for s in travels if s.meaning.kind == TRAVEL]) > 1:
+            both = ", ".join(map_shown(s.column for s in travels))
+            raise ResultsError(
+                self.where, "independent", f"{both} could each be it", "independent = NAME in a map"
+            )
+        inputs = [s for s in found if s.meaning.kind == INPUT and s not in travels]
+        if not travels and not inputs:
+            names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
+            problem = "no column says at which pose a row is"
+            allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
+            raise ResultsError(self.columns.source, "names of the columns", problem, allowed)
+        return (*travels, *inputs)
+
+
+def angle_of(meaning: Meaning) -> Angle | None:
+    """The angle that a number is; None if it is none of a line."""
+    for effect in EFFECTS.values():
+        if isinstance(effect, WheelAngles) and meaning.quantity in {q.name for q in effect.quantities}:
+            for angle in effect.angles:
+                if angle.name == meaning.name:
+                    return angle
+    return None
+
+
+def _unit_at_the_end(column: str) -> str:
+    """The unit of a name such as camber_deg; empty if there is none."""
+    end = column.rpartition("_")[2]
+    return end if end != column and is_unit(end) else ""
+
+
+def _without_unit(column: str) -> str:
+    return column.removesuffix(f"_{_unit_at_the_end(column)}")
+
+
+def _without_repeats(measured: Measured) -> Measured:
+    """Rows that stand twice are taken once.
+
+    Raises:
+        ResultsError: two rows are at the same pose and say different things.
+    """
+    keys = np.stack([s.values for s in measured.independent], axis=-1)
+    whole = np.stack([s.values for s in measured.numbers], axis=-1)
+    seen: dict[tuple[float, ...], int] = {}
+    again: list[int] = []
+    for i, key in enumerate(map(tuple, keys.tolist())):
+        first = seen.setdefault(key, i)
+        if first == i:
+            continue
+        if not np.array_equal(whole[first], whole[i], equal_nan=True):
+            at = ", ".join(
+                f"{shown(s.column)} = {v:.10g} {s.meaning.unit}"
+                for s, v in zip(measured.independent, key, strict=True)
+            )
+            problem = f"is at {at} as {measured.rows[first]} is, and says something else"
+            raise ResultsError(measured.source, measured.rows[i], problem, "one row for each pose")
+        again.append(i)
+    lost: NDArray[np.bool_] = np.asarray(np.isnan(keys).any(axis=-1))
+    keep: NDArray[np.bool_] = np.logical_not(lost)
+    keep[again] = False
+    notes = list(measured.notes)
+    if again:
+        notes.append(f"rows that repeat another: {len(again)}, from {measured.rows[again[0]]} on")
+    if lost.any():
+        where = measured.rows[int(np.argmax(lost))]
+        notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {where} on")
+    if not keep.any():
+        raise ResultsError(measured.source, "", "no row says at which pose it is", "at least one")
+    if keep.all():
+        return measured
+    rows = tuple(row for row, kept in zip(measured.rows, keep, strict=True) if kept)
+    return replace(
+        measured,
+        independent=tuple(s.taken(keep) for s in measured.independent),
+        numbers=tuple(s.taken(keep) for s in measured.numbers),
+        rows=rows,
+        notes=tuple(notes),
+    )

@@ -1,0 +1,58 @@
+"""Units of files, and what they are in ours: mm, s and rad, and these by times."""
+
+from __future__ import annotations
+
+import math
+import re
+
+LENGTHS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "ft": 304.8}
+ANGLES = {
+    "rad": 1.0,
+    "mrad": 1e-3,
+    "deg": math.pi / 180.0,
+    "degree": math.pi / 180.0,
+    "degrees": math.pi / 180.0,
+    "\N{DEGREE SIGN}": math.pi / 180.0,
+    "arcmin": math.pi / 10800.0,
+}
+TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0}
+KINDS = {"mm": LENGTHS, "rad": ANGLES, "s": TIMES}
+_PARTS = re.compile(r"([^/]+)(?:/([a-z]+)(?:\^|\*\*)?([12]?))?")
+
+
+def factor_of(unit: str, ours: str) -> float | None:
+    """How many of our unit one of a file's unit is; None where it is no unit of that kind.
+
+    >>> factor_of("m/s^2", "mm/s^2"), factor_of("deg", "mm")
+    (1000.0, None)
+    """
+    theirs, own = _taken_apart(unit), _taken_apart(ours)
+    if theirs is None or own is None or theirs[1:] != own[1:]:
+        return None
+    return theirs[0] / own[0]
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of any kind."""
+    return _taken_apart(text) is not None
+
+
+def allowed_units(ours: str) -> str:
+    """Units that can stand for one of ours, in words."""
+    base, slash, below = ours.partition("/")
+    return ", ".join(f"{unit}{slash}{below}" for unit in KINDS[base])
+
+
+def _taken_apart(unit: str) -> tuple[float, str, int] | None:
+    """Its size in ours, the kind of what is above the fraction, and how often a time is below."""
+    text = unit.strip().replace(" ", "").replace("\N{SUPERSCRIPT TWO}", "^2")
+    found = _PARTS.fullmatch(text)
+    if found is None:
+        return None
+    above, below, power = found.group(1), found.group(2), found.group(3)
+    kind = next((kind for kind, units in KINDS.items() if above in units), None)
+    if kind is None or (below is not None and below not in TIMES):
+        return None
+    times = 0 if below is None else int(power or 1)
+    size = KINDS[kind][above] / (TIMES[below] ** times if below is not None else 1.0)
+    return size, kind, times

@@ -1,0 +1,64 @@
+"""A file of results beside our numbers, as text for people and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pointcoord.effects.registry import QUANTITIES
+from validate.comparison.compare import Comparison
+from validate.measured.comparing import DataOutcome
+from validate.output.report import outcome_data, table, worst_rows
+from validate.plain_text import shown
+
+HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
+
+
+def text_of(found: DataOutcome) -> str:
+    """The table of a file: of each quantity the worst, and a row for each that the file does not give."""
+    outcome = found.outcome
+    file, ours = (solution.formulation for solution in outcome.solutions)
+    place_of = dict(zip(outcome.rows, found.places, strict=True))
+    rows = [(*_name(row), *_measured(row), place_of[row], _verdict(row)) for row in worst_rows(outcome)]
+    rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
+    over = shown(found.over)
+    lines = [
+        f"{outcome.scene}: {file} and {ours}, {len(outcome.solutions[0].times)} rows over {over}",
+        table(HEAD, rows),
+        *(f"  note: {note}" for note in outcome.notes),
+        _sentence(found),
+    ]
+    return "\n".join(lines)
+
+
+def _name(row: Comparison) -> tuple[str, str]:
+    quantity = QUANTITIES[row.quantity]
+    return (row.name, "") if quantity.of == "car" else (quantity.words, row.name)
+
+
+def _measured(row: Comparison) -> tuple[str, str]:
+    if math.isnan(row.difference):
+        return "-", "-"
+    unit, factor = row.unit, 1.0
+    if unit.startswith("rad"):
+        # Users read angles in degrees.
+        unit, factor = unit.replace("rad", "deg", 1), math.degrees(1.0)
+    return f"{factor * row.difference:.1e} {unit}", f"{factor * row.tolerance:.1e} {unit}"
+
+
+def _verdict(row: Comparison) -> str:
+    return f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict
+
+
+def _sentence(found: DataOutcome) -> str:
+    rows = found.outcome.rows
+    verdicts = dict.fromkeys(row.verdict for row in rows)
+    told = ", ".join(f"{sum(row.verdict == v for row in rows)} {v}" for v in verdicts)
+    return f"Of {len(rows)} that the file gives: {told}."
+
+
+def data_of(found: DataOutcome) -> dict[str, Any]:
+    """The comparison as plain data; rows say where in the file they are worst."""
+    data = outcome_data(found.outcome)
+    rows = [row | {"place": place} for row, place in zip(data["rows"], found.places, strict=True)]
+    return data | {"rows": rows, "over": found.over, "not_given": list(found.absent)}
