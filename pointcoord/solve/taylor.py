@@ -610,6 +610,20 @@ def _fall(logs: Array) -> tuple[int, Array]:
     return window, np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)[:, None]
 
 
+def _steady(logs: Array, window: int, fall: Array) -> Array:
+    """How much logarithms of terms fall at the end, but no more than since the middle, (members, 1).
+
+    A pair of singular places beside the axis makes terms swing. Where the last window lies in a dip terms fall
+    steeply there, and those after it rise again; the fall over half of the series hardly feels a dip.
+    """
+    middle = max(logs.shape[-1] // 2, window + 1)
+    half, last = logs[:, middle - window : middle], logs[:, -window:]
+    apart = (logs.shape[-1] - window + last.argmax(axis=-1)) - (middle - window + half.argmax(axis=-1))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        since = (half.max(axis=-1) - last.max(axis=-1)) / apart
+    return np.minimum(fall, np.where(np.isfinite(since), np.maximum(since, 0.0), 0.0)[:, None])
+
+
 def last_magnitudes(series: Array, length: float = 1.0) -> Array:
     """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `gone_on`).
 
@@ -627,7 +641,8 @@ def last_magnitudes(series: Array, length: float = 1.0) -> Array:
     logs = _log_sizes(series) + unit * np.arange(len(sizes))
     window, fall = _fall(logs)
     later = sizes[-window:]
-    ahead = np.exp(-(fall[0] + unit) * np.arange(window - 1.0, -1.0, -1.0))[:, None]
+    falling = _steady(logs, window, fall)[0] + unit
+    ahead = np.exp(-falling * np.arange(window - 1.0, -1.0, -1.0))[:, None]
     return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])
 
 
