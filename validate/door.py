@@ -14,12 +14,13 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
+from validate.solvers.plain import NoSolver
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
     (UnknownEnding, ExitStatus.WRONG_INPUT),
     (OutputError, ExitStatus.NOT_FINISHED),
-    ((UsageError, UnknownFormulation, MissingPackage), ExitStatus.WRONG_INPUT),
+    ((UsageError, UnknownFormulation, MissingPackage, NoSolver), ExitStatus.WRONG_INPUT),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )

@@ -27,6 +27,9 @@ from validate.output.document import Head, Journal
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown
+from validate.solvers.check import ACCURACY, required_accuracy
+from validate.solvers.load import solver_at
+from validate.solvers.plain import PlainSolver
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -61,6 +64,22 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"the one to compare it with ({SECOND} if not given); without --first and --second "
         f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
     )
+    parser.add_argument(
+        "--solver",
+        metavar="MODULE:NAME",
+        help="a solver of your own in the place of --first: a function, object or class that takes plain "
+        f"data (see the README); without --second it is held to {FIRST}",
+    )
+    parser.add_argument(
+        "--accuracy",
+        type=float,
+        metavar="MM",
+        help=f"how exactly that solver says it places points, mm; what is tolerated of every number is "
+        f"derived from it, pose by pose ({ACCURACY:g} if not given)",
+    )
+    parser.add_argument(
+        "--traceback", action="store_true", help="show where in its files that solver raises an error"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
     add_quiet(parser)
     parser.set_defaults(run=run)
@@ -85,7 +104,7 @@ class _Results:
         self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
             first, second = (s.formulation for s in outcome.solutions)
-            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.agreed
+            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.passed
         if examined.printed is not None:
             self.printed.append(examined.name)
             self.findings += findings([examined.printed])
@@ -109,6 +128,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         OutputError: the results cannot be written.
     """
     names = options.scenes or list(DEFAULT_SCENES)
+    _require_solver_options(options)
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
@@ -116,26 +136,44 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.quiet, console.mute = options.quiet, options.json == "-"
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
-    for name in dict.fromkeys(name for pair in pairs for name in pair):
+    own = {}
+    if options.solver is not None:
+        accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
+        function = solver_at(options.solver, options.traceback)
+        own[shown(options.solver)] = PlainSolver(shown(options.solver), function, accuracy)
+    for name in dict.fromkeys(name for pair in pairs for name in pair if name not in own):
         formulation(name)  # found before any scene is read
     journal = Journal(options.json, Head.of("validate", options.command), console)
     results = _Results()
     with journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending:
         for name, scene in _loaded(names, console):
             if isinstance(scene, Scene):
-                _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
+                printed = name in PAPER_SCENES and not own
+                _say(examined := examine(name, scene, pairs, printed, own), console)
             else:
                 examined = scene
             results.add(examined)
             journal.keep(results.data, _finished(results, names))
-        if not options.scenes:
+        if not options.scenes and not own:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = combined(results.statuses)
     return ending.status
 
 
+def _require_solver_options(options: argparse.Namespace) -> None:
+    if options.solver is not None and options.first is not None:
+        raise UsageError("--solver and --first are both given; the solver takes the place of --first")
+    for option in ("accuracy", "traceback"):
+        if options.solver is None and getattr(options, option) not in (None, False):
+            raise UsageError(f"--{option} is about a solver of your own; give --solver MODULE:NAME")
+
+
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
+    if options.solver is not None:
+        if options.second == "":
+            raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
+        return ((shown(options.solver), options.second or FIRST),)
     first, second = options.first or FIRST, options.second or SECOND
     if options.first == "" or options.second == "":
         raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")

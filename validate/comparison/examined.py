@@ -101,7 +101,7 @@ class Examined:
 
 
 def _status_of(outcome: Outcome) -> ExitStatus:
-    if outcome.agreed:
+    if outcome.passed:
         return ExitStatus.AGREE
     return ExitStatus.DISAGREE if outcome.disagreements else ExitStatus.NO_VERDICT
 
@@ -152,16 +152,24 @@ class Once:
             return error
 
 
-def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: bool) -> Examined:
+def examine(
+    name: str,
+    scene: Scene,
+    pairs: Sequence[tuple[str, str]],
+    printed: bool,
+    others: Mapping[str, Formulation] | None = None,
+) -> Examined:
     """Compare a scene in pairs of formulations.
 
     Args:
         name: what the user calls the scene.
         pairs: names of formulations.
         printed: whether the first formulation is compared with the paper's printed formulas too.
+        others: formulations by names of their own, beside those that there are.
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair))
-    once = {name: Once(formulation(name)) for name in names}
+    own = others or {}
+    once = {name: Once(own[name] if name in own else formulation(name)) for name in names}
     outcomes: list[Outcome] = []
     refusals: dict[str, Refusal] = {}
     failures: list[Failure] = []
