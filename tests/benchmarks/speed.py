@@ -236,7 +236,7 @@ FIGURES = (
     Figure("dense, all effects", COPY, lambda: dense(tuple(EFFECTS)), 6.0, 3.0),
     Figure("first answer", INVERSES, first_answer, 0.5, 2.1),
     Figure("import", "numpy's own import", importing, 2.3, 1.5),
-    Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
+    Figure("a configuration of many designs", INVERSE, designs, 0.1, 0.5),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
     Figure("a call of a map for one pose", INVERSE, single, 0.3, 1.5),
     Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),
