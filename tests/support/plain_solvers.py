@@ -1,4 +1,4 @@
-"""A solver that knows nothing of this project's solvers: closed forms in many digits, plain data in and out."""
+"""A solver apart from the project's: closed forms in many digits, plain data in and out."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""`pointcoord validate --solver MODULE:NAME`: the verdict, the status, and one clear line for every mistake."""
+"""`pointcoord validate --solver MODULE:NAME`: verdict, status, and one clear line for every mistake."""
 
 import json
 import subprocess
@@ -18,7 +18,7 @@ MODULES = {
     "half": RIGHT.replace("return closed_form(given)", 'return {"wheel": closed_form(given)["wheel"]}'),
     "wrong": RIGHT.replace("return closed_form(given)", 'a = closed_form(given)["wheel"]\n')
     + '    return {"camber": -a["camber"], "toe": a["toe"]}\n',
-    "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n    def __init__(self, a): ...\n",
+    "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n  def __init__(self, a): ...\n",
     "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n"
     "    return {'position': {'rack_centre': [given['points']['rack_centre']] * len(given['instants'])}}\n",
     "none": "def solve(given):\n    return None\n",
