@@ -32,11 +32,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.results.named_columns import number_columns
 from validate.cost.growth.unknowns import LongChain
 from validate.cost.instants import study_instants
 from validate.cost.way import Setting
 from validate.cost.ways.absolute import Absolute
-from validate.output.motion_tables import number_columns, write_csv
+from validate.output.motion_tables import write_csv
 
 Array = NDArray[np.float64]
 Work = Callable[[], object]
