@@ -18,13 +18,14 @@ from validate.hardpoint_files.axes import UnknownAxes
 from validate.hardpoint_files.contents import HardpointFileError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
+from validate.solvers.plain import NoSolver
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
     (UnknownEnding, ExitStatus.WRONG_INPUT),
     (OutputError, ExitStatus.NOT_FINISHED),
     (
-        (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage),
+        (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, NoSolver),
         ExitStatus.WRONG_INPUT,
     ),
     ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),

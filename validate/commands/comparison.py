@@ -36,6 +36,9 @@ from validate.output.document import Head, Journal, program_version
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown
+from validate.solvers.check import ACCURACY, required_accuracy
+from validate.solvers.load import solver_at
+from validate.solvers.plain import PlainSolver
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -82,10 +85,21 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="what the columns of --data are; not needed for files that pointcoord simulate -o writes",
     )
     parser.add_argument(
+        "--solver",
+        metavar="MODULE:NAME",
+        help="a solver of your own in the place of --first: a function, object or class that takes plain "
+        f"data (see the README); without --second it is held to {FIRST}",
+    )
+    parser.add_argument(
         "--accuracy",
         metavar="A",
         type=float,
-        help="how far off the numbers of --data may be beside their digits, each in its column's unit",
+        help=f"how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): what "
+        "is tolerated of every number is derived from it, pose by pose; or how far off the numbers of "
+        "--data may be beside their digits, each in its column's unit",
+    )
+    parser.add_argument(
+        "--traceback", action="store_true", help="show where in its files that solver raises an error"
     )
     parser.add_argument(
         "--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path"
@@ -147,7 +161,7 @@ class _Results:
         self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
             first, second = (s.formulation for s in outcome.solutions)
-            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.agreed
+            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.passed
         if examined.printed is not None:
             self.printed.append(examined.name)
             self.findings += findings([examined.printed])
@@ -181,15 +195,21 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         from validate.commands.data import run as run_data
 
         return run_data(options, console)
-    if options.map is not None or options.accuracy is not None:
-        raise UsageError("--map and --accuracy are about a file of results; give it with --data FILE")
+    if options.map is not None:
+        raise UsageError("--map is about a file of results; give it with --data FILE")
     all_of_ours = not options.scenes and options.scenes_dir is None
     names = _names(options)
+    _require_solver_options(options)
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     files = _files(options, names, console)
-    for name in dict.fromkeys(name for pair in pairs for name in pair):
+    own = {}
+    if options.solver is not None:
+        accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
+        function = solver_at(options.solver, options.traceback)
+        own[shown(options.solver)] = PlainSolver(shown(options.solver), function, accuracy)
+    for name in dict.fromkeys(name for pair in pairs for name in pair if name not in own):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
     shown_names = [name_of(name) for name in names]
@@ -207,7 +227,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         for place, (name, scene) in enumerate(_loaded(names, console)):
             since = None
             if isinstance(scene, Scene):
-                examined = examine(name, scene, pairs, name in PAPER_SCENES, record.factor)
+                printed = name in PAPER_SCENES and not own
+                examined = examine(name, scene, pairs, printed, record.factor, own)
                 _say(examined, console)
                 if recorder is not None:
                     recorder.add(examined.name, scene, examined.outcomes)
@@ -221,11 +242,20 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
                 break
-        if all_of_ours and not record.not_run:
+        if all_of_ours and not own and not record.not_run:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
     return ending.status
+
+
+def _require_solver_options(options: argparse.Namespace) -> None:
+    if options.solver is not None and options.first is not None:
+        raise UsageError("--solver and --first are both given; the solver takes the place of --first")
+    for option in ("accuracy", "traceback"):
+        if options.solver is None and getattr(options, option) not in (None, False):
+            also = ", or about a file: --data FILE" if option == "accuracy" else ""
+            raise UsageError(f"--{option} is about a solver of your own: give --solver MODULE:NAME{also}")
 
 
 def _files(options: argparse.Namespace, names: Sequence[str], console: Console) -> Files:
@@ -264,6 +294,10 @@ def _names(options: argparse.Namespace) -> list[str]:
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
+    if options.solver is not None:
+        if options.second == "":
+            raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
+        return ((shown(options.solver), options.second or FIRST),)
     first, second = options.first or FIRST, options.second or SECOND
     if options.first == "" or options.second == "":
         raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")

@@ -34,6 +34,8 @@ OF_SCENES = (
     "--summary",
     "--save-baseline",
     "--baseline",
+    "--solver",
+    "--traceback",
 )
 
 
@@ -84,7 +86,7 @@ def _require(options: argparse.Namespace) -> None:
     for option in OF_SCENES:
         value = getattr(options, option.strip("-").replace("-", "_"))
         if value not in (None, False, 1.0):
-            raise UsageError(f"{option} is about scenes that are solved twice; leave it out with --data")
+            raise UsageError(f"{option} is about scenes that are solved; leave it out with --data")
     if len(options.scenes) != 1:
         given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"
         raise UsageError(f"{given} given with --data; give the one scene that the file is about")

@@ -82,6 +82,18 @@ class Outcome:
         return all(row.verdict == "agrees" for row in self.rows)
 
     @property
+    def stated(self) -> bool:
+        """Whether one of them is held to an accuracy that it stated, and may give what it has."""
+        return any(solution.accuracy.blind is not None for solution in self.solutions)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every row agrees; of a solver with a stated accuracy: something, and nothing disagrees."""
+        if not self.stated:
+            return self.agreed
+        return not self.disagreements and any(row.verdict == "agrees" for row in self.rows)
+
+    @property
     def disagreements(self) -> tuple[Comparison, ...]:
         """The rows that do not."""
         return tuple(row for row in self.rows if row.verdict == "disagrees")

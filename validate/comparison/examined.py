@@ -101,7 +101,7 @@ class Examined:
 
 
 def _status_of(outcome: Outcome) -> ExitStatus:
-    if outcome.agreed:
+    if outcome.passed:
         return ExitStatus.AGREE
     return ExitStatus.DISAGREE if outcome.disagreements else ExitStatus.NO_VERDICT
 
@@ -153,7 +153,12 @@ class Once:
 
 
 def examine(
-    name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: bool, factor: float = 1.0
+    name: str,
+    scene: Scene,
+    pairs: Sequence[tuple[str, str]],
+    printed: bool,
+    factor: float = 1.0,
+    others: Mapping[str, Formulation] | None = None,
 ) -> Examined:
     """Compare a scene in pairs of formulations.
 
@@ -162,9 +167,11 @@ def examine(
         pairs: names of formulations.
         printed: whether the first formulation is compared with the paper's printed formulas too.
         factor: how many times the derived tolerance to hold differences to.
+        others: formulations by names of their own, beside those that there are.
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair))
-    once = {name: Once(formulation(name)) for name in names}
+    own = others or {}
+    once = {name: Once(own[name] if name in own else formulation(name)) for name in names}
     outcomes: list[Outcome] = []
     refusals: dict[str, Refusal] = {}
     failures: list[Failure] = []

@@ -25,6 +25,10 @@ LEFT = (
     "resting on",
 )
 
+# Verdicts from the one that tells least of a quantity to the one that tells most.
+OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
+OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
+
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Columns of text: words to the left, numbers to the right."""
@@ -62,9 +66,11 @@ def heading(quantity: str, name: str) -> str:
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
+    # A solver that is held to what it states need not give everything.
+    order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
     for row in outcome.rows:
         key = heading(row.quantity, row.name)
-        if key not in worst or _severity(row) > _severity(worst[key]):
+        if key not in worst or _severity(row, order) > _severity(worst[key], order):
             worst[key] = row
     return list(worst.values())
 
@@ -80,8 +86,7 @@ def about(quantity: str, name: str) -> str:
     return name if kind.of == "car" else f"{kind.words} of {name}"
 
 
-def _severity(row: Comparison) -> tuple[int, float]:
-    order = ("agrees", "not tested", "not given", "disagrees")
+def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
 
@@ -201,7 +206,7 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
         "scene": outcome.scene,
         "formulations": [s.formulation for s in outcome.solutions],
         "instants": len(outcome.solutions[0].times),
-        "agreed": outcome.agreed,
+        "agreed": outcome.passed,
         "tolerance_factor": outcome.factor,
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from validate.reference.vectors import Scalar
 
@@ -10,6 +11,8 @@ from validate.reference.vectors import Scalar
 @dataclass(frozen=True)
 class Dual:
     """(x, dx): sums, products and quotients follow the rules of differentiation."""
+
+    __array_ufunc__: ClassVar[None] = None  # numpy's arrays leave sums and products with a dual to the dual
 
     value: Scalar
     slope: Scalar = 0

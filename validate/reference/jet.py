@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from validate.reference.vectors import Scalar
 
@@ -14,6 +15,8 @@ class Jet:
     (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that eq. (23) of the paper drops cannot be
     forgotten here, because no equation is differentiated by hand.
     """
+
+    __array_ufunc__: ClassVar[None] = None  # numpy's arrays leave sums and products with a jet to the jet
 
     value: Scalar
     rate: Scalar = 0

@@ -73,7 +73,8 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
 
     def half_curl(vectors: Sequence[Vector]) -> Vector:
         parts = [cross(g, vector) for g, vector in zip(reciprocal, vectors, strict=True)]
-        return times(plus(plus(parts[0], parts[1]), parts[2]), arb(1) / 2)
+        x, y, z = plus(plus(parts[0], parts[1]), parts[2])
+        return x / 2, y / 2, z / 2
 
     omega = half_curl([_part(vector, "rate") for vector in frame])
     centripetal = [cross(omega, cross(omega, vector)) for vector in e]

@@ -1,24 +1,389 @@
-"""What an accuracy that a solver states, in mm, makes of each number that it gives."""
+r"""What an accuracy that a solver states, in mm, makes of each number that it gives.
+
+A solver of accuracy e answers for a pose whose points are off by up to e in every coordinate. At such a pose
+y + dy the equations of the many-digit reference, C(y, t) = 0, are missed by up to
+
+    rho_i = e sum_j |C'_ij| s_j,
+
+the sum over the unknowns y_j, with s_j = 1 for a coordinate and 1 / h for the others, which turn the knuckle
+or slide along it (h: how far its three points lie apart, below). Of a link that is its length missed by e to
+sqrt(3) e at each end. A solver that stops there, however it goes about it, is a car whose lengths are off by
+as much. What that makes of the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
+
+    C' dy   = delta
+    C' dy'  = -d(C' y' + C_t)                  the rate equations' dependence on the pose
+    C' dy'' = -d(C'' y' y' + C' y'' + ...)     with dy and dy'
+
+and of every number q(y, y', y'') by its own derivative. The worst signs are taken: the sum over the rows i of
+|dq / d delta_i| rho_i. All of this is the reference's own text of its equations (`residual`, `jacobian`,
+`points_of`, `body_turns`, the angles), evaluated with dual numbers as in `reference.sensitivity`, of arrays
+instead of balls: a tolerance needs no 60 digits.
+
+A number is also read from points that are themselves off by e, on bodies that turn with |omega| <= W and
+|alpha| <= A (V, B: the largest speed and acceleration, L: the car's size, for what moves without turning):
+
+    position                e
+    velocity                e_1 = sqrt(3) e (W + V / L)
+    acceleration            e_2 = sqrt(3) e (A + W^2 + B / L)
+    turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
+    an angle                both ends of its line off by e, through the line's length
+
+and each is rounded once where it is handed over.
+
+The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
+r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
+is too little: near a fold y ~ sqrt(d) and d ~ delta, where r = delta / (2 d), the derivatives of position,
+velocity and acceleration grow by (1 - 2 r) to the power -1/2, -3/2 and -5/2. By the mean value theorem these
+factors cover the rest. At r = 1/2 the pose may be beyond the fold, or another one (as in Kantorovich's
+condition for Newton's method): from LIMIT on the accuracy says nothing of that instant, and it is not tested.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from math import sqrt
+from typing import Self
+
 import numpy as np
+from flint import arb
+from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import Accuracy, Numbers, shape_of
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.method import AUTO
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from validate.formulations.asked_numbers import asked_numbers, per_second
+from validate.formulations.input_rates import rates
+from validate.formulations.point_coordinates import PointCoordinates
+from validate.formulations.protocol import Accuracy, Numbers
+from validate.reference import Design
+from validate.reference.design import HEAVE, values_only
+from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.effects.effect import Axes
+from validate.reference.effects.registry import EFFECTS
+from validate.reference.jet import Jet
+from validate.reference.kinematics import body_turns
+from validate.reference.linkage import Known
+from validate.reference.vectors import Scalar, Vector, plus
 
+Array = NDArray[np.float64]
 
-def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
-    """How far off each number of a scene may be that a solver of some accuracy, mm, gives."""
-    count = len(scene.instants)
-    claims = {
-        quantity: {name: np.full(shape_of(quantity, count), accuracy) for name in names}
-        for quantity, names in asked_numbers(scene).items()
-    }
-    return Accuracy(np.ones(count), claims, blind=np.zeros(count, dtype=bool))
+LIMIT = 0.45  # of r: beyond it a first order says nothing of the pose
+FLATTEST = 1e-3  # of the size: beside a triangle that is flatter a solver takes other points of the body
+OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is not the one meant
+AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
+NOTHING = 1e150  # claimed where nothing can be said: wider than any number, and its square is finite
+ROOT_3 = sqrt(3.0)
 
 
 def claims_for(scene: Scene, accuracy: float) -> Numbers:
-    """The claims of `accuracy_for`."""
+    """How far off each number may be that the scene asks for: the claims of `accuracy_for`.
+
+    Raises:
+        FormulationError: the scene cannot be solved.
+    """
     return accuracy_for(scene, accuracy).claims
+
+
+def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
+    """What a solver of an accuracy, mm, may be off by in a scene: see the top of this file.
+
+    Raises:
+        FormulationError: the scene cannot be solved.
+    """
+    every = scene.model_copy(update={"effects": (), "points": None})
+    poses = PointCoordinates("pointcoord", AUTO).solve(every).numbers
+    places = next(arrays for q, arrays in poses.items() if QUANTITIES[q].of == "point" and not per_second(q))
+    part = scene.mechanism
+    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure, part.type)
+    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+    held = _Held(scene, design, accuracy)
+    parts = []
+    for low in range(0, len(scene.instants), AT_ONCE):
+        some = slice(low, low + AT_ONCE)
+        at = {name: place[some] for name, place in places.items()}
+        parts.append(held.at(at, {name: law[some] for name, law in laws.items()}))
+    claims = {
+        q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in names}
+        for q, names in asked_numbers(scene).items()
+    }
+    blind = np.concatenate([one.blind for one in parts if one.blind is not None])
+    return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
+
+
+class Constant(float):
+    """A number that the equations take the root of, alone or after a quotient."""
+
+    def sqrt(self) -> float:
+        """Its root."""
+        return sqrt(self)
+
+    def __truediv__(self, other: float) -> Self:
+        return type(self)(float(self) / other)
+
+    def __rtruediv__(self, other: float) -> Self:
+        return type(self)(other / float(self))
+
+
+class _Held:
+    """A car and an accuracy.
+
+    Attributes:
+        off: the accuracy in units of the design. height: of the knuckle's points, likewise.
+    """
+
+    def __init__(self, scene: Scene, design: Design, accuracy: float) -> None:
+        self.design = design
+        self.accuracy = accuracy
+        self.unit = float(design.unit)
+        self.origin = np.array([float(x) for x in design.origin])
+        self.off = accuracy / self.unit
+        self.asked = asked_numbers(scene)
+        topology = scene.mechanism.topology
+        drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
+        self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
+        self.heights = {
+            body: max(_height(*(drawn[name] for name in names)), FLATTEST * self.size)
+            for body, names in topology.bodies.items()
+        }
+        self.height = min(self.heights.values())
+
+    def at(self, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
+        """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
+        known = self._known(laws, len(next(iter(places.values()))))
+        values, inverse, matrix, blind = self._pose(places, values_only(known))
+        jets = _jets(values, inverse, known)
+        linkage = self.design.linkage
+        scale = np.ones(linkage.size)
+        scale[linkage.coordinates :] = 1.0 / self.height
+        missed = self.off * (np.abs(matrix) @ scale)
+        slopes = _slopes(jets, inverse, missed, known)
+        change = _change(_with_slopes(jets, slopes), inverse, values_only(known))
+        blind |= ~(change < LIMIT)
+        growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
+        claims = self._claims(_with_slopes(jets, slopes), known, growth)
+        condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
+        said = {
+            q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
+            for q, of in claims.items()
+        }
+        return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
+
+    def _known(self, laws: Mapping[str, Array], count: int) -> Known:
+        """What the equations take as given, as jets of arrays (N,) of doubles."""
+        design, linkage = self.design, self.design.linkage
+        still = np.zeros((count, 3))
+        driven = {}
+        for name, drive in linkage.inputs.items():
+            found = [
+                drive.driven(Jet(*(arb(x) for x in law)), design.squared_length, design.unit)
+                for law in laws.get(name, still).tolist()
+            ]
+            parts = np.array([[float(x) for x in (j.value, j.rate, j.acceleration)] for j in found])
+            driven[name] = Jet(*parts.T)
+        up, right = _floats(design.up), _floats(design.right)
+        rise = Jet(*(laws.get(HEAVE, still) / self.unit).T)
+        lift = (rise * up[0], rise * up[1], rise * up[2])
+        return Known(
+            linkage=linkage,
+            chassis={n: plus(_jet_vector(design.table[n], count), lift) for n in linkage.chassis},
+            up=up,
+            right=right,
+            squared_length={link: Constant(float(x)) for link, x in design.squared_length.items()},
+            driven=driven,
+            knuckle={name: _floats(shape) for name, shape in design.knuckle.items()},
+        )
+
+    def _pose(
+        self, places: Mapping[str, Array], known: Known
+    ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
+        """The unknowns, the inverse of their Jacobian, it, and where the pose is not the equations' own."""
+        linkage = self.design.linkage
+        local = {}
+        for name in self.design.names:
+            x, y, z = ((places[name] - self.origin) / self.unit).T
+            local[name] = (x, y, z)
+        values = np.array(linkage.unknown_of(local, known), dtype=float)
+        matrix = _matrix(list(values), known)
+        inverse = _inverse(matrix)
+        rows = np.array(
+            [np.broadcast_to(row, values.shape[1:]) for row in linkage.residual(list(values), known)]
+        )
+        step = np.einsum("nij,jn->in", inverse, rows)
+        blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
+        values = np.where(blind, values, values - step)
+        matrix = _matrix(list(values), known)
+        return list(values), _inverse(matrix), matrix, blind
+
+    def _claims(
+        self, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
+    ) -> dict[str, dict[str, Array]]:
+        points = known.linkage.points_of(solved, known)
+        turns = body_turns(solved, points, known)
+        count = len(growth[0])
+        states = {name: [_values(_order(p, d), count) for d in range(3)] for name, p in points.items()}
+        turning, bending = (
+            np.max([_lengths(_values(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
+        )
+        fastest, hardest = (np.max([_lengths(state[d]) for state in states.values()], axis=0) for d in (1, 2))
+        own = (
+            np.full(count, self.off),
+            ROOT_3 * self.off * (turning + fastest / self.size),
+            ROOT_3 * self.off * (bending + turning**2 + hardest / self.size),
+        )
+        rounded = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
+        angles = self._angles(points, known, growth[0])
+        claims: dict[str, dict[str, Array]] = {}
+        for quantity, names in self.asked.items():
+            d, of = per_second(quantity), QUANTITIES[quantity].of
+            if of == "point":
+                claims[quantity] = {
+                    n: self.unit
+                    * (
+                        _off(_order(points[n], d), count) * growth[d][:, None]
+                        + own[d][:, None]
+                        + UNIT_ROUNDOFF * np.abs(states[n][d])
+                        + (rounded if d == 0 else 0.0)
+                    )
+                    for n in names
+                }
+            elif of == "body":
+                claims[quantity] = {
+                    n: _off(turns[n][d - 1], count) * growth[d][:, None]
+                    + 2.0 * own[d][:, None] / self.heights[n]
+                    + UNIT_ROUNDOFF * np.abs(_values(turns[n][d - 1], count))
+                    for n in names
+                }
+            else:
+                claims[quantity] = {n: angles[n] for n in names}
+        return claims
+
+    def _angles(self, points: Mapping[str, Vector], known: Known, growth: Array) -> dict[str, Array]:
+        """Of every angle: what the pose makes of it, and the ends of its line, which are off themselves."""
+        places = {name: _order(p, 0) for name, p in points.items()}
+        axes = Axes.of(places, known, self.design.outboard)
+        wheel, steering = (
+            _with_own(line, 2.0 * self.off, first, growth)
+            for first, line in enumerate((axes.wheel, axes.steering))
+        )
+        own = replace(axes, wheel=wheel, steering=steering)
+        found = {}
+        for name, effect in EFFECTS.items():
+            angle = effect.evaluate(own)
+            claim = np.abs(slope_of(angle)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(angle))
+            found[name] = np.where(np.isfinite(claim), claim, 0.0)
+        return found
+
+
+def _height(a: Array, b: Array, c: Array) -> float:
+    """The least height of a triangle."""
+    area = float(np.linalg.norm(np.cross(b - a, c - a)))
+    return area / max(float(np.linalg.norm(side)) for side in (b - a, c - a, c - b))
+
+
+def _floats(vector: Vector) -> Vector:
+    x, y, z = (float(x) for x in vector)
+    return x, y, z
+
+
+def _jet_vector(vector: Vector, count: int) -> Vector:
+    x, y, z = (Jet(np.full(count, float(x)), np.zeros(count), np.zeros(count)) for x in vector)
+    return x, y, z
+
+
+def _matrix(values: Sequence[Scalar], known: Known, part: Callable[[Scalar], Scalar] = value_of) -> Array:
+    """The Jacobian or its slope, (..., N, size, size)."""
+    entries = [(i, j, part(entry)) for i, j, entry in known.linkage.jacobian(values, known)]
+    shape = np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries))
+    matrix = np.zeros((*shape, known.linkage.size, known.linkage.size))
+    for i, j, entry in entries:
+        matrix[..., i, j] = entry
+    return matrix
+
+
+def _inverse(matrix: Array) -> Array:
+    """Of matrices (N, size, size); of one without an inverse what comes nearest to one."""
+    try:
+        return np.asarray(np.linalg.inv(matrix), dtype=float)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(matrix), dtype=float)
+
+
+def _jets(values: Sequence[Array], inverse: Array, known: Known) -> list[Jet]:
+    """The unknowns with their rates, as in `reference.kinematics`."""
+    zero = np.zeros_like(values[0])
+
+    def solved(rows: Sequence[Scalar]) -> Array:
+        stacked = np.array([np.broadcast_to(row, zero.shape) for row in rows])
+        return np.asarray(-np.einsum("nij,jn->in", inverse, stacked))
+
+    still = [Jet(value, zero, zero) for value in values]
+    velocity = solved([row.rate for row in known.linkage.residual(still, known)])
+    moving = [Jet(jet.value, rate, zero) for jet, rate in zip(still, velocity, strict=True)]
+    bend = solved([row.acceleration for row in known.linkage.residual(moving, known)])
+    return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
+
+
+def _slopes(jets: Sequence[Jet], inverse: Array, missed: Array, known: Known) -> Array:
+    """By order, unknown and row that is missed, (3, size, size, N): what missing each row makes of y."""
+    size, count = len(jets), len(inverse)
+    found = np.zeros((3, size, size, count))
+    found[0] = np.einsum("nij,nj->ijn", inverse, missed)
+    for d in (1, 2):
+        rows = known.linkage.residual(_with_slopes(jets, found), known)
+        moved = np.array([np.broadcast_to(slope_of(_part(row, d)), (size, count)) for row in rows])
+        found[d] = -np.einsum("nij,jkn->ikn", inverse, moved)
+    return found
+
+
+def _with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
+    return [Jet(*(Dual(_part(jet, d), slopes[d, i]) for d in range(3))) for i, jet in enumerate(jets)]
+
+
+def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
+    """r of the top of this file, (N,)."""
+    slopes = _matrix([jet.value for jet in jets], known, slope_of)
+    return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
+
+
+def _with_own(line: Vector, off: float, first: int, growth: Array) -> Vector:
+    """A line with further slopes: each component of it off by so much, beside those of the other line."""
+    components = []
+    for axis, component in enumerate(line):
+        value = np.broadcast_to(value_of(component), growth.shape)
+        slopes = np.broadcast_to(
+            slope_of(component) * growth, (np.shape(slope_of(component))[0], len(growth))
+        )
+        more = np.zeros((6, len(growth)))
+        more[3 * first + axis] = off
+        components.append(Dual(value, np.concatenate([slopes, more])))
+    x, y, z = components
+    return x, y, z
+
+
+def _part(jet: Jet, order: int) -> Scalar:
+    return (jet.value, jet.rate, jet.acceleration)[order]
+
+
+def _order(point: Vector, order: int) -> Vector:
+    x, y, z = (_part(component, order) for component in point)
+    return x, y, z
+
+
+def _values(vector: Vector, count: int) -> Array:
+    """(N, 3)."""
+    return np.stack([np.broadcast_to(value_of(x), count) for x in vector], axis=-1)
+
+
+def _off(vector: Vector, count: int) -> Array:
+    """The sum of the slopes' sizes, (N, 3)."""
+    return np.stack([np.broadcast_to(np.sum(np.abs(slope_of(x)), axis=0), count) for x in vector], axis=-1)
+
+
+def _lengths(vectors: Array) -> Array:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))
+
+
+def _like(where: NDArray[np.bool_], claim: Array) -> NDArray[np.bool_]:
+    return where.reshape(-1, *(1,) * (claim.ndim - 1))

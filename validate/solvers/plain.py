@@ -32,7 +32,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
+from pointcoord import Scene, SceneError
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.messages import meant, shown
@@ -46,6 +46,7 @@ Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 ORDERS = ("position", "velocity", "acceleration")
 INSTANTS = "instants"
 METHOD = "solve"
+HERE = Path(__file__).parent
 
 
 class NoSolver(Exception):
@@ -150,13 +151,11 @@ class PlainSolver:
         Raises:
             FormulationError: the solver raises an error (SolverFailed), or answers with no mapping.
         """
-        from validate.solvers.held import accuracy_for
-
         given = given_to_solver(scene)
         try:
             answer = self.function(given)
         except (Exception, SystemExit) as error:
-            raise FormulationError(self.name, SolverFailed(said(error), _where(error))) from error
+            raise FormulationError(self.name, SolverFailed(said(error), raised_at(error))) from error
         if not isinstance(answer, Mapping):
             problem = SolverFailed(
                 f"it answers with a {type(answer).__name__}; needed: a mapping of what it has"
@@ -164,10 +163,20 @@ class PlainSolver:
             raise FormulationError(self.name, problem)
         numbers, notes = _numbers(self.name, answer, asked_numbers(scene))
         times = self._times(answer, scene)
-        accuracy = accuracy_for(scene, self.accuracy)
-        if times is not scene.instants:
-            accuracy = _at(accuracy, scene.instants, times)
-        return Solution(self.name, times, numbers, accuracy, notes)
+        accuracy, untold = self._accuracy(scene)
+        return Solution(self.name, times, numbers, _at(accuracy, scene.instants, times), (*notes, *untold))
+
+    def _accuracy(self, scene: Scene) -> tuple[Accuracy, tuple[str, ...]]:
+        """What is claimed at the scene's instants; nothing, and why, of a scene without a reference."""
+        from validate.reference import NoReferenceError
+        from validate.solvers.held import accuracy_for
+
+        try:
+            return accuracy_for(scene, self.accuracy), ()
+        except (FormulationError, SceneError, NoReferenceError) as error:
+            every = np.ones(len(scene.instants), dtype=bool)
+            note = f"no tolerance can be derived for {self.name}, so that nothing is tested: {error}"
+            return Accuracy(np.ones(len(every)), blind=every), (note,)
 
     def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
         if INSTANTS not in answer:
@@ -226,7 +235,11 @@ def _at(accuracy: Accuracy, instants: Array, times: Array) -> Accuracy:
     return replace(accuracy, condition=accuracy.condition[places], claims=claims, blind=blind)
 
 
-def _where(error: BaseException) -> str:
-    """The file and line of the solver's that raised; empty where it is the call itself that does not fit."""
-    frames = traceback.extract_tb(error.__traceback__)[1:]
-    return f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+def raised_at(error: BaseException) -> str:
+    """The file and line that raised, of the solver's own if the call got so far."""
+    own = [f for f in traceback.extract_tb(error.__traceback__) if not _ours(f.filename)]
+    return f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else ""
+
+
+def _ours(file: str) -> bool:
+    return file.startswith("<frozen importlib") or Path(file).parent == HERE

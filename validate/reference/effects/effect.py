@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
 from flint import arb
 
 from validate.reference.dual import Dual, slope_of, value_of
@@ -71,9 +72,9 @@ class Effect:
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
-    """atan2(y, x), rad, of balls or of duals of balls."""
+    """atan2(y, x), rad, of balls, of arrays or of duals of these."""
     across, along = value_of(y), value_of(x)
-    turned = arb.atan2(across, along)
+    turned = arb.atan2(across, along) if isinstance(across, arb) else np.arctan2(across, along)
     if not (isinstance(y, Dual) or isinstance(x, Dual)):
         return turned
     turning = along * slope_of(y) - across * slope_of(x)

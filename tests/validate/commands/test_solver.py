@@ -1,0 +1,145 @@
+"""`pointcoord validate --solver MODULE:NAME`: verdict, status, and one clear line for every mistake."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from program import ENVIRONMENT, PROGRAM, ROOT, complaints
+
+from validate.cli import main
+
+RIGHT = "def solve(given):\n    from plain_solvers import closed_form\n    return closed_form(given)\n"
+MODULES = {
+    "right": RIGHT,
+    "prints": 'import os\nprint("hello")\n'
+    + RIGHT.replace("    return", '    os.system("echo hi")\n    return'),
+    "half": RIGHT.replace("return closed_form(given)", 'return {"wheel": closed_form(given)["wheel"]}'),
+    "wrong": RIGHT.replace("return closed_form(given)", 'a = closed_form(given)["wheel"]\n')
+    + '    return {"camber": -a["camber"], "toe": a["toe"]}\n',
+    "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n  def __init__(self, a): ...\n",
+    "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n"
+    "    return {'position': {'rack_centre': [given['points']['rack_centre']] * len(given['instants'])}}\n",
+    "none": "def solve(given):\n    return None\n",
+    "broken": "import nothing_of_that_name\n",
+    "odd": "x = 1 / 0\n",
+}
+
+
+@pytest.fixture
+def solvers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A current directory with solvers in a package, and a short scene."""
+    (tmp_path / "own_solvers").mkdir()
+    for name, text in MODULES.items():
+        (tmp_path / "own_solvers" / f"{name}.py").write_text(text, encoding="utf-8")
+        sys.modules.pop(f"own_solvers.{name}", None)
+    sys.modules.pop("own_solvers", None)
+    for scene in ("off-axis-strut", "double-wishbone"):
+        text = (ROOT / "pointcoord" / "scenes" / f"{scene}.toml").read_text(encoding="utf-8")
+        (tmp_path / f"{scene}.toml").write_text(
+            text.replace("samples = 101", "samples = 5"), encoding="utf-8"
+        )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    return tmp_path
+
+
+def run(*words: str) -> int:
+    return main(["validate", "--solver", *words])
+
+
+def test_a_right_solver_ends_with_0(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("own_solvers.right:solve", "off-axis-strut.toml", "double-wishbone.toml") == 0
+    said = capfd.readouterr()
+    assert "2 of 2 scenes agree between own_solvers.right:solve and pointcoord" in said.out
+    assert "DISAGREES" not in said.out
+    assert not complaints(said.err)
+
+
+def test_what_is_not_given_is_listed_and_no_fault(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("own_solvers.half:solve", "off-axis-strut.toml") == 0
+    out = capfd.readouterr().out
+    assert "note: own_solvers.half:solve gives no angular velocity" in out
+    lines = {line.split("  ")[0]: line for line in out.splitlines()}
+    assert lines["position"].endswith("not given")
+    assert lines["camber"].endswith("agrees")
+
+
+def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("own_solvers.wrong:solve", "off-axis-strut.toml") == 1
+    lines = {line.split("  ")[0]: line for line in capfd.readouterr().out.splitlines()}
+    assert "DISAGREES" in lines["camber"]
+    assert lines["toe"].endswith("agrees")
+    # A coarser accuracy is what it would have to state.
+    assert run("own_solvers.wrong:solve", "--accuracy", "1e3", "off-axis-strut.toml") == 3
+
+
+def test_json_is_alone_on_standard_output(solvers: Path) -> None:
+    words = ["validate", "--solver", "own_solvers.prints:solve", "off-axis-strut.toml", "--json", "-"]
+    path = f"{ROOT}:{ROOT / 'tests' / 'support'}"
+    done = subprocess.run(
+        [*PROGRAM, *words],
+        capture_output=True,
+        text=True,
+        env={**ENVIRONMENT, "PYTHONPATH": path},
+        check=True,
+    )
+    (scene,) = json.loads(done.stdout)["scenes"]
+    assert scene["verdict"] == "agree"
+    assert {row["verdict"] for row in scene["comparisons"][0]["rows"]} == {"agrees"}
+    assert "hello" in done.stderr
+    assert "hi" in done.stderr.split()
+
+
+def test_a_solver_that_raises_is_told_in_a_line_and_other_scenes_go_on(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run("own_solvers.raises:solve", "off-axis-strut.toml") == 3
+    (line,) = complaints(capfd.readouterr().err)
+    assert "off-axis-strut.toml: KeyError: 'strut' at raises.py:2" in line
+    assert run("own_solvers.some:solve", "off-axis-strut.toml", "double-wishbone.toml") == 3
+    said = capfd.readouterr()
+    assert "SystemExit: 5 at some.py:3" in said.err
+    assert "1 of 2 scenes agree" in said.out
+
+
+def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("own_solvers.raises:solve", "--traceback", "off-axis-strut.toml") == 3
+    assert "Traceback (most recent call last)" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["own_solvers.nowhere:solve"], "'own_solvers.nowhere' that is not found"),
+        (["own_solvers.right:solv"], "(did you mean 'solve'?)"),
+        (["own_solvers.raises:Twice"], "cannot be made without arguments: TypeError"),
+        (["own_solvers.broken:solve"], "No module named 'nothing_of_that_name' at broken.py:1"),
+        (["own_solvers.odd:solve"], "ZeroDivisionError: division by zero at odd.py:1"),
+        (["own_solvers/right.py:solve"], "try own_solvers.right:solve"),
+        (["own_solvers.right"], "give MODULE:NAME"),
+        ([""], "give MODULE:NAME"),
+        (["math:pi"], "is a float, which is no solver"),
+        (["own_solvers.right:solve", "--accuracy", "0"], "give a length above 0"),
+        (["own_solvers.right:solve", "--accuracy", "fine"], "invalid float value: 'fine'"),
+        (["own_solvers.right:solve", "--first", "absolute"], "--solver and --first are both given"),
+        (["own_solvers.right:solve", "--second", "nobody"], "no formulation is called 'nobody'"),
+    ],
+)
+def test_a_mistake_is_told_in_one_line(
+    solvers: Path, capfd: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    assert run(*words, "off-axis-strut.toml") == 2
+    (line,) = complaints(capfd.readouterr().err)
+    assert said in line
+
+
+def test_an_accuracy_without_a_solver_is_a_mistake(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "steer", "--accuracy", "1e-3"]) == 2
+    assert "give --solver MODULE:NAME" in capfd.readouterr().err
+
+
+def test_an_answer_that_is_no_mapping_is_told(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("own_solvers.none:solve", "off-axis-strut.toml") == 3
+    assert "it answers with a NoneType; needed: a mapping" in capfd.readouterr().err

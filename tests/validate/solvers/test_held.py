@@ -1,0 +1,97 @@
+"""What a stated accuracy makes of every number: wide enough for who keeps it, and for nobody else."""
+
+import numpy as np
+import pytest
+from plain_solvers import closed_form, less_exact
+
+from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
+from validate import check
+from validate.cars.input_limits import Linkage
+from validate.cars.registry import SUSPENSIONS
+from validate.cars.scene_content import scene_content
+from validate.comparison.compare import Outcome
+from validate.solvers.held import claims_for
+
+CARS = [SUSPENSIONS[name].base["drawn"] for name in SUSPENSIONS]
+MOVING = {"arm_angle": (1.6, 0.12, -0.3), "rack": (4.0, -25.0, 40.0), "heave": (0.0, 30.0, -20.0)}
+
+
+def moving(car) -> Scene:
+    return Scene.from_mapping(scene_content(car, **MOVING, start=-0.5, stop=0.5, samples=5), "moving")
+
+
+def by_quantity(outcome: Outcome) -> dict[str, float]:
+    """The largest share of its tolerance that a quantity uses up; of each angle by itself."""
+    shares: dict[str, float] = {}
+    for row in outcome.rows:
+        key = row.name if QUANTITIES[row.quantity].of == "car" else row.quantity
+        shares[key] = max(shares.get(key, 0.0), row.share)
+    return shares
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+def test_a_right_solver_agrees_in_everything_down_to_nearly_rounding(car) -> None:
+    for accuracy in (1e-3, 1e-6, 1e-10):
+        outcome = check(closed_form, moving(car), accuracy)
+        assert {row.verdict for row in outcome.rows} == {"agrees"}, by_quantity(outcome)
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("seed", range(4))
+def test_a_solver_is_held_to_what_it_states(car, seed: int) -> None:
+    scene, solver = moving(car), less_exact(1e-3, seed)
+    kept = check(solver, scene, 1e-3)
+    assert kept.passed, by_quantity(kept)
+    broken = check(solver, scene, 1e-9)
+    assert not broken.passed
+    assert all(share > 1.0 for share in by_quantity(broken).values())
+    # The tolerance is that of this accuracy and of no far larger one: every quantity uses up a part of it.
+    assert all(share > 2e-3 for share in by_quantity(kept).values()), by_quantity(kept)
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+def test_a_tolerance_is_a_multiple_of_the_accuracy(car) -> None:
+    scene = moving(car)
+    fine, coarse = (claims_for(scene, accuracy) for accuracy in (1e-8, 1e-6))
+    for quantity, arrays in fine.items():
+        for name, array in arrays.items():
+            np.testing.assert_allclose(coarse[quantity][name], 100.0 * array, rtol=1e-3)
+
+
+def near_the_end(car, distance: float) -> Scene:
+    """Instants at a distance from the last reachable rack travel, in parts of the way there; at rest."""
+    linkage = Linkage.of(car)
+    home = linkage.home
+    end = linkage.end(home, "rack", True)
+    assert end is not None
+    rack = end[0] + distance * (home["rack"] - end[0])
+    return Scene.from_mapping(scene_content(car, home["arm_angle"], (rack, 1.0)), "near")
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
+    wide = {}
+    for distance in (1e-3, 1e-5, 1e-7):
+        scene = near_the_end(car, distance)
+        claims = claims_for(scene, 1e-10)
+        wide[distance] = [claims[q]["wheel_centre"].max() for q in ("position", "velocity", "acceleration")]
+        assert check(closed_form, scene, 1e-10).passed, distance
+    # At a distance d of a fold position, velocity and acceleration change with d^-1/2, d^-3/2 and d^-5/2.
+    for near, far in ((1e-5, 1e-3), (1e-7, 1e-5)):
+        grown = np.log10(np.array(wide[near]) / np.array(wide[far])) / 2.0
+        np.testing.assert_allclose(grown, [0.5, 1.5, 2.5], atol=0.2)
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("seed", range(3))
+def test_near_a_fold_who_keeps_the_accuracy_agrees(car, seed: int) -> None:
+    outcome = check(less_exact(1e-6, seed), near_the_end(car, 1e-5), 1e-6)
+    assert outcome.passed, by_quantity(outcome)
+
+
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
+    outcome = check(closed_form, near_the_end(car, 1e-7), 1e-2)
+    assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}
+    assert not outcome.disagreements

@@ -1,0 +1,161 @@
+"""Anybody's solver: what it is given, what it may answer, and what is said of an answer that is none."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from plain_solvers import closed_form
+
+from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES
+from validate import FormulationError, check
+from validate.cars.registry import SUSPENSIONS
+from validate.cars.scene_content import scene_content
+from validate.solvers.plain import NoSolver, given_to_solver
+
+CAR = SUSPENSIONS["macpherson"].base["drawn"]
+SCENE = Scene.from_mapping(
+    scene_content(CAR, (1.6, 0.12, -0.3), (4.0, -25.0), start=-0.5, stop=0.5, samples=5), "moving"
+)
+RIGHT = closed_form(given_to_solver(SCENE))
+
+
+def verdicts(answer: object, scene: Scene = SCENE) -> dict[tuple[str, str], str]:
+    outcome = check(lambda given: answer, scene)
+    return {(row.quantity, row.name): row.verdict for row in outcome.rows}
+
+
+def plain(value: Any) -> bool:
+    """Whether a value is of Python's own types or an array."""
+    if isinstance(value, Mapping):
+        return type(value) is dict and all(type(key) is str and plain(one) for key, one in value.items())
+    if type(value) is list:
+        return all(plain(one) for one in value)
+    return type(value) in (str, float, np.ndarray)
+
+
+def test_what_a_solver_is_given_is_plain_and_whole() -> None:
+    given = given_to_solver(SCENE)
+    assert plain(given)
+    assert given["points"]["strut_top"] == list(CAR.points["strut_top"])
+    t = given["instants"]
+    np.testing.assert_array_equal(t, [-0.5, -0.25, 0.0, 0.25, 0.5])
+    np.testing.assert_allclose(given["inputs"]["arm_angle"]["position"], 1.6 + 0.12 * t - 0.3 * t * t)
+    np.testing.assert_allclose(given["inputs"]["arm_angle"]["velocity"], 0.12 - 0.6 * t)
+    np.testing.assert_allclose(given["inputs"]["arm_angle"]["acceleration"], -0.6 + 0.0 * t)
+    # An input that the scene does not name rests.
+    assert not np.any(given["inputs"]["heave"]["position"])
+    assert given["asked"]["wheel"] == ["camber", "kingpin", "toe", "caster"]
+
+
+def test_a_solver_cannot_change_what_others_are_given() -> None:
+    def spoils(given: Any) -> Any:
+        given["points"]["strut_top"][0] = 1e9
+        del given["inputs"]
+        return RIGHT
+
+    assert check(spoils, SCENE).passed
+    with pytest.raises(FormulationError, match="read-only"):
+        check(lambda given: given["instants"].sort(), SCENE)
+    assert check(closed_form, SCENE).passed
+
+
+def changed(quantity: str, name: str, by: float) -> dict[str, Any]:
+    return RIGHT | {quantity: RIGHT[quantity] | {name: RIGHT[quantity][name] + by}}
+
+
+@pytest.mark.parametrize("row", check(closed_form, SCENE).rows, ids=lambda row: f"{row.quantity}-{row.name}")
+def test_a_wrong_number_disagrees_and_nothing_else_does(row: Any) -> None:
+    # Twice what is tolerated at the instant where that is widest; 100 times covers the others.
+    found = verdicts(changed(row.quantity, row.name, 100.0 * max(row.tolerance, 1e-12)))
+    assert found.pop((row.quantity, row.name)) == "disagrees"
+    assert set(found.values()) == {"agrees"}
+
+
+@pytest.mark.parametrize("quantity", [q for q in QUANTITIES if q in RIGHT])
+def test_a_wrong_sign_of_a_quantity_disagrees(quantity: str) -> None:
+    found = verdicts(RIGHT | {quantity: {name: -array for name, array in RIGHT[quantity].items()}})
+    assert {q for (q, _), verdict in found.items() if verdict == "disagrees"} == {quantity}
+
+
+def test_any_part_may_be_given_and_the_rest_is_listed() -> None:
+    outcome = check(lambda given: {"position": {"wheel_centre": RIGHT["position"]["wheel_centre"]}}, SCENE)
+    found = {(row.quantity, row.name): row.verdict for row in outcome.rows}
+    assert found.pop(("position", "wheel_centre")) == "agrees"
+    assert set(found.values()) == {"not given"}
+    assert outcome.passed
+    assert any("gives no velocity" in line for line in outcome.missing)
+
+
+@pytest.mark.parametrize("answer", [{}, {"position": {}}, {"camber": [1.0]}, {"camber": None}])
+def test_who_gives_nothing_that_can_be_compared_does_not_pass(answer: dict[str, Any]) -> None:
+    outcome = check(lambda given: answer, SCENE)
+    assert {row.verdict for row in outcome.rows} == {"not given"}
+    assert not outcome.passed
+    assert outcome.missing
+
+
+def test_an_angle_may_stand_by_itself_and_lists_do() -> None:
+    flat = {name: array.tolist() for name, array in RIGHT["wheel"].items()}
+    assert [v for (q, _), v in verdicts(flat).items() if q == "wheel"] == ["agrees"] * 4
+
+
+def test_fewer_instants_are_compared_where_they_are_named() -> None:
+    some = {"instants": [0.0, 0.5], "camber": RIGHT["wheel"]["camber"][[2, 4]]}
+    assert verdicts(some)["wheel", "camber"] == "agrees"
+    others = {"instants": [0.0, 0.5], "camber": RIGHT["wheel"]["camber"][[2, 3]]}
+    assert verdicts(others)["wheel", "camber"] == "disagrees"
+    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"][:2]}, SCENE)
+    assert any("has the shape (2,); needed: (5,)" in note for note in outcome.notes)
+    with pytest.raises(FormulationError, match="none of the scene's"):
+        check(lambda given: {"instants": [7.0], "camber": [0.0]}, SCENE)
+
+
+def test_a_number_that_is_none_disagrees() -> None:
+    assert verdicts(changed("velocity", "wheel_centre", np.nan))["velocity", "wheel_centre"] == "disagrees"
+
+
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        ({"positon": {}}, "'positon', which the scene does not ask for (did you mean 'position'?)"),
+        ({"position": {"wheel_center": 1}}, "position of 'wheel_center'"),
+        ({"position": {"wheel_center": 1}}, "(did you mean 'wheel_centre'?)"),
+        ({"wheel": {"Camber": 1}}, "(did you mean 'camber'?)"),
+        ({"position": [1.0]}, "position is a list; needed: arrays by name"),
+        ({"position": {"wheel_centre": "here"}}, "needed: real numbers"),
+        ({3: 4}, "gives 3, which the scene does not ask for; it is left out; asked for: position"),
+    ],
+)
+def test_what_is_left_out_is_told(answer: dict[Any, Any], said: str) -> None:
+    assert said in "\n".join(check(lambda given: answer, SCENE).notes)
+
+
+class Solver:
+    def solve(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        return RIGHT
+
+
+class Called:
+    def __call__(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        return RIGHT
+
+
+@pytest.mark.parametrize("solver", [Solver, Solver(), Called, Called(), closed_form])
+def test_a_solver_is_a_function_an_object_or_a_class(solver: object) -> None:
+    outcome = check(solver, SCENE)
+    assert outcome.passed
+    assert outcome.solutions[0].formulation.lower().startswith(("solver", "called", "closed_form"))
+
+
+@pytest.mark.parametrize("accuracy", [0.0, -1e-6, float("nan"), float("inf")])
+def test_an_accuracy_that_is_none_is_refused(accuracy: float) -> None:
+    with pytest.raises(NoSolver, match="give a length above 0"):
+        check(closed_form, SCENE, accuracy)
+
+
+def test_against_another_formulation() -> None:
+    outcome = check(closed_form, SCENE, against="absolute")
+    assert outcome.passed
+    assert outcome.solutions[1].formulation == "absolute"
