@@ -47,6 +47,7 @@ ROOMS = {
         "relative",
         "formulations",
         "comparison",
+        "diagnosis",
         "cars",
         "adjudication",
         "output",

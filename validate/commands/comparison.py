@@ -18,6 +18,7 @@ from validate.commands.usage import (
 )
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
+from validate.diagnosis import Explanation, explain_outcome
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, WORDS, formulation
@@ -27,6 +28,8 @@ from validate.output.document import Head, Journal
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown
+
+Explained = Sequence[Sequence[Explanation]]
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -79,8 +82,8 @@ class _Results:
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
     paper: Sequence[PaperRow] = ()
 
-    def add(self, examined: Examined) -> None:
-        self.scenes.append(report.examined_data(examined))
+    def add(self, examined: Examined, explanations: Explained = ()) -> None:
+        self.scenes.append(report.examined_data(examined, explanations))
         self.statuses.append(examined.status)
         self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
@@ -123,10 +126,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     with journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending:
         for name, scene in _loaded(names, console):
             if isinstance(scene, Scene):
-                _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
+                examined = examine(name, scene, pairs, name in PAPER_SCENES)
+                explained = [explain_outcome(scene, outcome) for outcome in examined.outcomes]
+                _say(examined, explained, console)
+                results.add(examined, explained)
             else:
-                examined = scene
-            results.add(examined)
+                results.add(scene)
             journal.keep(results.data, _finished(results, names))
         if not options.scenes:
             results.paper = compare_with_paper()
@@ -162,18 +167,19 @@ def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | E
     return scenes
 
 
-def _say(examined: Examined, console: Console) -> None:
+def _say(examined: Examined, explained: Explained, console: Console) -> None:
     if examined.complaint:
         console.complain(examined.complaint)
     else:
         for warning in examined.warnings:
             console.warn(f"{examined.name}: {warning}")
-    for outcome in examined.outcomes[:1]:
+    told = list(zip(examined.outcomes, explained, strict=True))
+    for outcome, why in told[:1]:
         notes = "".join(f"\n  note: {note}" for note in examined.defaults)
-        console.say(report.outcome_text(outcome) + notes + "\n")
-    for outcome in examined.outcomes[1:]:
+        console.say(report.outcome_text(outcome, why) + notes + "\n")
+    for outcome, why in told[1:]:
         # The tables of a further pair would say nearly the same.
-        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)
+        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome, why)
         console.say(text + "\n")
 
 
