@@ -96,6 +96,22 @@ class NotComputed(PointcoordError, LookupError):
         super().__init__(f"{quantity} was not computed; {self.advice}")
 
 
+class MissingLibrary(PointcoordError, ImportError):
+    """Something needs an optional library that is not installed, or that does not load.
+
+    Args:
+        part: what needs it.
+        libraries: any of which would do; each is an extra of the same name.
+        problem: what is wrong with them, if they are there.
+    """
+
+    def __init__(self, part: str, libraries: Iterable[str], problem: str = "is not installed") -> None:
+        self.part = part
+        self.libraries = tuple(libraries)
+        extras = " or ".join(f"pip install 'pointcoord[{name}]'" for name in self.libraries)
+        super().__init__(f"{part} needs {' or '.join(self.libraries)}, which {problem}; try: {extras}")
+
+
 class MechanismError(PointcoordError):
     """The points, links and joints do not make a mechanism with one assembly per input.
 

@@ -29,6 +29,7 @@ COMMANDS = {
     "draw": "draw",
     "hard": "hard",
     "cost": "cost",
+    "import": "hardpoints",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

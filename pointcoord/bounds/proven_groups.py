@@ -32,6 +32,8 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+# Instants below which what is done for groups takes longer than what each takes by itself.
+FEW = 400
 Laws = Mapping[str, Sequence[Enclosed]]
 
 
@@ -90,8 +92,10 @@ class GroupProver:
 
     def prove(self, asked: Instants, certified: CertifiedPoses) -> tuple[list[ProvenGroups], Indices]:
         """Prove what can be proven together; also the numbers of the instants that are left."""
-        found = []
+        found: list[ProvenGroups] = []
         left = np.arange(len(asked.times))
+        if len(left) < FEW:
+            return found, left
         anchors, conditions = [asked.times[:0]], [asked.times[:0]]
         for size in TOGETHER:
             if len(left) < size:

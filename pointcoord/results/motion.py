@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -139,6 +139,24 @@ class Motion(Samples):
         if asked.ndim != 1:
             raise ValueError(f"instants of shape {asked.shape}; allowed: (N,), or how many")
         return (self.at(asked[low : low + size]) for low in range(0, len(asked), size))
+
+    def to_dataframe(self, library: str | None = None) -> Any:
+        """The motion as a data frame: a row for each instant, columns with the names and units of the CSV.
+
+        Angles are in degrees there, as in every file; vectors have a column for each component.
+
+        Args:
+            library: "pandas" or "polars"; the one that is installed if not given, pandas before polars.
+        Returns:
+            A `pandas.DataFrame` or a `polars.DataFrame` that shares nothing with the motion.
+        Raises:
+            MissingLibrary: it is not installed; the message names the extra that brings it.
+            UnknownName: there is no such library.
+        """
+        # Imported here: the solver needs no data frames.
+        from pointcoord.results.data_frame import data_frame
+
+        return data_frame(self, library)
 
     def _require_dense(self) -> None:
         if not self.solved.states.dense:

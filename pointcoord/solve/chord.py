@@ -3,15 +3,8 @@ r"""Chord Newton at instants: one factorisation kept for as long as it is good e
     u <- u - X C(u, w),      X = C_u^-1 of an earlier pose,
 
 which converges by a constant factor instead of squaring its error. Each instant starts from the pose y0
-before, along the tangent T that X gives to the new known coordinates. Because C is quadratic,
-
-    C(y0 + s T) = C(y0) + s 2 B(y0, T) + s^2 B(T, T)      exactly,
-
-so that with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every
-s from 0 to 1 if it does with
-
-    eta = |X C(y0)| + |X 2 B(y0, T)| + |X B(T, T)|,    z = |I - X C_u(y0)| + |X C_u(T)|,
-    2 omega eta < (1 - z)^2.
+before, along the tangent T that X gives to the new known coordinates, where the theorem of Newton and
+Kantorovich holds on all of that straight way (see `pointwise`, whose eta, z and omega these are).
 
 Then there is one assembly near each y0 + s T, they are one branch, and X contracts towards the last by
 k = z + omega r, r the radius of the theorem: after a step d, |u* - u| <= k |d| / (1 - k). Where that is not
@@ -32,7 +25,13 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.assembly import Pose, blocked, follow
-from pointcoord.solve.pointwise import Solved, SquareVelocityTerm, square_velocity_term, with_rates
+from pointcoord.solve.pointwise import (
+    Solved,
+    SquareVelocityTerm,
+    square_velocity_term,
+    straight_way,
+    with_rates,
+)
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -120,14 +119,9 @@ def _along_chord(
 ) -> Reached | None:
     """The pose with other known coordinates, on the branch of y; None where X is too old for it, or slow."""
     n = system.unknowns
-    tangent = np.zeros_like(y)
-    tangent[n:] = target - y[n:]
-    tangent[:n] = -kept.step(2.0 * system.polar(y, tangent))
-    parts = (system.residual(y), 2.0 * system.polar(y, tangent), system.residual(tangent))
     with np.errstate(all="ignore"):
-        eta = sum(float(np.abs(kept.step(rows)).max()) for rows in parts)
-        turned = np.abs(np.eye(n) - kept.inverse @ system.jacobian(y))
-        z = float((turned + np.abs(kept.inverse @ system.jacobian(tangent))).sum(axis=-1).max())
+        way = straight_way(system, kept.inverse, y, target)
+        eta, z = float(way.eta), float(way.z)
         constant = 2.0 * kept.omega * eta / (1.0 - z) ** 2
         if not (z < 1.0 and constant < 1.0):
             return None
@@ -135,7 +129,7 @@ def _along_chord(
     rate = z + kept.omega * radius
     if not rate <= SLOW:
         return None
-    here = y + tangent
+    here = y + way.tangent
     here[n:] = target
     exact_data = np.zeros_like(y)
     previous = np.inf

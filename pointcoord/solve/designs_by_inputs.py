@@ -14,7 +14,9 @@ centre of a box is reached from the start, or from the centre of the box beside 
 contribute to the rates that are asked for, are below the tolerance relative to the size of these; at each
 corner Newton's method finds the assembly, from a first step of no more than the tolerance and rounding, on
 the branch of the centre, and boxes that share a corner find one assembly there. A box whose terms do not fall
-is halved. A design of which one box is not confirmed so is reported: whoever asked follows it in time.
+is halved. A way that goes over its range once takes fewer series in time than boxes, so there are at most as
+many boxes as passes are begun. A design of which one box is not confirmed so is reported: whoever asked
+follows it in time.
 """
 
 from __future__ import annotations
@@ -72,6 +74,7 @@ class Way:
     Attributes:
         names: of the inputs that move. low, high: shape (spans, inputs).
         speeds, accelerations: the largest of each input, shape (inputs,), per s and per s^2.
+        passes: how often they go over their ranges, at most.
     """
 
     names: tuple[str, ...]
@@ -79,6 +82,7 @@ class Way:
     high: Array
     speeds: Array
     accelerations: Array
+    passes: float
 
 
 @dataclass(frozen=True)
@@ -318,17 +322,19 @@ class _Course:
         ]
         poses: list[tuple[Array, Array]] = []
         found: list[Box] = []
+        most = max(np.ceil(self.way.passes), 1.0)
         corners: dict[Cell, tuple[Array, Array]] = {}
         while waiting:
+            if len(found) + len(waiting) > most:
+                return np.zeros_like(alive), None
             one = waiting.pop(0)
             pose, alive = self._moved(
                 *(poses[one.before] if one.before >= 0 else (here, centre)), one.centre, alive
             )
             poses.append((pose, one.centre))
-            tried = self._box(pose, one.centre, one.half, order, alive)
+            may_halve = one.halved < HALVED and len(found) + len(waiting) + 2 <= most
+            tried = self._box(pose, one.centre, one.half, order, alive, may_halve)
             if isinstance(tried, int):
-                if one.halved == HALVED:
-                    return np.zeros_like(alive), None
                 waiting += self._halves(one, tried, len(poses) - 1)
                 continue
             alive &= tried.good
@@ -472,8 +478,10 @@ class _Course:
                     order.append((beside, number))
         return order
 
-    def _box(self, y: Array, centre: Array, half: Array, order: int, alive: Flags) -> _Tried | int:
-        """One box of all members, or along which input it should be halved."""
+    def _box(
+        self, y: Array, centre: Array, half: Array, order: int, alive: Flags, may_halve: bool
+    ) -> _Tried | int:
+        """One box of all members; or, where it may be halved and should be, along which input."""
         members, n = y.shape[-1], self.columns.map.unknowns
         signs = list(product((-1, 1), repeat=len(self.drives)))
         good = np.zeros(members, dtype=bool)
@@ -500,7 +508,8 @@ class _Course:
                 degree += MORE
                 here.carry_on(law, degree)
                 confirmed = self._falls(here, half)
-            if low == 0 and np.count_nonzero(alive[part] & ~confirmed) > FEW * np.count_nonzero(alive[part]):
+            failing, there = (np.count_nonzero(who) for who in (alive[part] & ~confirmed, alive[part]))
+            if may_halve and low == 0 and failing > FEW * there:
                 last = slice(here.degree - 1, here.degree + 1)
                 return int(np.argmax([np.abs(each.y[last, :n]).max() for each in here.alone]))
             terms = [

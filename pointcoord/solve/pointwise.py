@@ -165,6 +165,37 @@ def solve_instants(
 
 
 @dataclass(frozen=True)
+class StraightWay:
+    """The straight ways from poses to other known coordinates; see the formulas above.
+
+    Attributes:
+        tangent: T, shape (..., size). eta, z: shape (...,).
+    """
+
+    tangent: Array
+    eta: Array
+    z: Array
+
+
+def straight_way(system: QuadraticMap, inverse: Array, y: Array, targets: Array) -> StraightWay:
+    """What the theorem of Newton and Kantorovich asks of the ways; floating point warnings are the caller's.
+
+    Args:
+        inverse: X, of C_u near all of the poses, (n, n). y: the poses, shape (..., size).
+        targets: known coordinates at the ends, shape (..., size - n).
+    """
+    n = system.unknowns
+    tangent = np.zeros_like(y)
+    tangent[..., n:] = targets - y[..., n:]
+    tangent[..., :n] = -2.0 * system.polar(y, tangent) @ inverse.T
+    parts = (system.residual(y), 2.0 * system.polar(y, tangent), system.residual(tangent))
+    eta = np.sum([np.abs(rows @ inverse.T).max(axis=-1) for rows in parts], axis=0)
+    turned = np.abs(np.eye(n) - inverse @ system.jacobian(y))
+    z = (turned + np.abs(inverse @ system.jacobian(tangent))).sum(axis=-1).max(axis=-1)
+    return StraightWay(tangent, eta, np.asarray(z))
+
+
+@dataclass(frozen=True)
 class _Ahead:
     """Poses that are proven to continue each other, as of `Solved`, and what all that were tried took."""
 
@@ -193,17 +224,11 @@ def _proven_ahead(
     poses = np.concatenate([start[None], reached.y])
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
-        tangent = np.zeros_like(here)
-        tangent[:, n:] = following[:, n:] - here[:, n:]
-        tangent[:, :n] = -2.0 * system.polar(here, tangent) @ inverse.T
-        parts = (system.residual(here), 2.0 * system.polar(here, tangent), system.residual(tangent))
-        eta = sum(np.abs(rows @ inverse.T).max(axis=-1) for rows in parts)
-        turned = np.abs(np.eye(n) - inverse @ system.jacobian(here))
-        z = (turned + np.abs(inverse @ system.jacobian(tangent))).sum(axis=-1).max(axis=-1)
+        way = straight_way(system, inverse, here, following[:, n:])
         omega = float(system.lipschitz(inverse, np.ones(n)))
-        off = np.abs(following - here - tangent)[:, :n].max(axis=-1) + reached.left
-        good = reached.converged & (z <= FARTHEST) & (2.0 * omega * eta < (1.0 - z) ** 2)
-        good &= off * omega <= 1.0 - z
+        off = np.abs(following - here - way.tangent)[:, :n].max(axis=-1) + reached.left
+        good = reached.converged & (way.z <= FARTHEST) & (2.0 * omega * way.eta < (1.0 - way.z) ** 2)
+        good &= off * omega <= 1.0 - way.z
     count = _first_false(np.asarray(good))
     return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
 

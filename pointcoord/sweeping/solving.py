@@ -357,7 +357,9 @@ class _Block:
         for name, angle in self._angles(mechanism, closed).items():
             self.drawn[name][places] = angle
         refused = np.zeros(len(members), dtype=bool)
-        for place in np.flatnonzero(moved > (1.0 - SLACK) * ALLOWED * size).tolist():
+        # A closure that puts points in their places is asked for by name, and refuses nothing.
+        far = (moved > (1.0 - SLACK) * ALLOWED * size) & (not mechanism.topology.puts_in_place)
+        for place in np.flatnonzero(far).tolist():
             try:
                 require_the_drawn_car(scene, closing(mechanism.taken(place), closed[place]))
             except SceneError as error:
@@ -497,7 +499,12 @@ def way_of_inputs(scene: Scene, functions: Mapping[str, TimeFunction]) -> Way | 
     spans = way_of(moving, scene.time.start, scene.time.stop)
     rates = [np.abs(law.series(scene.instants, 2)[:, 1:]).max(axis=0) for law in moving.values()]
     speeds, accelerations = np.array([[1.0], [2.0]]) * np.array(rates).T
-    return Way(tuple(moving), spans.low, spans.high, speeds, accelerations)
+    middle = 0.5 * (spans.low + spans.high)
+    travels = np.abs(np.diff(middle, axis=0)).sum(axis=0)
+    ranges = spans.high.max(axis=0) - spans.low.min(axis=0)
+    with np.errstate(invalid="ignore"):
+        passes = np.where(ranges > 0.0, travels / ranges, 1.0)
+    return Way(tuple(moving), spans.low, spans.high, speeds, accelerations, float(passes.max(initial=1.0)))
 
 
 def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:

@@ -32,11 +32,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.results.named_columns import number_columns
 from validate.cost.growth.unknowns import LongChain
 from validate.cost.instants import study_instants
 from validate.cost.way import Setting
 from validate.cost.ways.absolute import Absolute
-from validate.output.motion_tables import number_columns, write_csv
+from validate.output.motion_tables import write_csv
 
 Array = NDArray[np.float64]
 Work = Callable[[], object]
@@ -236,7 +237,7 @@ FIGURES = (
     Figure("dense, all effects", COPY, lambda: dense(tuple(EFFECTS)), 6.0, 3.0),
     Figure("first answer", INVERSES, first_answer, 0.5, 2.1),
     Figure("import", "numpy's own import", importing, 2.3, 1.5),
-    Figure("a configuration of many designs", INVERSE, designs, 0.1, 1.0),
+    Figure("a configuration of many designs", INVERSE, designs, 0.1, 0.5),
     Figure("a pose through a map", INVERSE, mapped, 0.1, 0.1),
     Figure("a call of a map for one pose", INVERSE, single, 0.3, 1.5),
     Figure("a pose by itself", INVERSE, one_by_one, 0.5, 0.5),

@@ -116,7 +116,7 @@ class Evidence:
             )
             zero = np.zeros_like(one.numbers[quantity][name])
             claims = [s.claims[quantity].get(name, zero) for s in sides]
-            allowed[quantity, name] = tolerance(claims[0], claims[1], largest) + TINY
+            allowed[quantity, name] = outcome.factor * tolerance(claims[0], claims[1], largest) + TINY
         disagree = {(row.quantity, row.name) for row in outcome.disagreements}
         return cls(
             scene=scene,

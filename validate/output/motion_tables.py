@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from pointcoord import Motion, Samples
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord import Motion
+from pointcoord.results.named_columns import columns
 from validate.extras import MissingPackage
 from validate.output.files import require_known_ending, write_whole
 
@@ -39,27 +39,6 @@ class Writable(Protocol):
     def write(self, text: str, /) -> object:
         """Take it."""
         ...
-
-
-def columns(samples: Samples) -> Iterator[tuple[str, Array]]:
-    """The times of samples, and every computed number as a named column with its unit."""
-    yield "time [s]", samples.times
-    yield from number_columns(samples)
-
-
-def number_columns(samples: Samples) -> Iterator[tuple[str, Array]]:
-    """Every computed number of samples as a named column with its unit, (..., N)."""
-    for quantity, channel in samples.numbers.items():
-        unit = QUANTITIES[quantity].unit
-        for name, array in channel.items():
-            if unit == "rad":
-                # Users read angles in degrees.
-                yield f"{quantity}.{name} [deg]", np.degrees(array)
-            elif QUANTITIES[quantity].of == "car":
-                yield f"{quantity}.{name} [{unit}]", array
-            else:
-                for i, axis in enumerate("xyz"):
-                    yield f"{quantity}.{name}.{axis} [{unit}]", array[..., i]
 
 
 def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> None:

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Sweep
+from pointcoord.results.named_columns import number_columns
 from validate.output.files import require_known_ending, write_whole
-from validate.output.motion_tables import AsText, Writable, csv_lines, number_columns, require_writer
+from validate.output.motion_tables import AsText, Writable, csv_lines, require_writer
 
 Array = NDArray[np.float64]
 Blocks = Iterable[Sweep]

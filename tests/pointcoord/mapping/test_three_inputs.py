@@ -18,6 +18,7 @@ from pointcoord.patches.flood import Limits, flood
 from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.solve.assembly import close_drawing
+from pointcoord.solve.unrelated_poses import solve_unrelated
 
 Array = NDArray[np.float64]
 
@@ -93,3 +94,15 @@ def test_three_inputs_are_covered_and_every_place_is_within_its_bound(reach: flo
     # The closed form itself is rounded, in squares of some 300 mm over a height of some 260 mm.
     assert (off <= bound + 1e-11).all()
     assert np.allclose(tip_at(np.zeros((1, 3)))[0], TIP, atol=1e-11)
+
+
+def test_unrelated_poses_of_three_inputs_are_the_closed_form_within_their_bounds() -> None:
+    mechanism = tripod()
+    pushes = np.random.default_rng(3).uniform(-15.0, 15.0, (2000, 3))
+    inputs = {name: pushes[:, i] for i, name in enumerate(mechanism.topology.required_inputs)}
+    found = solve_unrelated(mechanism, inputs, 1e-9)
+    assert not found.failures
+    tip = mechanism.origin + mechanism.unit * found.unknowns[:, list(mechanism.layout.vector("tip"))]
+    # The closed form rounds some 50 times in sizes of 300 mm.
+    assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= found.bound + 50 * 2.0**-53 * 300.0).all()
+    assert found.bound.max() <= 1e-9

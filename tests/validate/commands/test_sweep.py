@@ -11,10 +11,10 @@ import pyarrow.parquet
 import pytest
 
 from pointcoord import Scene, simulate, sweep
+from pointcoord.results.named_columns import columns
 from validate.cli import main
 from validate.commands.sweep import DESCRIPTION
 from validate.output.document import schema_text
-from validate.output.motion_tables import columns
 from validate.output.sweep_tables import write_sweep
 
 SCENE = "double-wishbone"

@@ -9,6 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate, sweep
+from pointcoord.method import AUTO
+from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain, explain_outcome
 from validate.diagnosis.evidence import Evidence
@@ -200,3 +202,36 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
         "quantities": ("wheel.camber",),
         "leftover": found[0].leftover,
     }
+
+
+def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
+    # The tie rod's other side: its outer end mirrored in the plane of its inner end and the kingpin keeps all
+    # three distances, and the knuckle's other points turn about the kingpin with it.
+    scene, _ = solved("double-wishbone")
+    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    low, top, inner, outer = (
+        points[name] for name in ("lower_ball_joint", "upper_ball_joint", "tie_rod_inner", "tie_rod_outer")
+    )
+    kingpin = (top - low) / np.linalg.norm(top - low)
+    normal = np.cross(kingpin, inner - low)
+    normal /= np.linalg.norm(normal)
+    other = outer - 2.0 * ((outer - low) @ normal) * normal
+    first, second = (
+        (d - (d @ kingpin) * kingpin) / np.linalg.norm(d - (d @ kingpin) * kingpin)
+        for d in (outer - low, other - low)
+    )
+    sideways, ahead = np.cross(kingpin, first), first
+    cosine, sine = second @ ahead, second @ sideways
+
+    def turned(place: Array) -> Array:
+        d = place - low
+        along = (d @ kingpin) * kingpin
+        moved = along + cosine * (d - along) + sine * np.cross(kingpin, d)
+        return np.asarray(low + moved)
+
+    points |= {n: turned(points[n]) for n in ("tie_rod_outer", "wheel_centre", "wheel_axis_inner")}
+    drawn = {name: tuple(place.tolist()) for name, place in points.items()}
+    part = scene.mechanism.model_copy(update={"points": drawn})
+    motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
+    found = diagnosis("double-wishbone", motion.numbers)[0]
+    assert (found.kind, found.leftover <= 1.0) == ("branch", True), found

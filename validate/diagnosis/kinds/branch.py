@@ -11,7 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import PointcoordError, Scene, simulate
+from pointcoord import PointcoordError, Scene
+from pointcoord.method import AUTO
+from pointcoord.simulation import prepare_task, solve_task
 from validate.diagnosis.evidence import Evidence, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.formulations.input_rates import rates
@@ -51,7 +53,9 @@ class Branch(Kind):
         if not off <= KEPT * size:
             return
         try:
-            numbers = simulate(self._scene(evidence.solved.fine, pose)).at(evidence.times).numbers
+            # No drawing check: another assembly may have its wheel inboard.
+            task = prepare_task(self._scene(evidence.solved.fine, pose), AUTO)
+            numbers = solve_task(task).at(evidence.times).numbers
         except PointcoordError:
             return
         rows = {}
@@ -83,13 +87,8 @@ class Branch(Kind):
     def _scene(scene: Scene, pose: dict[str, Array]) -> Scene:
         """The scene of a car that is drawn in a pose."""
         part = scene.mechanism
-        content = {name: getattr(scene, name) for name in scene.model_fields_set}
         points = {name: tuple(place.tolist()) for name, place in pose.items()}
-        content["mechanism"] = {name: getattr(part, name) for name in part.model_fields_set} | {
-            "points": points
-        }
-        content["tolerance"] = scene.tolerance
-        return Scene.checked(content, "another assembly")
+        return scene.model_copy(update={"mechanism": part.model_copy(update={"points": points})})
 
 
 KIND = Branch()

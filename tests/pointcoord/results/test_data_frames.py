@@ -1,0 +1,112 @@
+"""A motion as a data frame is its CSV, whichever library makes it; nothing else needs one of them."""
+
+import io
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import MissingLibrary, Scene, UnknownName, simulate
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.results.data_frame import LIBRARIES
+from validate.output.motion_tables import write_csv
+
+ROOT = Path(__file__).parents[3]
+
+
+class Frame:
+    """What the constructor of either library takes: columns by name."""
+
+    def __init__(self, columns: dict[str, Any]) -> None:
+        self.columns = columns
+
+
+def pretend(monkeypatch: pytest.MonkeyPatch, *there: str) -> None:
+    """Have only some libraries installed, which keep their columns."""
+    for name in LIBRARIES:
+        kind = type(name, (Frame,), {"library": name})
+        library = ModuleType(name)
+        vars(library)["DataFrame"] = kind
+        monkeypatch.setitem(sys.modules, name, library if name in there else None)
+
+
+def as_csv(scene: Scene) -> dict[str, list[float]]:
+    stream = io.StringIO()
+    write_csv(stream, simulate(scene))
+    head, *rows = stream.getvalue().splitlines()
+    numbers = [[float(cell) for cell in row.split(",")] for row in rows]
+    return dict(zip(head.split(","), map(list, zip(*numbers, strict=True)), strict=True))
+
+
+# All effects, on a chassis that heaves.
+SCENE = Scene.load("bounce-on-a-heaving-chassis").model_copy(update={"effects": tuple(EFFECTS)})
+
+
+def test_a_frame_has_the_columns_of_the_csv_with_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    expected = as_csv(SCENE)
+    assert sum(name.endswith("[deg]") for name in expected) == 4
+    for there in LIBRARIES:
+        if find_spec(there):
+            frame = simulate(SCENE).to_dataframe(there)
+            assert type(frame).__module__.partition(".")[0] == there
+            assert list(frame.columns) == list(expected)
+            for name, column in expected.items():
+                assert frame[name].to_numpy().dtype == np.float64
+                assert frame[name].to_list() == column, (there, name)
+    pretend(monkeypatch, *LIBRARIES)
+    made = simulate(SCENE).to_dataframe("polars").columns
+    assert {name: column.tolist() for name, column in made.items()} == expected
+    assert list(made) == list(expected)
+
+
+def test_what_is_written_into_a_frame_does_not_change_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    pretend(monkeypatch, "pandas")
+    motion = simulate(Scene.load("steer"))
+    before = motion.times.copy()
+    motion.to_dataframe().columns["time [s]"][:] = -1.0
+    assert (motion.times == before).all()
+
+
+@pytest.mark.parametrize(
+    ("there", "made"), [(LIBRARIES, "pandas"), (("pandas",), "pandas"), (("polars",), "polars")]
+)
+def test_the_library_that_is_installed_is_taken(
+    there: tuple[str, ...], made: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pretend(monkeypatch, *there)
+    assert simulate(Scene.load("steer")).to_dataframe().library == made
+
+
+def test_a_library_that_is_not_there_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    pretend(monkeypatch, "pandas")
+    motion = simulate(Scene.load("steer"))
+    with pytest.raises(MissingLibrary, match=r"polars, which is not .* 'pointcoord\[polars\]'$"):
+        motion.to_dataframe("polars")
+    pretend(monkeypatch)
+    with pytest.raises(ImportError, match="pandas or polars"):
+        motion.to_dataframe()
+    with pytest.raises(UnknownName, match="did you mean 'pandas'"):
+        motion.to_dataframe("panda")
+
+
+def test_a_library_that_does_not_load_is_said_not_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "pandas", raising=False)
+    (tmp_path / "pandas.py").write_text("import a_library_of_pandas_that_is_gone")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(MissingLibrary, match="does not load: No module named 'a_library_of_pandas"):
+        simulate(Scene.load("steer")).to_dataframe()
+
+
+def test_nothing_but_a_frame_imports_a_library_of_frames() -> None:
+    program = (
+        "import sys\n"
+        "from pointcoord import Scene, simulate\n"
+        "motion = simulate(Scene.load('steer'))\n"
+        "assert not {'pandas', 'polars', 'pointcoord.results.data_frame'} & set(sys.modules)\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
