@@ -12,11 +12,12 @@ in the same numbers.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
-from pointcoord import Scene
+from pointcoord import PointcoordError, Scene
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Outcome
@@ -136,9 +137,11 @@ def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
     """What the numbers carry of the faults of some kinds; the same fault of several quantities is one."""
     for kind in some:
         merged: dict[Hashable, Hypothesis] = {}
-        for one in kind.hypotheses(evidence):
-            known = merged.get(one.key)
-            merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
+        # A car that cannot be solved, or gives no such numbers, explains nothing.
+        with suppress(PointcoordError):
+            for one in kind.hypotheses(evidence):
+                known = merged.get(one.key)
+                merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
         for one in merged.values():
             carried = _carried(evidence, one)
             if carried is not None:
