@@ -47,6 +47,7 @@ ROOMS = {
         "relative",
         "formulations",
         "comparison",
+        "diagnosis",
         "solvers",
         "cars",
         "adjudication",

@@ -27,6 +27,7 @@ from validate.commands.usage import (
 )
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
+from validate.diagnosis import Explanation, explain_outcome
 from validate.exit_status import ExitStatus
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, WORDS, formulation
@@ -39,6 +40,8 @@ from validate.plain_text import shown
 from validate.solvers.check import ACCURACY, required_accuracy
 from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
+
+Explained = Sequence[Sequence[Explanation]]
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -155,9 +158,9 @@ class _Results:
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
     paper: Sequence[PaperRow] = ()
 
-    def add(self, examined: Examined, since: Since | None) -> None:
+    def add(self, examined: Examined, since: Since | None, explanations: Explained = ()) -> None:
         self.record.add(examined, since)
-        self.scenes.append(report.examined_data(examined))
+        self.scenes.append(report.examined_data(examined, explanations))
         self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
             first, second = (s.formulation for s in outcome.solutions)
@@ -229,15 +232,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = examine(name, scene, pairs, printed, record.factor, own)
-                _say(examined, console)
+                explained = [explain_outcome(scene, outcome) for outcome in examined.outcomes]
+                _say(examined, explained, console)
                 if recorder is not None:
                     recorder.add(examined.name, scene, examined.outcomes)
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
                     console.say(since_text(since) + "\n")
             else:
-                examined = scene
-            results.add(examined, since)
+                examined, explained = scene, []
+            results.add(examined, since, explained)
             journal.keep(results.data, _finished(results, names))
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
@@ -324,18 +328,19 @@ def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | E
     return scenes
 
 
-def _say(examined: Examined, console: Console) -> None:
+def _say(examined: Examined, explained: Explained, console: Console) -> None:
     if examined.complaint:
         console.complain(examined.complaint)
     else:
         for warning in examined.warnings:
             console.warn(f"{examined.name}: {warning}")
-    for outcome in examined.outcomes[:1]:
+    told = list(zip(examined.outcomes, explained, strict=True))
+    for outcome, why in told[:1]:
         notes = "".join(f"\n  note: {note}" for note in examined.defaults)
-        console.say(report.outcome_text(outcome) + notes + "\n")
-    for outcome in examined.outcomes[1:]:
+        console.say(report.outcome_text(outcome, why) + notes + "\n")
+    for outcome, why in told[1:]:
         # The tables of a further pair would say nearly the same.
-        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)
+        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome, why)
         console.say(text + "\n")
 
 

@@ -11,8 +11,10 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
+from validate.diagnosis import Explanation
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 
+MOST_EXPLANATIONS = 3  # that are printed
 # Columns of words, which read better from the left.
 LEFT = (
     "formulation",
@@ -97,8 +99,8 @@ def held_to(factor: float) -> str:
     return f"held to {factor!r} times the derived tolerance, which is no longer the derived one"
 
 
-def outcome_text(outcome: Outcome) -> str:
-    """The agreement table of one scene and pair, and what its tolerances rest on."""
+def outcome_text(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> str:
+    """The agreement table of one scene and pair, what its tolerances rest on, what would explain it."""
     first, second = (s.formulation for s in outcome.solutions)
     rows = [
         (
@@ -115,7 +117,8 @@ def outcome_text(outcome: Outcome) -> str:
         table(("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows),
     ]
     told = (*outcome.missing, *outcome.notes)
-    return "\n".join([*lines, *(f"  note: {note}" for note in told)])
+    explained = (f"  what would explain it: {one.words}" for one in explanations[:MOST_EXPLANATIONS])
+    return "\n".join([*lines, *(f"  note: {note}" for note in told), *explained])
 
 
 def agreement_line(outcome: Outcome) -> str:
@@ -181,8 +184,13 @@ def _vector(vector: Sequence[float], form: str) -> str:
     return "(" + ", ".join(form.format(component) for component in vector) + ")"
 
 
-def examined_data(examined: Examined) -> dict[str, Any]:
-    """One scene as plain data: its verdict, every comparison, and every reason why there is none."""
+def examined_data(examined: Examined, explanations: Sequence[Sequence[Explanation]] = ()) -> dict[str, Any]:
+    """One scene as plain data: its verdict, every comparison, and every reason why there is none.
+
+    Args:
+        explanations: of each comparison, what would explain that it disagrees.
+    """
+    told = explanations or [()] * len(examined.outcomes)
     return {
         "scene": examined.name,
         "title": examined.title,
@@ -193,14 +201,16 @@ def examined_data(examined: Examined) -> dict[str, Any]:
         "closing": examined.closing,
         "defaults": list(examined.defaults),
         "solved_by": list(examined.solved),
-        "comparisons": [outcome_data(outcome) for outcome in examined.outcomes],
+        "comparisons": [
+            outcome_data(outcome, why) for outcome, why in zip(examined.outcomes, told, strict=True)
+        ],
         "refusals": [asdict(refusal) for refusal in examined.refusals],
         "failures": [asdict(failure) for failure in examined.failures],
         "refusal_of_printed_formulas": None if examined.unprinted is None else asdict(examined.unprinted),
     }
 
 
-def outcome_data(outcome: Outcome) -> dict[str, Any]:
+def outcome_data(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> dict[str, Any]:
     """One comparison as plain data."""
     return {
         "scene": outcome.scene,
@@ -211,6 +221,7 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),
+        "explanations": [asdict(one) for one in explanations],
     }
 
 

@@ -1,0 +1,237 @@
+"""Faults planted into solutions: the right diagnosis comes first, and noise has none."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate, sweep
+from pointcoord.method import AUTO
+from pointcoord.simulation import prepare_task, solve_task
+from validate.comparison.compare import compare_solutions
+from validate.diagnosis import Explanation, explain, explain_outcome
+from validate.diagnosis.evidence import Evidence
+from validate.diagnosis.kinds import kinds
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.output import report
+
+Array = NDArray[np.float64]
+Numbers = Mapping[str, Mapping[str, Array]]
+
+SCENES = ("double-wishbone", "off-axis-strut", "bounce")
+STATES = ("position", "velocity", "acceleration")
+TURNS = ("angular_velocity", "angular_acceleration")
+
+
+@cache
+def solved(name: str) -> tuple[Scene, Solution]:
+    scene = Scene.load(name)
+    return scene, formulation("pointcoord").solve(scene)
+
+
+def diagnosis(name: str, numbers: Numbers) -> tuple[Explanation, ...]:
+    scene, held = solved(name)
+    given = held.with_numbers(numbers)
+    return explain(scene, given, held, compare_solutions(scene, held, given, name))
+
+
+def each(held: Solution, quantities: tuple[str, ...], change: Callable[[Array], Array]) -> Numbers:
+    return {q: {name: change(array) for name, array in held.numbers[q].items()} for q in quantities}
+
+
+def camber(held: Solution, change: Callable[[Array], Array]) -> Numbers:
+    return {"wheel": {**held.numbers["wheel"], "camber": change(held.numbers["wheel"]["camber"])}}
+
+
+def differences(held: Solution) -> Numbers:
+    return {"velocity": {n: np.gradient(p, held.times, axis=0) for n, p in held.numbers["position"].items()}}
+
+
+def mirrored(held: Solution) -> Numbers:
+    side = np.array([1.0, -1.0, 1.0])
+    return {**each(held, STATES, lambda v: v * side), **each(held, TURNS, lambda v: -v * side)}
+
+
+FAULTS: Mapping[str, tuple[Callable[[Solution], Numbers], str, str]] = {
+    "sign of a component": (lambda h: each(h, STATES, lambda v: v * [1.0, 1.0, -1.0]), "sign", "sign of z"),
+    "sign of rates only": (lambda h: each(h, ("velocity",), lambda v: v * [1.0, -1.0, 1.0]), "sign", "of y"),
+    "sign of an angle": (lambda h: camber(h, lambda v: -v), "sign", "camber: the other sign"),
+    "axes": (lambda h: each(h, (*STATES, *TURNS), lambda v: v[:, [1, 2, 0]]), "axes", "our y, z, x"),
+    "mirror": (mirrored, "mirror", "left for right"),
+    "degrees": (lambda h: camber(h, np.degrees), "unit", "degrees for radians"),
+    "degrees per second": (lambda h: each(h, TURNS, np.degrees), "unit", "degrees for radians"),
+    "metres": (lambda h: each(h, STATES, lambda v: v / 1000.0), "unit", "m for mm"),
+    "inches": (lambda h: each(h, ("position",), lambda v: v / 25.4), "unit", "inches for mm"),
+    "origin": (
+        lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])),
+        "offset",
+        "(0, 0, 25) mm",
+    ),
+    "first value": (lambda h: camber(h, lambda v: v - v[0]), "offset", "value at the first instant"),
+    "constant": (lambda h: camber(h, lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
+    "digits": (lambda h: each(h, (*STATES, "wheel"), lambda v: np.round(v, 3)), "digits", "3 decimals"),
+    "differences": (differences, "differences", "central differences"),
+    "swapped rates": (
+        lambda h: {"velocity": h.numbers["acceleration"], "acceleration": h.numbers["velocity"]},
+        "swapped",
+        "acceleration is swapped with velocity",
+    ),
+    "degrees and sign": (lambda h: camber(h, lambda v: -np.degrees(v)), "sign and unit", "degrees"),
+    "degrees, printed": (
+        lambda h: camber(h, lambda v: np.round(np.degrees(v), 4)),
+        "unit and digits",
+        "degrees for radians, and printed with 4 decimals",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_the_first_diagnosis(name: str, fault: str) -> None:
+    plant, kind, words = FAULTS[fault]
+    numbers = plant(solved(name)[1])
+    first = diagnosis(name, numbers)[0]
+    assert (first.kind, first.leftover <= 1.0) == (kind, True), first
+    assert words in first.words
+    said = {quantity.partition(".")[0] for quantity in first.quantities}
+    assert said == set(numbers)
+
+
+def test_camber_by_arcsin_is_told_from_camber_projected() -> None:
+    scene, _ = solved("double-wishbone")
+    place = simulate(scene).position
+    line = place["wheel_centre"] - place["wheel_axis_inner"]
+    arcsin = np.arcsin(-line[:, 2] / np.linalg.norm(line, axis=1))
+    first = diagnosis("double-wishbone", camber(solved("double-wishbone")[1], lambda _: arcsin))[0]
+    assert (first.kind, first.quantities) == ("definition", ("wheel.camber",))
+    assert "arcsin" in first.words
+    assert first.leftover <= 1.0
+
+
+def test_rates_per_input_are_told_from_rates_per_time() -> None:
+    _, held = solved("bounce")
+    speed = 0.25 + 0.125 * held.times[:, None]
+    first = diagnosis("bounce", each(held, ("velocity",), lambda v: v / speed))[0]
+    assert (first.kind, first.quantities) == ("per input", ("velocity",))
+
+
+def test_a_time_shift_is_found_with_its_seconds() -> None:
+    scene, _ = solved("double-wishbone")
+    time = scene.time.model_copy(update={"start": 0.0137, "stop": 2.0137})
+    later = formulation("pointcoord").solve(scene.model_copy(update={"time": time}))
+    first = diagnosis("double-wishbone", later.numbers)[0]
+    assert first.kind == "time shift"
+    assert "0.0137 s earlier" in first.words
+    assert first.leftover <= 1.0
+
+
+@pytest.mark.parametrize("name", ["double-wishbone", "bounce"])
+def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(name: str) -> None:
+    scene, _ = solved(name)
+    fine = scene.model_copy(update={"tolerance": 1e-13})
+    wrong = sweep(fine, offsets={"tie_rod_outer.z": [2.0]})
+    numbers = {q: {n: array[0] for n, array in part.items()} for q, part in wrong.numbers.items()}
+    found = diagnosis(name, {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}})
+    assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
+    assert "tie_rod_outer.z drawn 2 mm too high" in found[0].words
+    assert "degrees for radians" in found[1].words
+
+
+@pytest.mark.parametrize("quantities", [("velocity",), (*STATES, *TURNS, "wheel")])
+def test_noise_has_no_explanation(quantities: tuple[str, ...]) -> None:
+    _, held = solved("double-wishbone")
+    random = np.random.default_rng(11)
+    noisy = each(held, quantities, lambda v: v + 1e-3 * random.standard_normal(v.shape))
+    assert diagnosis("double-wishbone", noisy) == ()
+
+
+def test_zeros_and_constants_decide_nothing() -> None:
+    _, held = solved("double-wishbone")
+    assert diagnosis("double-wishbone", each(held, ("velocity",), lambda v: 0.0 * v)) == ()
+    assert diagnosis("double-wishbone", camber(held, lambda v: np.full_like(v, 0.02))) == ()
+
+
+def test_a_part_is_said_to_be_a_part() -> None:
+    _, held = solved("double-wishbone")
+    random = np.random.default_rng(11)
+    numbers = camber(held, lambda v: np.degrees(v + 1e-8 * random.standard_normal(v.shape)))
+    first = diagnosis("double-wishbone", numbers)[0]
+    assert first.kind == "unit"
+    assert first.leftover > 1.0
+    assert "does not explain all of it" in first.words
+
+
+def test_nothing_is_looked_at_where_everything_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, held = solved("double-wishbone")
+    outcome = compare_solutions(scene, held, held, "the same")
+    monkeypatch.setattr(Evidence, "of", lambda *_: 1 / 0)
+    assert explain(scene, held, held, outcome) == ()
+
+
+def test_the_proven_side_is_the_trusted_one() -> None:
+    scene, held = solved("double-wishbone")
+    guess = replace(
+        held.with_numbers(camber(held, np.degrees)), accuracy=replace(held.accuracy, proven=False)
+    )
+    outcome = compare_solutions(scene, guess, held, "other way round")
+    assert "degrees for radians" in explain_outcome(scene, outcome)[0].words
+
+
+def test_every_kind_has_a_name_of_its_own() -> None:
+    names = [kind.name for kind in kinds()]
+    assert len(set(names)) == len(names) >= 13
+
+
+def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
+    _, held = solved("double-wishbone")
+    scene, _ = solved("double-wishbone")
+    given = held.with_numbers(camber(held, np.degrees))
+    outcome = compare_solutions(scene, held, given, "degrees")
+    found = explain_outcome(scene, outcome)
+    text = report.outcome_text(outcome, found * 5)
+    assert text.count("what would explain it: ") == 3
+    assert text.splitlines()[-1].endswith("camber: degrees for radians")
+    (one,) = report.outcome_data(outcome, found)["explanations"]
+    assert one == {
+        "words": "camber: degrees for radians",
+        "kind": "unit",
+        "quantities": ("wheel.camber",),
+        "leftover": found[0].leftover,
+    }
+
+
+def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
+    # The tie rod's other side: its outer end mirrored in the plane of its inner end and the kingpin keeps all
+    # three distances, and the knuckle's other points turn about the kingpin with it.
+    scene, _ = solved("double-wishbone")
+    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    low, top, inner, outer = (
+        points[name] for name in ("lower_ball_joint", "upper_ball_joint", "tie_rod_inner", "tie_rod_outer")
+    )
+    kingpin = (top - low) / np.linalg.norm(top - low)
+    normal = np.cross(kingpin, inner - low)
+    normal /= np.linalg.norm(normal)
+    other = outer - 2.0 * ((outer - low) @ normal) * normal
+    first, second = (
+        (d - (d @ kingpin) * kingpin) / np.linalg.norm(d - (d @ kingpin) * kingpin)
+        for d in (outer - low, other - low)
+    )
+    sideways, ahead = np.cross(kingpin, first), first
+    cosine, sine = second @ ahead, second @ sideways
+
+    def turned(place: Array) -> Array:
+        d = place - low
+        along = (d @ kingpin) * kingpin
+        moved = along + cosine * (d - along) + sine * np.cross(kingpin, d)
+        return np.asarray(low + moved)
+
+    points |= {n: turned(points[n]) for n in ("tie_rod_outer", "wheel_centre", "wheel_axis_inner")}
+    drawn = {name: tuple(place.tolist()) for name, place in points.items()}
+    part = scene.mechanism.model_copy(update={"points": drawn})
+    motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
+    found = diagnosis("double-wishbone", motion.numbers)[0]
+    assert (found.kind, found.leftover <= 1.0) == ("branch", True), found

@@ -1,0 +1,188 @@
+"""What a diagnosis looks at: given numbers beside the held ones, and how far apart they may be.
+
+Numbers are by row: the pair of a quantity and a point, body or angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, PointcoordError, Scene, simulate, sweep
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.numerics.rounding import EPS
+from pointcoord.simulation import finest_tolerance
+from validate.comparison.compare import Outcome
+from validate.comparison.given import given as given_numbers
+from validate.comparison.tolerance import largest_numbers, tolerance
+from validate.formulations.asked_numbers import per_second
+from validate.formulations.protocol import Solution
+
+Array = NDArray[np.float64]
+Row = tuple[str, str]
+Rows = Mapping[Row, Array]
+
+TINY = float(np.finfo(float).tiny)
+
+
+def length_or_angle(row: Row) -> str:
+    """What a row's numbers are of, whatever rate they are: mm or rad."""
+    return QUANTITIES[row[0]].unit.partition("/")[0]
+
+
+def order(row: Row) -> int:
+    """Which time derivative a row's numbers are."""
+    return per_second(row[0])
+
+
+def kind_of(row: Row) -> str:
+    """What each number belongs to: a point, a body or the car."""
+    return QUANTITIES[row[0]].of
+
+
+class Solved:
+    """A scene's own motion, solved when it is first asked for, with every point."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    @cached_property
+    def fine(self) -> Scene:
+        """The scene, solved as finely as rounding allows."""
+        return self.scene.model_copy(
+            update={"tolerance": min(self.scene.tolerance, finest_tolerance(self.scene))}
+        )
+
+    @cached_property
+    def drawn(self) -> Mapping[str, float]:
+        """The angles of its closed drawing by name, rad."""
+        try:
+            return {name: float(angle[0]) for name, angle in sweep(self.fine).drawn.items()}
+        except PointcoordError:
+            return {}
+
+    @cached_property
+    def motion(self) -> Motion | None:
+        """Its motion with every point; None where pointcoord refuses it."""
+        try:
+            return simulate(self.fine.model_copy(update={"points": None}))
+        except PointcoordError:
+            return None
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Given and held numbers at the same instants.
+
+    Attributes:
+        times: (N,), s.
+        given, held: the numbers, (N, 3) or (N,).
+        allowed: how far a given number may be from the one that it is held to, likewise.
+        wrong: the rows that disagree.
+    """
+
+    scene: Scene
+    times: Array
+    given: Rows
+    held: Rows
+    allowed: Rows
+    wrong: tuple[Row, ...]
+    solved: Solved
+
+    @classmethod
+    def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
+        """The numbers of all rows that both give, held to what both claim."""
+        instants = scene.instants
+        one, two = given_numbers(given, instants), given_numbers(held, instants)
+        both = one.found & two.found
+        one, two = one.at(both), two.at(both)
+        rows = [
+            (quantity, name)
+            for quantity, numbers in one.numbers.items()
+            for name in numbers
+            if name in two.numbers[quantity]
+        ]
+        allowed: dict[Row, Array] = {}
+        for quantity, name in rows:
+            sides = (one, two)
+            largest = min(
+                float(largest_numbers(s.numbers[quantity].values(), len(s.condition)).max(initial=0.0))
+                for s in sides
+            )
+            zero = np.zeros_like(one.numbers[quantity][name])
+            claims = [s.claims[quantity].get(name, zero) for s in sides]
+            allowed[quantity, name] = outcome.factor * tolerance(claims[0], claims[1], largest) + TINY
+        disagree = {(row.quantity, row.name) for row in outcome.disagreements}
+        return cls(
+            scene=scene,
+            times=instants[both],
+            given={row: one.numbers[row[0]][row[1]] for row in rows},
+            held={row: two.numbers[row[0]][row[1]] for row in rows},
+            allowed=allowed,
+            wrong=tuple(row for row in rows if row in disagree),
+            solved=Solved(scene),
+        )
+
+    def at(self, instants: Sequence[int]) -> Evidence:
+        """The same at fewer instants."""
+        some = np.asarray(instants, dtype=np.intp)
+        given, held, allowed = (
+            {row: array[some] for row, array in rows.items()}
+            for rows in (self.given, self.held, self.allowed)
+        )
+        return Evidence(self.scene, self.times[some], given, held, allowed, self.wrong, self.solved)
+
+    def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
+        """The same with other numbers to hold the given ones against: values, and what they may differ."""
+        held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
+        allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
+        return Evidence(self.scene, self.times, self.given, held, allowed, wrong, self.solved)
+
+    def left(self, row: Row, value: Array, allowed: Array) -> float:
+        """The largest difference of given numbers from others, in parts of what is allowed."""
+        gap = np.abs(self.given[row] - value)
+        if QUANTITIES[row[0]].unit == "rad":
+            gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
+        gap = np.where(np.isfinite(gap), gap, np.inf)
+        return float(np.max(gap / allowed, initial=0.0))
+
+    def rounded(self, row: Row, *others: Array | float) -> Array:
+        """What is allowed of numbers that were computed again, from the held ones or from the drawing.
+
+        They are as far off as the held ones at most, and what made them rounds each a few times.
+        """
+        largest = max(
+            float(np.abs(array).max(initial=0.0)) for array in (self.held[row], *map(np.asarray, others))
+        )
+        return np.asarray(2.0 * self.allowed[row] + 8.0 * EPS * largest)
+
+    def wrong_of(self, quantity: str) -> tuple[Row, ...]:
+        """The rows of a quantity that disagree."""
+        return tuple(row for row in self.wrong if row[0] == quantity)
+
+    @property
+    def wrong_quantities(self) -> tuple[str, ...]:
+        """The quantities of which a row disagrees."""
+        return tuple(dict.fromkeys(row[0] for row in self.wrong))
+
+    @cached_property
+    def axes(self) -> CarAxes:
+        """The car's directions."""
+        part = self.scene.mechanism
+        return CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+
+    def places(self, point: str) -> Array | None:
+        """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
+        for row, array in self.held.items():
+            if row[1] == point and kind_of(row) == "point" and order(row) == 0:
+                return array
+        motion = self.solved.motion
+        if motion is None:
+            return None
+        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
+        return np.asarray(motion.at(self.times).numbers[quantity][point])

@@ -1,0 +1,329 @@
+"""What would explain a disagreement: faults are supposed one after the other, and the numbers decide.
+
+A fault is claimed for rows whose numbers all come within what they may be off once it is undone, or it is
+said by what factor it lowers their difference. Numbers that are all one number decide nothing: whatever is
+fitted to them fits. So a claim needs at least two more distinct numbers than were fitted, and numbers that
+are off from more than one value.
+
+The kinds that need only arithmetic come first, each alone; then those that solve other cars; then two faults
+in the same numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+
+from pointcoord import PointcoordError, Scene
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.registry import QUANTITIES
+from validate.comparison.compare import Outcome
+from validate.diagnosis.evidence import Evidence, Row, kind_of, order
+from validate.diagnosis.hypothesis import Hypothesis, Kind
+from validate.diagnosis.kinds import kinds
+from validate.formulations.protocol import Solution
+
+# By how many times a fault must lower a difference that it does not explain whole. What is fitted to noise
+# lowers it by a small factor only.
+WORTH = 20.0
+# By how many times, so that no other car is solved for what is left.
+ENOUGH = 1e3
+# Instants that pairs of faults are tried at before all are looked at.
+FEW = 8
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What would explain that numbers disagree.
+
+    Attributes:
+        words: which numbers, and what was done to them.
+        kind: of fault, as its file in `kinds` calls it; two kinds joined by "and".
+        quantities: whose numbers it explains: a quantity where it explains all that disagrees of it, else
+            quantity.name.
+        leftover: the largest difference that is left when the fault is undone / what it is held to; more
+            than 1 where it explains a part only.
+    """
+
+    words: str
+    kind: str
+    quantities: tuple[str, ...]
+    leftover: float
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A fault that the numbers carry.
+
+    Attributes:
+        rows: the disagreeing rows that it explains.
+        leftover: of these. lowered: by what factor it lowers their difference at least.
+    """
+
+    hypothesis: Hypothesis
+    rows: tuple[Row, ...]
+    leftover: float
+    lowered: float
+
+    @property
+    def whole(self) -> bool:
+        """Whether nothing is left to explain of its rows."""
+        return self.leftover <= 1.0
+
+
+def explain(scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> tuple[Explanation, ...]:
+    """What would explain that a solution disagrees with the one it is held against; the best first.
+
+    Args:
+        given: whose numbers are to be explained. held: the one that is trusted.
+        outcome: their comparison. Where nothing disagrees in it, nothing is looked at.
+    Returns:
+        What explains whole quantities first, most rows first, simple before far-fetched; then what lowers a
+        difference at least twentyfold. Empty where nothing that is known here explains anything.
+    """
+    if not outcome.disagreements:
+        return ()
+    evidence = Evidence.of(scene, given, held, outcome)
+    if not evidence.wrong or not len(evidence.times):
+        return ()
+    found = list(_supposed(evidence, _quick()))
+    if _open(evidence, found, mostly=True) and _elsewhere(evidence):
+        deep = list(_supposed(evidence, [kind for kind in kinds() if kind.solves]))
+        found += deep
+        for one in _ranked(deep)[:1]:
+            # What other faults the same car has beside it.
+            left = tuple(row for row in evidence.wrong if row not in one.rows)
+            if left and one.whole:
+                after = evidence.after(one.hypothesis.rows, left)
+                found += _supposed(after, _quick())
+    if left := _open(evidence, found):
+        found += _pairs(replace(evidence, wrong=left))
+    if left := _open(evidence, found):
+        found += _supposed(replace(evidence, wrong=left), [kind for kind in kinds() if kind.last])
+    return tuple(_told(evidence, one) for one in _best(_ranked(found)))
+
+
+def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
+    """What would explain that one of two solutions disagrees with the other; as `explain`.
+
+    The trusted one is the one whose accuracy is proven, and the first where neither's is or both are.
+    """
+    one, two = outcome.solutions
+    held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
+    return explain(scene, given, held, outcome)
+
+
+def _quick() -> list[Kind]:
+    return [kind for kind in kinds() if not kind.solves and not kind.last]
+
+
+def _elsewhere(evidence: Evidence) -> bool:
+    """Whether it may be another car or another motion: not where points are given and are in their places."""
+    points = [row for row in evidence.given if order(row) == 0 and kind_of(row) == "point"]
+    moving = [row for row in points if np.ptp(evidence.held[row], axis=0).any()]
+    return not moving or any(row in evidence.wrong for row in moving)
+
+
+def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> tuple[Row, ...]:
+    """The rows that nothing explains yet; or nothing explains mostly."""
+    done = {row for one in found if one.whole or (mostly and one.lowered >= ENOUGH) for row in one.rows}
+    return tuple(row for row in evidence.wrong if row not in done)
+
+
+def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
+    """What the numbers carry of the faults of some kinds; the same fault of several quantities is one."""
+    for kind in some:
+        merged: dict[Hashable, Hypothesis] = {}
+        # A car that cannot be solved, or gives no such numbers, explains nothing.
+        with suppress(PointcoordError):
+            for one in kind.hypotheses(evidence):
+                known = merged.get(one.key)
+                merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
+        for one in merged.values():
+            carried = _carried(evidence, one)
+            if carried is not None:
+                yield carried
+
+
+def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
+    """The rows that a fault explains, whole or in part; None if there are none."""
+    left: dict[Row, float] = {}
+    for row, (value, allowed) in hypothesis.rows.items():
+        share = evidence.left(row, value, allowed)
+        if row in evidence.wrong:
+            left[row] = share
+        elif hypothesis.whole and share > 1.0:
+            return None
+    exact = [row for row, share in left.items() if share <= 1.0]
+    exact = [row for some in _together(exact) if _decided(evidence, some, hypothesis.fitted) for row in some]
+    if exact:
+        return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
+    lowered = {
+        tuple(some): _lowered(evidence, hypothesis, some)
+        for some in _together([*left])
+        if _decided(evidence, some, hypothesis.fitted)
+    }
+    partly = {rows: factor for rows, factor in lowered.items() if factor >= WORTH}
+    if not partly:
+        return None
+    rows = tuple(row for some in partly for row in some)
+    return _Found(hypothesis, rows, max(left[row] for row in rows), min(partly.values()))
+
+
+def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) -> float:
+    """By what factor a fault lowers the difference of rows, both in parts of the largest number there."""
+    theirs, ours, then = (
+        np.concatenate([part[row].ravel() for row in rows])
+        for part in (evidence.given, evidence.held, {row: hypothesis.rows[row][0] for row in rows})
+    )
+    if not (np.isfinite(theirs).all() and ours.any() and then.any()):
+        return 0.0
+    before = float(np.abs(theirs - ours).max() / np.abs(ours).max())
+    after = float(np.abs(theirs - then).max() / np.abs(then).max())
+    return before / after if after > 0.0 else np.inf
+
+
+def _together(rows: Sequence[Row]) -> list[list[Row]]:
+    """Rows whose numbers are looked at together: a quantity's vectors; each number of the car by itself."""
+    groups: dict[object, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(row if kind_of(row) == "car" else row[0], []).append(row)
+    return list(groups.values())
+
+
+def _decided(evidence: Evidence, rows: Sequence[Row], fitted: int) -> bool:
+    """Whether rows have enough distinct numbers that are off to tell one fault from another."""
+    for numbers in (evidence.held, evidence.given):
+        distinct: set[tuple[int, float]] = set()
+        for row in rows:
+            off = ~(np.abs(evidence.given[row] - evidence.held[row]) <= evidence.allowed[row])
+            part = numbers[row]
+            step = max(
+                100.0 * float(evidence.allowed[row].max()), 1e-9 * float(np.abs(part).max(initial=0.0))
+            )
+            for axis in range(3) if part.ndim == 2 else (0,):
+                some = part[:, axis][off[:, axis]] if part.ndim == 2 else part[off]
+                distinct |= {(axis, float(number)) for number in np.unique(np.rint(some / step))}
+        # One number of each axis is none to tell anything by.
+        if len(distinct) - len({axis for axis, _ in distinct}) < fitted + 1:
+            return False
+    return True
+
+
+def _pairs(evidence: Evidence) -> Iterator[_Found]:
+    """Two faults in the same numbers: the second in what the first makes of ours."""
+    opening = [kind for kind in kinds() if kind.opens]
+    closing = [kind for kind in kinds() if kind.closes]
+    count = len(evidence.times)
+    few = np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp))
+    largest = [
+        max(rows, key=lambda row: np.abs(evidence.held[row]).max()) for rows in _together(evidence.wrong)
+    ]
+    thin = replace(evidence.at(few.tolist()), wrong=tuple(largest))
+    for first in opening:
+        promising = _seconds(thin, first, closing)
+        if promising:
+            yield from _seconds(evidence, first, closing, promising).values()
+
+
+def _seconds(
+    evidence: Evidence,
+    first: Kind,
+    closing: Sequence[Kind],
+    only: Iterable[tuple[Hashable, Hashable]] | None = None,
+) -> dict[tuple[Hashable, Hashable], _Found]:
+    """What a fault of one kind and another of other kinds explain, by both faults.
+
+    Args:
+        only: the pairs to try.
+    """
+    wanted = None if only is None else set(only)
+    begun: dict[Hashable, Hypothesis] = {}
+    for one in first.hypotheses(evidence):
+        known = begun.get(one.key)
+        begun[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
+    found: dict[tuple[Hashable, Hashable], _Found] = {}
+    for one in begun.values():
+        if wanted is not None and not any(pair[0] == one.key for pair in wanted):
+            continue
+        after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
+        for kind in closing:
+            if kind.name == first.name:
+                continue
+            for two in kind.hypotheses(after):
+                key = (one.key, (kind.name, two.key))
+                if wanted is not None and two.fitted == 0 and key not in wanted:
+                    continue
+                both = Hypothesis(
+                    kind=f"{first.name} and {kind.name}",
+                    key=key,
+                    words=f"{one.words}, and {two.words}",
+                    rows={**(found[key].hypothesis.rows if key in found else {}), **two.rows},
+                    fitted=one.fitted + two.fitted,
+                    cost=one.cost + two.cost + 1.0,
+                )
+                carried = _carried(evidence, both)
+                if carried is not None and _needed(evidence, one, carried):
+                    found[key] = carried
+    return found
+
+
+def _needed(evidence: Evidence, one: Hypothesis, both: _Found) -> bool:
+    """Whether the second of two faults adds to what the first alone explains of the rows."""
+    alone = max(evidence.left(row, *one.rows[row]) for row in both.rows)
+    return both.leftover <= 1.0 or alone >= WORTH * both.leftover
+
+
+def _ranked(found: Iterable[_Found]) -> list[_Found]:
+    """Whole before in part; more rows, or more of the difference, before less; simple before far-fetched."""
+
+    def place(one: _Found) -> tuple[float, ...]:
+        decades = 0.0 if one.whole else -np.floor(np.log10(min(one.lowered, 1e300)))
+        return (not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
+
+    return sorted(found, key=place)
+
+
+def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
+    """Those that explain what none before them does; or the same rows as simply and as well."""
+    kept: list[_Found] = []
+    for one in ranked:
+        better = any(
+            set(one.rows) <= set(other.rows)
+            and (
+                other.whole != one.whole
+                or other.hypothesis.cost < one.hypothesis.cost
+                or len(other.rows) > len(one.rows)
+                or (not one.whole and other.lowered > 2.0 * one.lowered)
+            )
+            for other in kept
+        )
+        if not better and not set(one.rows) <= {
+            r for other in kept if len(other.rows) > len(one.rows) for r in other.rows
+        }:
+            kept.append(one)
+            yield one
+
+
+def _told(evidence: Evidence, found: _Found) -> Explanation:
+    quantities: list[str] = []
+    said: list[str] = []
+    for quantity in evidence.wrong_quantities:
+        rows = [row for row in found.rows if row[0] == quantity]
+        every = len(rows) == len(evidence.wrong_of(quantity))
+        if not rows:
+            continue
+        if kind_of(rows[0]) != "car" and every:
+            quantities.append(quantity)
+            said.append(QUANTITIES[quantity].words)
+        else:
+            quantities += [f"{quantity}.{name}" for _, name in rows]
+            names = ", ".join(name for _, name in rows)
+            said.append(names if kind_of(rows[0]) == "car" else f"{QUANTITIES[quantity].words} of {names}")
+    words = f"{', '.join(said)}: {found.hypothesis.words}"
+    if not found.whole:
+        words += f"; this lowers the difference {found.lowered:.2g} times, and does not explain all of it"
+    return Explanation(words, found.hypothesis.kind, tuple(quantities), found.leftover)

@@ -1,0 +1,60 @@
+"""A fault that somebody's numbers may have, and what the numbers would be if they had it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.data_classes import dataclass
+from validate.diagnosis.evidence import Evidence, Row
+
+Array = NDArray[np.float64]
+WouldBe = tuple[Array, Array]
+"""What given numbers would be, and how far from that they may be."""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One fault with its parameters.
+
+    Attributes:
+        kind: of fault. key: which fault of this kind; that of another quantity is the same fault.
+        words: what was done to the numbers.
+        rows: what each row would be.
+        fitted: how many numbers were chosen so that it fits.
+        cost: how far-fetched it is; the fitted numbers and the choices made.
+        whole: whether it is about the whole car, so that rows that agree must agree under it too.
+    """
+
+    kind: str
+    key: Hashable
+    words: str
+    rows: Mapping[Row, WouldBe]
+    fitted: int = 0
+    cost: float = 1.0
+    whole: bool = False
+
+
+class Kind(ABC):
+    """A kind of fault.
+
+    Attributes:
+        name: of the kind.
+        solves: whether trying it takes solving other cars or motions.
+        opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
+            is sought in what the first would make of the held numbers.
+        last: whether it is tried only on what nothing else explains, because it says little.
+    """
+
+    name: str
+    solves = False
+    opens = False
+    closes = False
+    last = False
+
+    @abstractmethod
+    def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
+        """The faults of this kind that may be in the rows that disagree."""

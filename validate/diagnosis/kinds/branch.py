@@ -1,0 +1,94 @@
+"""Another assembly: places that keep every length of the drawing, at the same inputs, elsewhere.
+
+Whoever draws the car as it stands there draws the same links. So that drawing is solved for the same inputs:
+if the given numbers are that car's, they are another assembly of ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import PointcoordError, Scene
+from pointcoord.method import AUTO
+from pointcoord.simulation import prepare_task, solve_task
+from validate.diagnosis.evidence import Evidence, kind_of, order
+from validate.diagnosis.hypothesis import Hypothesis, Kind
+from validate.formulations.input_rates import rates
+
+Array = NDArray[np.float64]
+
+# Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
+KEPT, ELSEWHERE = 1e-5, 1e-4
+
+
+class Branch(Kind):
+    """From the first instant on, or from where the given numbers leave ours."""
+
+    name, solves = "branch", True
+
+    def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
+        """The one of the whole car."""
+        topology = evidence.scene.mechanism.topology
+        placed = {row[1]: row for row in evidence.given if kind_of(row) == "point" and order(row) == 0}
+        if any(name not in placed for name in (*topology.moving, *topology.carried)):
+            return
+        drawn = {name: np.array(place) for name, place in evidence.scene.mechanism.points.items()}
+        size = max(float(np.ptp([place[i] for place in drawn.values()])) for i in range(3))
+        away = np.max([self._away(evidence, row) for row in placed.values()], axis=0)
+        if not (away > ELSEWHERE * size).any():
+            return
+        first = int(np.argmax(away > ELSEWHERE * size))
+        pose = drawn | {
+            name: evidence.given[placed[name]][first] - self._chassis(evidence, first)
+            for name in (*topology.moving, *topology.carried)
+        }
+        links = {ends for constraint in topology.constraints for ends in constraint.squared_lengths}
+        off = max(
+            abs(float(np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(drawn[a] - drawn[b])))
+            for a, b in links
+        )
+        if not off <= KEPT * size:
+            return
+        try:
+            # No drawing check: another assembly may have its wheel inboard.
+            task = prepare_task(self._scene(evidence.solved.fine, pose), AUTO)
+            numbers = solve_task(task).at(evidence.times).numbers
+        except PointcoordError:
+            return
+        rows = {}
+        for row in evidence.held:
+            if row[1] in numbers[row[0]]:
+                value = np.array(numbers[row[0]][row[1]])
+                value[:first] = evidence.held[row][:first]
+                # The drawing is made of given numbers: they are off twice, as it and at each instant.
+                rows[row] = (value, 4.0 * evidence.rounded(row, value))
+        when = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
+        words = f"another assembly of the same links{when}: all {len(links)} lengths are kept"
+        yield Hypothesis(self.name, "branch", words, rows, whole=True)
+
+    @staticmethod
+    def _away(evidence: Evidence, row: tuple[str, str]) -> Array:
+        return np.asarray(np.linalg.norm(evidence.given[row] - evidence.held[row], axis=-1))
+
+    @staticmethod
+    def _chassis(evidence: Evidence, instant: int) -> Array:
+        """Where the chassis is."""
+        part, moved = evidence.scene.mechanism, np.zeros(3)
+        for name, along in part.topology.chassis_motion.items():
+            if name in evidence.scene.inputs:
+                when = evidence.times[instant : instant + 1]
+                moved += rates(evidence.scene.inputs[name], when)[0, 0] * np.array(getattr(part, along))
+        return moved
+
+    @staticmethod
+    def _scene(scene: Scene, pose: dict[str, Array]) -> Scene:
+        """The scene of a car that is drawn in a pose."""
+        part = scene.mechanism
+        points = {name: tuple(place.tolist()) for name, place in pose.items()}
+        return scene.model_copy(update={"mechanism": part.model_copy(update={"points": points})})
+
+
+KIND = Branch()
