@@ -52,6 +52,7 @@ ROOMS = {
         "output",
         "hard",
         "cost",
+        "curves",
         "commands",
         "door",
         "studies",
