@@ -47,12 +47,18 @@ ROOMS = {
         "relative",
         "formulations",
         "comparison",
+        "solvers",
         "cars",
         "adjudication",
         "output",
+        "ci",
         "hard",
         "cost",
+<<<<<<< HEAD
         "curves",
+=======
+        "hardpoint_files",
+>>>>>>> main
         "commands",
         "door",
         "studies",

@@ -30,6 +30,7 @@ COMMANDS = {
     "plot": "plot",
     "hard": "hard",
     "cost": "cost",
+    "import": "hardpoints",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

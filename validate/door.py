@@ -6,12 +6,16 @@ import sys
 from collections.abc import Callable, Iterator
 
 from pointcoord import PointcoordError
+from validate.ci.baseline import BaselineError
+from validate.ci.scene_folder import SceneFolderError
 from validate.commands.usage import UsageError
 from validate.comparison.examined import told_failure
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
+from validate.hardpoint_files.axes import UnknownAxes
+from validate.hardpoint_files.contents import HardpointFileError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 
@@ -19,7 +23,11 @@ from validate.output.files import OutputError, UnknownEnding
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
     (UnknownEnding, ExitStatus.WRONG_INPUT),
     (OutputError, ExitStatus.NOT_FINISHED),
-    ((UsageError, UnknownFormulation, MissingPackage), ExitStatus.WRONG_INPUT),
+    (
+        (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage),
+        ExitStatus.WRONG_INPUT,
+    ),
+    ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )

@@ -19,11 +19,17 @@ def shown(value: object) -> str:
 
 def meant(name: str, known: Iterable[str]) -> str:
     """A name that was perhaps misspelt, in words that follow it; empty if none is near."""
+    near = nearest(name, known)
+    return f" (did you mean {near!r}?)" if near else ""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that a misspelt one is nearest to; empty if none is near."""
     # Imported here: few names are misspelt.
     from difflib import get_close_matches
 
     near = get_close_matches(name.lower(), tuple(known), n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    return near[0] if near else ""
 
 
 def shown_key(key: int | str) -> str:

@@ -10,9 +10,12 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Any, NoReturn, Self, dataclass_transform
 
 from pointcoord.errors import SceneError
-from pointcoord.scene.messages import shown, shown_key
+from pointcoord.scene.messages import meant, nearest, shown, shown_key
 
 Place = tuple[int | str, ...]
+
+# Faults that are told in one message beside the first; more are counted.
+TOLD = 5
 
 
 class Faults(list[tuple[Place, str, str]]):
@@ -81,7 +84,7 @@ class Part:
         """The part as plain data or as an object, checked.
 
         Raises:
-            SceneError: the first fault, with its key; further ones are counted.
+            SceneError: the first fault, with its key; some further ones are told, and the others counted.
         """
         if type(content) is cls and content.unchanged:
             return content
@@ -90,9 +93,7 @@ class Part:
         if isinstance(part, cls):
             return part
         place, problem, allowed = faults[0]
-        if len(faults) > 1:
-            problem += f" (and {len(faults) - 1} more)"
-        raise SceneError(source, ".".join(map(shown_key, place)), problem, allowed)
+        raise SceneError(source, _dotted(place), problem + _further(faults[1:]), allowed)
 
     @classmethod
     def read_from(cls, content: object, place: Place, faults: Faults) -> Any:
@@ -106,9 +107,15 @@ class Part:
             )
         before = len(faults)
         values: dict[str, Any] = {}
+        unknown = [name for name in content if isinstance(name, str) and name not in cls._keys]
+        free = [name for name in cls._keys if name not in content]
+        # A key that is missing because it is misspelt is one fault.
+        misspelt = {nearest(name, free) for name in unknown}
         for name, own in cls._keys.items():
             if name in content:
                 value = own.read(content[name], (*place, name), faults, values)
+            elif own.default is ... and name in misspelt:
+                value = WRONG
             elif own.default is ...:
                 value = faults.note((*place, name), "this key is missing")
             else:
@@ -119,7 +126,8 @@ class Part:
             if not isinstance(name, str):
                 faults.note((*place, shown(name)), "Keys should be strings", name)
             elif name not in cls._keys:
-                faults.note((*place, name), "there is no such key", allowed=", ".join(cls._keys))
+                problem = f"there is no such key{meant(name, free)}"
+                faults.note((*place, name), problem, allowed=", ".join(cls._keys))
         if len(faults) > before:
             return WRONG
         part = object.__new__(cls)
@@ -218,6 +226,20 @@ class Part:
 
     def __delattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} does not change; make another one with model_copy")
+
+
+def _dotted(place: Place) -> str:
+    return ".".join(map(shown_key, place))
+
+
+def _further(faults: list[tuple[Place, str, str]]) -> str:
+    """Faults beside the first, in words that follow it."""
+    if not faults:
+        return ""
+    told = [f"{_dotted(place)}: {problem}" for place, problem, _ in faults[:TOLD]]
+    if len(faults) > TOLD:
+        told.append(f"{len(faults) - TOLD} others")
+    return f" (and {len(faults)} more: {'; '.join(told)})"
 
 
 def _plain(value: object, mode: str, exclude_none: bool) -> Any:

@@ -22,6 +22,8 @@ from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
 from validate import cli, compare
+from validate.ci.baseline import read_baseline
+from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.growth.unknowns import LongChain
 from validate.cost.loading import Loading
@@ -30,10 +32,16 @@ from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
+<<<<<<< HEAD
 from validate.curves.numbers import found, numbers_of
 from validate.formulations.protocol import Accuracy
+=======
+from validate.formulations.protocol import Accuracy, FormulationError
+>>>>>>> main
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
+from validate.hardpoint_files.axes import Axes
+from validate.hardpoint_files.importing import import_hardpoints
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
@@ -43,6 +51,7 @@ from validate.reference.design import Design, values_only
 from validate.reference.exact import bits
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
+from validate.solvers.check import check
 from validate.studies.chunk_store import Store
 
 BOUNCE = pointcoord.Scene.load("bounce")
@@ -68,6 +77,14 @@ def changed(**sections: Mapping[str, Any]) -> pointcoord.Scene:
     for section, changes in sections.items():
         content[section].update(changes)
     return pointcoord.Scene.from_mapping(content, "mine")
+
+
+def failing_solver() -> None:
+    """A solver that asks for a hardpoint that no car has."""
+    try:
+        check(lambda given: {"position": given["points"]["strut"]}, BOUNCE)
+    except FormulationError as error:
+        raise error.reason from None
 
 
 def jumping() -> pointcoord.Scene:
@@ -146,7 +163,26 @@ def uncertified() -> object:
         return certify(assembled, known, Fraction(1, 10**60))
 
 
+def report_of_two_numbers(folder: Path) -> object:
+    """A Lotus report in which a coordinate of a point is missing."""
+    report = folder / "report.txt"
+    report.write_text(
+        "LOTUS SUSPENSION ANALYSIS\n\n  257.00  69.00  POINT ( 1 ) = Lower wishbone front pivot\n"
+    )
+    return import_hardpoints(report)
+
+
 RECIPES: dict[str, Recipe] = {
+    "validate.hardpoint_files.contents.HardpointFileError": Recipe(
+        lambda folder, _: report_of_two_numbers(folder),
+        ("report.txt: line 3: has 2 numbers before POINT", "'257.00  69.00'", "allowed: x, y and z"),
+        {"line": 3, "allowed": "x, y and z"},
+    ),
+    "validate.hardpoint_files.axes.UnknownAxes": Recipe(
+        lambda *_: Axes.of("forward,rearward,up"),
+        ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
+        {"text": "forward,rearward,up"},
+    ),
     "pointcoord.errors.SceneError": Recipe(
         lambda *_: changed(time={"stop": -1.0}),
         ("mine: time:", "-1.0", "allowed: start < stop"),
@@ -263,6 +299,16 @@ RECIPES: dict[str, Recipe] = {
             "corrections": bool,
         },
     ),
+    "validate.ci.baseline.BaselineError": Recipe(
+        lambda folder, _: read_baseline(str(folder / "none.npz")),
+        ("none.npz", "No such file", "--save-baseline"),
+        {"problem": lambda words: "cannot be read" in words, "target": lambda name: "none.npz" in name},
+    ),
+    "validate.ci.scene_folder.SceneFolderError": Recipe(
+        lambda folder, _: scenes_below(str(folder)),
+        ("--scenes-dir", "holds no scene", ".toml"),
+        {"problem": "holds no scene", "folder": lambda name: Path(name).is_dir()},
+    ),
     "validate.relative.errors.HardpointsError": Recipe(
         lambda *_: build("macpherson", {**TABLE, "lower_arm_rear": TABLE["lower_arm_front"]}),
         ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
@@ -378,6 +424,14 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
         ("pointcoord: ", "rack = 500", "bring 'rack' back"),
         {"formulation": "pointcoord", "reason": lambda it: isinstance(it, pointcoord.AssemblyError)},
+    ),
+    "validate.solvers.plain.NoSolver": Recipe(
+        lambda *_: check(3.0, BOUNCE),
+        ("the solver is a float", "give a function, or an object or a class with a method 'solve'"),
+        {"what": "the solver"},
+    ),
+    "validate.solvers.plain.SolverFailed": Recipe(
+        lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
     ),
     "validate.formulations.registry.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}

@@ -11,7 +11,7 @@ from pointcoord.suspensions import SUSPENSIONS
 
 ROOT = Path(validate.__file__).parent
 # The paper's tables are about the paper's car; cars and hard cases are about hardpoints.
-ROOMS = ("formulations", "comparison", "output", "commands")
+ROOMS = ("formulations", "comparison", "output", "commands", "hardpoint_files")
 TOPOLOGIES = [topology for kind in SUSPENSIONS.values() for topology in kind.closures.values()]
 NAMES = {
     "effect": {*EFFECTS},
@@ -43,11 +43,14 @@ def files() -> list[Path]:
 @pytest.mark.parametrize("kind", NAMES)
 def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # The absolute model moves positions back to the user's origin, and the printed rows of the paper have
-    # a wheel centre; a sweep asks the topology which point its wheel centre is.
+    # a wheel centre; a sweep and an import ask the topology which point its wheel centre is. The static
+    # angles of a wheel whose spin axis another program's file lacks are two options of the import.
     allowed = {
         "absolute_coordinates.py": {"position"},
         "report.py": {"wheel_centre"},
         "sweep.py": {"wheel_centre"},
+        "importing.py": {"wheel_centre", "camber", "toe"},
+        "hardpoints.py": {"camber", "toe"},
     }
     assert NAMES[kind]
     for path in files():

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import argparse
+import math
+import os
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
 from pointcoord import Scene, SceneError
+from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
+from validate.ci.files import Files
+from validate.ci.moves import baseline_data, since_text
+from validate.ci.record import Record, ends_the_run
+from validate.ci.scene_folder import scenes_below
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
     UsageError,
     add_quiet,
     load_scene,
+    name_of,
     require_target,
 )
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
-from validate.exit_status import ExitStatus, combined
+from validate.exit_status import ExitStatus
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
-from validate.output.document import Head, Journal
+from validate.output.document import Head, Journal, program_version
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown
@@ -61,17 +70,53 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"the one to compare it with ({SECOND} if not given); without --first and --second "
         f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
     )
+    parser.add_argument(
+        "--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path"
+    )
+    parser.add_argument(
+        "--tolerance-factor",
+        type=_factor,
+        default=1.0,
+        metavar="F",
+        help="hold differences to F times the derived tolerance; every result says so",
+    )
+    parser.add_argument(
+        "--fail-fast",
+        action="store_true",
+        help="stop at the first scene that disagrees, has moved or is refused; what was not run is named",
+    )
     parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
+    parser.add_argument(
+        "--junit", metavar="FILE", help="write JUnit XML, a test case for each scene and quantity; - likewise"
+    )
+    parser.add_argument("--summary", metavar="FILE", help="write a summary in Markdown; - likewise")
+    parser.add_argument(
+        "--save-baseline", metavar="FILE", help="keep the solved numbers and what is claimed of them (npz)"
+    )
+    parser.add_argument(
+        "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
+    )
     add_quiet(parser)
     parser.set_defaults(run=run)
+
+
+def _factor(word: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no factor; allowed: a positive, finite number")
+    return value
 
 
 @dataclass
 class _Results:
     """What is there so far, as plain data and in counts."""
 
+    record: Record
+    baseline: Baseline | None
     scenes: list[dict[str, Any]] = field(default_factory=list)
-    statuses: list[ExitStatus] = field(default_factory=list)
     agreed: dict[tuple[str, str], int] = field(default_factory=dict)
     uncompared: int = 0
     printed: list[str] = field(default_factory=list)
@@ -79,9 +124,9 @@ class _Results:
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
     paper: Sequence[PaperRow] = ()
 
-    def add(self, examined: Examined) -> None:
+    def add(self, examined: Examined, since: Since | None) -> None:
+        self.record.add(examined, since)
         self.scenes.append(report.examined_data(examined))
-        self.statuses.append(examined.status)
         self.uncompared += not examined.outcomes
         for outcome in examined.outcomes:
             first, second = (s.formulation for s in outcome.solutions)
@@ -97,6 +142,11 @@ class _Results:
             "scenes": self.scenes,
             "printed_formulas": [report.finding_data(finding) for finding in self.findings],
             "printed_tables": report.paper_data(self.paper) if self.paper else None,
+            "tolerance_factor": self.record.factor,
+            "not_run": list(self.record.not_run),
+            "baseline": None
+            if self.baseline is None
+            else baseline_data(self.baseline, self.record.since, self.record.gone),
         }
 
 
@@ -105,34 +155,88 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Raises:
         UsageError: the options do not go together.
+        SceneFolderError, BaselineError: a folder of scenes or a baseline cannot be read.
         UnknownFormulation, MissingPackage: a formulation is not there.
         OutputError: the results cannot be written.
     """
-    names = options.scenes or list(DEFAULT_SCENES)
+    all_of_ours = not options.scenes and options.scenes_dir is None
+    names = _names(options)
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-    require_target(options.json, "--json", tuple(names))
-    console.quiet, console.mute = options.quiet, options.json == "-"
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
+    files = _files(options, names, console)
     for name in dict.fromkeys(name for pair in pairs for name in pair):
         formulation(name)  # found before any scene is read
+    baseline = None if options.baseline is None else read_baseline(options.baseline)
+    shown_names = [name_of(name) for name in names]
+    record = Record(shown_names, options.tolerance_factor, options.baseline)
+    if baseline is not None:
+        record.gone = baseline.gone(shown_names)
+    files.require_writable()
     journal = Journal(options.json, Head.of("validate", options.command), console)
-    results = _Results()
-    with journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending:
-        for name, scene in _loaded(names, console):
+    results = _Results(record, baseline)
+    with (
+        nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
+        journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
+        files.closing(record, recorder, console),
+    ):
+        for place, (name, scene) in enumerate(_loaded(names, console)):
+            since = None
             if isinstance(scene, Scene):
-                _say(examined := examine(name, scene, pairs, name in PAPER_SCENES), console)
+                examined = examine(name, scene, pairs, name in PAPER_SCENES, record.factor)
+                _say(examined, console)
+                if recorder is not None:
+                    recorder.add(examined.name, scene, examined.outcomes)
+                if baseline is not None:
+                    since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
+                    console.say(since_text(since) + "\n")
             else:
                 examined = scene
-            results.add(examined)
+            results.add(examined, since)
             journal.keep(results.data, _finished(results, names))
-        if not options.scenes:
+            if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
+                record.stopped = f"--fail-fast ended the run at {examined.name}"
+                break
+        if all_of_ours and not record.not_run:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
-        ending.status = combined(results.statuses)
+        ending.status = record.ended = record.status
     return ending.status
+
+
+def _files(options: argparse.Namespace, names: Sequence[str], console: Console) -> Files:
+    """Where results go, each to a place of its own; standard output is left to one that is to go there.
+
+    Raises:
+        UsageError: two of them, or a result and what is read, are the same file.
+        OutputError: standard output is closed and wanted.
+    """
+    texts = {"--json": options.json, "--junit": options.junit, "--summary": options.summary}
+    targets = {**texts, "--save-baseline": options.save_baseline}
+    given = {option: target for option, target in targets.items() if target is not None}
+    for option, target in given.items():
+        require_target(target, option, tuple(names))
+    if options.save_baseline == "-":
+        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
+    if options.baseline is not None:
+        # A baseline may take the place of the one that it was compared with.
+        given = {"--baseline": options.baseline, **given}
+    by_place: dict[str, str] = {}
+    for option, target in given.items():
+        place = target if target == "-" else os.path.realpath(target)
+        other = by_place.setdefault(place, option)
+        if other != option and {other, option} != {"--baseline", "--save-baseline"}:
+            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
+    console.quiet, console.mute = options.quiet, "-" in texts.values()
+    if not console.quiet or console.mute:
+        console.require("use --quiet, or --quiet --json FILE")
+    return Files(options.junit, options.summary, options.save_baseline)
+
+
+def _names(options: argparse.Namespace) -> list[str]:
+    """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
+    folder = [] if options.scenes_dir is None else list(scenes_below(options.scenes_dir))
+    return [*options.scenes, *folder] or list(DEFAULT_SCENES)
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
@@ -156,7 +260,7 @@ def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | E
         try:
             scenes.append((name, load_scene(name)))
         except SceneError as error:
-            bad = Examined(name=shown(name), problem=str(error))
+            bad = Examined(name=name_of(name), problem=str(error))
             console.complain(bad.complaint)
             scenes.append((name, bad))
     return scenes
@@ -196,5 +300,22 @@ def _say_at_the_end(
         for i, pair in enumerate(pairs)
     ]
     # No agreement is no disagreement yet: what was not compared is counted apart.
+    record = results.record
     rest = f"; {results.uncompared} of {count} could not be compared at all" if results.uncompared else ""
+    if record.not_run:
+        rest += f"; {len(record.not_run)} of {count} not run ({record.stopped}): {', '.join(record.not_run)}"
+    if record.factor != 1.0:
+        rest += f"; {report.held_to(record.factor)}"
     console.say(", ".join(told) + rest + ".")
+    if results.baseline is not None:
+        _say_what_moved(record, console)
+
+
+def _say_what_moved(record: Record, console: Console) -> None:
+    held = [since for since in record.since if since.compared]
+    moved = [since.scene for since in held if since.moved]
+    names = f": {', '.join(moved)}" if moved else ""
+    told = f"Since the baseline {shown(str(record.baseline))} {len(moved)} of {len(held)} scenes moved{names}"
+    gone = f"; gone, in the baseline and not in this run: {', '.join(record.gone)}" if record.gone else ""
+    nothing = "; nothing of this run could be held to it" if not held else ""
+    console.say(f"{told}{gone}{nothing}.")

@@ -66,6 +66,7 @@ class Outcome:
         notes: what the formulations said themselves of numbers without meaning, and what is wrong with
             what they gave.
         missing: what one formulation does not give, a line each.
+        factor: how many times the derived tolerance the differences were held to.
     """
 
     scene: str
@@ -73,6 +74,7 @@ class Outcome:
     solutions: tuple[Solution, Solution]
     notes: tuple[str, ...]
     missing: tuple[str, ...]
+    factor: float = 1.0
 
     @property
     def agreed(self) -> bool:
@@ -100,13 +102,18 @@ def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:
 
 
 def compare(
-    scene: Scene, first: str | Formulation, second: str | Formulation, name: str | None = None
+    scene: Scene,
+    first: str | Formulation,
+    second: str | Formulation,
+    name: str | None = None,
+    factor: float = 1.0,
 ) -> Outcome:
     """Solve a scene by two formulations and compare all that the scene asks for.
 
     Args:
         first, second: names of formulations, or formulations themselves.
         name: what to call the scene in the rows; its title if not given.
+        factor: how many times the derived tolerance to hold differences to.
     Raises:
         FormulationError: one of them refuses the scene, or gives what is no solution.
         SceneError: the scene's own hardpoints make no mechanism.
@@ -116,7 +123,7 @@ def compare(
     """
     require_scene(scene)
     one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
-    return compare_solutions(scene, one, two, name or scene.title or "scene")
+    return compare_solutions(scene, one, two, name or scene.title or "scene", factor=factor)
 
 
 def _solved(solver: Formulation, scene: Scene) -> Solution:
@@ -136,11 +143,14 @@ def compare_solutions(
     two: Solution,
     name: str,
     asked: Mapping[str, Sequence[str]] | None = None,
+    factor: float = 1.0,
 ) -> Outcome:
     """Compare two solved scenes.
 
     Args:
         asked: names to compare by quantity, if these are not all that the scene asks for.
+        factor: how many times the derived tolerance to hold differences to; a tolerance that tests nothing
+            (see `tolerance.untested`) tests nothing either way.
     Raises:
         FormulationError: one of them does not say at which instants its numbers are.
     """
@@ -155,8 +165,8 @@ def compare_solutions(
         parts = _parts(quantity, names, first, second)
         missing += _missing(quantity, parts, first, second)
         sides = (_Side.of(first, quantity), _Side.of(second, quantity))
-        rows += _rows(name, quantity, parts, sides, instants[both])
-    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing))
+        rows += _rows(name, quantity, parts, sides, instants[both], factor)
+    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor)
 
 
 def _parts(quantity: str, asked: Sequence[str], one: Given, two: Given) -> list[str]:
@@ -187,10 +197,12 @@ class _Side:
     numbers: Mapping[str, Array]
     claims: Mapping[str, Array]
     condition: Array
+    blind: NDArray[np.bool_] | None
 
     @classmethod
     def of(cls, side: Given, quantity: str) -> _Side:
-        return cls(side.formulation, side.numbers[quantity], side.claims[quantity], side.condition)
+        numbers, claims = side.numbers[quantity], side.claims[quantity]
+        return cls(side.formulation, numbers, claims, side.condition, side.blind)
 
     @cached_property
     def largest(self) -> Array:
@@ -204,7 +216,7 @@ class _Side:
 
 
 def _rows(
-    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array
+    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array, factor: float
 ) -> list[Comparison]:
     """A row for each of the parts, in their order."""
     both = [part for part in parts if all(part in side.numbers for side in sides)] if len(times) else []
@@ -212,7 +224,7 @@ def _rows(
     at_once = max(AT_ONCE // max(sides[0].numbers[both[0]].size, 1), 1) if both else 1
     for low in range(0, len(both), at_once):
         some = both[low : low + at_once]
-        rows |= zip(some, _compared(scene, quantity, some, sides, times), strict=True)
+        rows |= zip(some, _compared(scene, quantity, some, sides, times, factor), strict=True)
     unit, nan = QUANTITIES[quantity].unit, math.nan
     ends = (scene, sides[0].formulation, sides[1].formulation, quantity)
     return [
@@ -222,7 +234,7 @@ def _rows(
 
 
 def _compared(
-    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array
+    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array, factor: float
 ) -> Iterator[Comparison]:
     """Rows of parts that both sides give, all at once; arrays are (components, parts, N)."""
     one, two = sides
@@ -238,12 +250,15 @@ def _compared(
     held = [_stacked([side.claims.get(part, nothing) for part in parts]) for side in sides]
     # The smaller of both, so that a wrong number does not widen its own tolerance.
     largest = min(float(side.largest.max()) for side in sides)
-    allowed = tolerance(held[0], held[1], largest)
+    allowed = factor * tolerance(held[0], held[1], largest)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST)).max(axis=(0, 2))
     gaps, widths = gap.max(axis=0), allowed.max(axis=0)
     most = [np.abs(claim).max(axis=0) for claim in held]
-    loose = (untested(most[0], most[1], one.level, two.level) & (gaps > SMALLEST)).any(axis=-1)
+    # A side whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
+    stated = [side.blind for side in sides if side.blind is not None]
+    wide = np.any(stated, axis=0) if stated else untested(most[0], most[1], one.level, two.level)
+    loose = (wide & (gaps > SMALLEST)).any(axis=-1)
     for i, part in enumerate(parts):
         share, when, widest = float(shares[i]), int(np.argmax(gaps[i])), int(np.argmax(widths[i]))
         verdict: Verdict = "agrees"
@@ -269,7 +284,7 @@ def _compared(
             instant=float(times[when]),
             verdict=verdict,
             rests_on=sides[larger].formulation,
-            part=float(held[larger][place] / (allowed[place] + SMALLEST)),
+            part=float(factor * held[larger][place] / (allowed[place] + SMALLEST)),
         )
 
 

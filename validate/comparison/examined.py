@@ -152,13 +152,16 @@ class Once:
             return error
 
 
-def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: bool) -> Examined:
+def examine(
+    name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: bool, factor: float = 1.0
+) -> Examined:
     """Compare a scene in pairs of formulations.
 
     Args:
         name: what the user calls the scene.
         pairs: names of formulations.
         printed: whether the first formulation is compared with the paper's printed formulas too.
+        factor: how many times the derived tolerance to hold differences to.
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair))
     once = {name: Once(formulation(name)) for name in names}
@@ -166,7 +169,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
     refusals: dict[str, Refusal] = {}
     failures: list[Failure] = []
     for first, second in pairs:
-        found = _compared(scene, name, once[first], once[second])
+        found = _compared(scene, name, once[first], once[second], factor)
         if isinstance(found, Outcome):
             outcomes.append(found)
         elif isinstance(found, FormulationError):
@@ -179,7 +182,7 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
     against, unprinted = None, None
     if printed and PRINTED not in once and isinstance(once[names[0]].answer, Solution):
         formulas = Once(formulation(PRINTED))
-        found = _compared(scene, name, once[names[0]], formulas)
+        found = _compared(scene, name, once[names[0]], formulas, factor)
         against = found if isinstance(found, Outcome) else None
         unprinted = _refusal(formulas, name, scene)
     moved = closing_of(scene)
@@ -208,10 +211,10 @@ def examine(name: str, scene: Scene, pairs: Sequence[tuple[str, str]], printed: 
     )
 
 
-def _compared(scene: Scene, name: str, first: Once, second: Once) -> Outcome | Exception:
+def _compared(scene: Scene, name: str, first: Once, second: Once, factor: float) -> Outcome | Exception:
     """The comparison of a pair, or why there is none; where one of them refuses, both were asked."""
     try:
-        return compare(scene, first, second, shown(name))
+        return compare(scene, first, second, shown(name), factor)
     except Exception as error:
         if first.asked is not None and not _failed(first):
             second.ask(first.asked)

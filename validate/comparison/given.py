@@ -28,6 +28,7 @@ class Given:
         numbers: by quantity and name, (N, 3) or (N,).
         claims: how far each may be off, likewise; a name is missing where nothing is claimed of it.
         condition: condition number at each instant.
+        blind: see `Accuracy.blind`.
         notes: what was left out, and why.
     """
 
@@ -37,6 +38,7 @@ class Given:
     claims: Arrays
     condition: Array
     notes: tuple[str, ...]
+    blind: NDArray[np.bool_] | None = None
 
     def at(self, instants: NDArray[np.bool_]) -> Given:
         """The same at fewer instants, a part of those that are found."""
@@ -50,7 +52,8 @@ class Given:
             }
             for arrays in (self.numbers, self.claims)
         )
-        return Given(self.formulation, instants, numbers, claims, self.condition[rows], self.notes)
+        blind = None if self.blind is None else self.blind[rows]
+        return Given(self.formulation, instants, numbers, claims, self.condition[rows], self.notes, blind)
 
 
 def given(solution: Solution, instants: Array) -> Given:
@@ -102,7 +105,8 @@ def given(solution: Solution, instants: Array) -> Given:
     if isinstance(condition, str):
         notes.append(f"{who}: its condition number {condition}; 1 is taken")
         condition = np.ones_like(times)
-    return Given(who, found, numbers, claims, condition[places], tuple(notes))
+    blind = None if solution.accuracy.blind is None else solution.accuracy.blind[places]
+    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind)
 
 
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:

@@ -147,6 +147,8 @@ def _sum_of_two(a: Long, b: Long) -> tuple[Long, Long]:
 
 def _of_two(total: Long, rest: Long, doubt: Long) -> tuple[Array, NDArray[np.bool_]]:
     """The doubles nearest to total + rest, which may be off by `doubt`, and where that is sure."""
+    # Where terms cancelled, the rest is more than a unit of the total's last digit.
+    total, rest = _sum_of_two(total, rest)
     found = total.astype(float)
     beyond = (total - found) + rest
     room = doubt + 2.0 * LONG * (np.abs(beyond) + np.abs(rest))

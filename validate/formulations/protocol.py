@@ -47,6 +47,9 @@ class Accuracy:
         condition: condition number of the matrix that gives the rates, shape (N,).
         claims: by quantity and name, each like the numbers that it is about, in their unit.
         proven: whether the claims are proven bounds or estimates.
+        blind: where the claims are what an accuracy makes that was stated beforehand, at which instants they
+            say nothing, (N,); such claims may be as wide as they are, and elsewhere they test. None: how
+            much they test is judged by their width (see `comparison.tolerance`).
     Raises:
         AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
             about no quantity that there is.
@@ -55,6 +58,7 @@ class Accuracy:
     condition: Array
     claims: Numbers = field(default_factory=dict)
     proven: bool = False
+    blind: NDArray[np.bool_] | None = None
 
     def with_claims(self, claims: Numbers) -> Accuracy:
         """The same with other claims of some quantities."""

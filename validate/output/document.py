@@ -225,4 +225,5 @@ class Journal:
     ) -> None:
         write_json(target, self._head.document(results, status, complete), self._console)
         where = STANDARD_OUTPUT if target == "-" else target
-        self._console.written = [f"{where} holds {what}"]
+        before = (line for line in self._console.written if not line.startswith(f"{where} holds "))
+        self._console.written = [*before, f"{where} holds {what}"]

@@ -54,11 +54,16 @@ def _measured(row: Comparison) -> tuple[str, str, str, str]:
     return difference, tolerance, f"{row.instant:.4g} s", row.rests_on
 
 
+def heading(quantity: str, name: str) -> str:
+    """Under which quantity a number stands in a table; each number of the whole car is one of its own."""
+    return name if QUANTITIES[quantity].of == "car" else QUANTITIES[quantity].words
+
+
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
     for row in outcome.rows:
-        key = _words(row)
+        key = heading(row.quantity, row.name)
         if key not in worst or _severity(row) > _severity(worst[key]):
             worst[key] = row
     return list(worst.values())
@@ -69,9 +74,10 @@ def _of_the_car(row: Comparison) -> bool:
     return QUANTITIES[row.quantity].of == "car"
 
 
-def _words(row: Comparison) -> str:
-    """What a row is about; each number of the whole car is a quantity of its own."""
-    return row.name if _of_the_car(row) else QUANTITIES[row.quantity].words
+def about(quantity: str, name: str) -> str:
+    """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
+    kind = QUANTITIES[quantity]
+    return name if kind.of == "car" else f"{kind.words} of {name}"
 
 
 def _severity(row: Comparison) -> tuple[int, float]:
@@ -79,20 +85,28 @@ def _severity(row: Comparison) -> tuple[int, float]:
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
 
+def held_to(factor: float) -> str:
+    """What differences are held to, in words."""
+    if factor == 1.0:
+        return "held to the derived tolerance"
+    return f"held to {factor!r} times the derived tolerance, which is no longer the derived one"
+
+
 def outcome_text(outcome: Outcome) -> str:
     """The agreement table of one scene and pair, and what its tolerances rest on."""
     first, second = (s.formulation for s in outcome.solutions)
     rows = [
         (
-            _words(row),
+            heading(row.quantity, row.name),
             "" if _of_the_car(row) else row.name,
             *_measured(row),
             f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
         )
         for row in worst_rows(outcome)
     ]
+    factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     lines = [
-        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants",
+        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants{factor}",
         table(("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows),
     ]
     told = (*outcome.missing, *outcome.notes)
@@ -103,10 +117,11 @@ def agreement_line(outcome: Outcome) -> str:
     """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
     first, second = (s.formulation for s in outcome.solutions)
     worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
-    where = worst.name if _of_the_car(worst) else f"{_words(worst)} of {worst.name}"
     return (
         f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; the difference "
-        f"that comes closest to its tolerance is {worst.share:.1e} of it ({where})"
+        f"that comes closest to its tolerance is {worst.share:.1e} of it "
+        f"({about(worst.quantity, worst.name)})"
+        + (f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else "")
     )
 
 
@@ -187,6 +202,7 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
         "formulations": [s.formulation for s in outcome.solutions],
         "instants": len(outcome.solutions[0].times),
         "agreed": outcome.agreed,
+        "tolerance_factor": outcome.factor,
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),

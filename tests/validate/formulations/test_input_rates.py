@@ -80,6 +80,32 @@ def test_ties_are_known_without_many_digits(monkeypatch: pytest.MonkeyPatch) -> 
     assert len(decided) <= 3 * len(instants) / 2**8
 
 
+@pytest.mark.parametrize("power", [5, 6, 7])
+def test_values_that_lie_within_the_doubt_of_a_tie_are_rounded_by_many_digits(power: int) -> None:
+    # (t - 1)^n written out: its terms cancel by up to 2^70 here, so that of the two long numbers' 128 bits
+    # few are left, and the doubt of one value in ten or so has halfway between two doubles in it.
+    law = tuple(math.comb(power, k) * (-1.0) ** (power - k) for k in range(power + 1))
+    instants = 1.0 + np.random.default_rng(power).uniform(-1.0, 1.0, 500) * 2.0**-9
+    found = rates(InputPart(polynomial=law), instants)
+    for row, t in zip(found.tolist(), map(Fraction, instants.tolist()), strict=True):
+        assert row == [float(math.perm(power, d) * (t - 1) ** (power - d)) for d in range(3)]
+
+
+@pytest.mark.parametrize("phase", [0.5, 300.5])
+def test_sines_that_lie_within_the_doubt_of_a_tie_are_rounded_by_many_digits(phase: float) -> None:
+    # Near its trough a wave about its amplitude cancels; its rates near their zeros keep the angle's error.
+    wave = SinePart(amplitude=1.0, angular_frequency=3.0, phase=phase, offset=1.0)
+    lowest = (-0.5 * math.pi - phase % (2.0 * math.pi)) / 3.0
+    near = np.random.default_rng(1).uniform(-1.0, 1.0, 500) * 0.01
+    instants = np.concatenate([lowest + near, lowest + math.pi / 6.0 + near])
+    found = rates(InputPart(sine=wave), instants)
+    with mpmath.workdps(60):
+        for row, t in zip(found.tolist(), instants.tolist(), strict=True):
+            angle = 3 * mpmath.mpf(t) + mpmath.mpf(phase)
+            exact = [1 + mpmath.sin(angle), 3 * mpmath.cos(angle), -9 * mpmath.sin(angle)]
+            assert row == [float(x) for x in exact]
+
+
 @given(
     coefficients=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=9),
     instants=st.lists(st.floats(-1e3, 1e3), min_size=40, max_size=40),

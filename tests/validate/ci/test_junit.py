@@ -1,0 +1,158 @@
+"""Test results as JUnit has them: what passes, fails, errs and is skipped, and names that stay text."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+import pytest
+from junit_schema import checked
+from program import PAST_ITS_END, short_scene
+
+from pointcoord import Scene
+from validate import Accuracy, Outcome, Solution, compare
+from validate.ci.junit import junit
+from validate.ci.record import Record
+from validate.cli import main
+from validate.comparison.compare import compare_solutions
+from validate.comparison.examined import Examined
+from validate.formulations.point_coordinates import PointCoordinates
+
+SCENE = Scene.load("steer")
+RIGHT = compare(SCENE, "pointcoord", "absolute", "steer")
+ROWS = {(row.quantity, row.name): row for row in RIGHT.rows}
+NASTY = "a|b<script>&\"'\x00\x1b[31m\x85\u2028\ufffe\udc80]]>"
+
+
+def planted(quantity: str, name: str, error: float, instant: int) -> Outcome:
+    """The comparison again, one number of pointcoord off by an error at an instant."""
+    one, two = RIGHT.solutions
+    numbers = {name: array.copy() for name, array in one.numbers[quantity].items()}
+    numbers[name][instant] += error
+    return compare_solutions(SCENE, one.with_numbers({quantity: numbers}), two, "steer")
+
+
+def document(*outcomes: Outcome, name: str = "steer") -> Element:
+    record = Record([name])
+    record.add(Examined(name=name, outcomes=outcomes), None)
+    return checked(junit(record))
+
+
+def cases(root: Element) -> dict[str, Element]:
+    return {case.get("name", ""): case for case in root.iter("testcase")}
+
+
+def lines(case: Element) -> dict[str, str]:
+    pairs = (line.partition(": ") for line in (case.findtext("system-out") or "").splitlines())
+    return {key: value for key, _, value in pairs}
+
+
+def test_every_scene_and_quantity_is_a_case_that_says_difference_tolerance_and_instant() -> None:
+    found = cases(document(RIGHT))
+    assert len(found) == len(RIGHT.rows)
+    for (quantity, name), row in ROWS.items():
+        case = found[name if quantity == "wheel" else f"{quantity.replace('_', ' ')} of {name}"]
+        said = lines(case)
+        assert said["difference"] == f"{row.difference:.6g} {row.unit}"
+        assert said["tolerance"] == f"{row.tolerance:.6g} {row.unit}"
+        assert said["instant"] == f"{row.instant:.9g} s"
+        assert float(said["difference / tolerance"]) == pytest.approx(row.share, rel=1e-5)
+        assert not {child.tag for child in case} - {"system-out"}
+
+
+def test_a_planted_disagreement_is_the_one_failure_with_its_size_and_its_instant() -> None:
+    root = document(planted("velocity", "wheel_centre", 1e-3, 17))
+    assert (root.get("failures"), root.get("errors")) == ("1", "0")
+    (failed,) = (case for case in root.iter("testcase") if case.find("failure") is not None)
+    assert failed.get("name") == "velocity of wheel_centre"
+    failure = failed.find("failure")
+    assert failure is not None
+    assert failure.get("type") == "disagrees"
+    said = lines(failed)
+    assert said["difference"] == "0.001 mm/s"
+    assert float(said["instant"].split()[0]) == pytest.approx(SCENE.instants[17])
+    assert f"0.001 mm/s at {SCENE.instants[17]:.9g} s" in failure.get("message", "")
+
+
+def test_a_number_that_is_none_is_a_failure_that_says_so() -> None:
+    root = document(planted("position", "wheel_centre", np.nan, 3))
+    (failure,) = root.iter("failure")
+    assert "not a number" in failure.get("message", "")
+
+
+def test_what_is_not_given_or_not_tested_is_skipped_with_the_reason() -> None:
+    one, two = RIGHT.solutions
+    wide = {name: np.full(claim.shape, 1.0) for name, claim in two.accuracy.claims["velocity"].items()}
+    unclaimed = {
+        q: claims for q, claims in two.accuracy.claims.items() if q not in ("acceleration", "velocity")
+    }
+    gives = {
+        "position": {"wheel_centre": two.numbers["position"]["wheel_centre"]},
+        "velocity": two.numbers["velocity"],
+        "acceleration": two.numbers["acceleration"],
+    }
+    claims = {**unclaimed, "velocity": wide}
+    mine = Solution("mine", two.times, gives, Accuracy(two.accuracy.condition, claims))
+    found = cases(document(compare_solutions(SCENE, one, mine, "steer")))
+    messages = {name: [child.get("message") or "" for child in case] for name, case in found.items()}
+    assert messages["position of wheel_centre"] == [""]
+    (message,) = messages["position of strut_top"]
+    assert message.startswith("not given: mine gives no position of lower_arm_front, ")
+    assert messages["camber"] == ["not given: mine gives no wheel angle"]
+    assert messages["velocity of wheel_centre"][0] == (
+        "not tested: the tolerance rests on what mine claims, and is too wide to test the other one"
+    )
+    assert messages["acceleration of wheel_centre"][0] == (
+        "not tested: mine: acceleration of wheel_centre: its accuracy is not given"
+    )
+    assert {child.tag for case in found.values() for child in case} == {"skipped", "system-out"}
+
+
+def test_names_and_messages_stay_text_whatever_is_in_them() -> None:
+    row = replace(RIGHT.rows[0], name=NASTY, verdict="disagrees", second=NASTY)
+    root = document(replace(RIGHT, rows=(row,)), name=NASTY)
+    record = Record([NASTY, NASTY])
+    record.add(Examined(name=NASTY, problem=f"{NASTY}: no\nscene"), None)
+    broken = checked(junit(record))
+    told = "a|b<script>&\"'\\x00\\x1b[31m\\x85\\u2028\\ufffe\\udc80]]>"
+    assert root[0].get("name") == f"{told}: pointcoord and absolute"
+    assert root[0].find("testcase").get("name") == f"position of {told}"
+    (error,) = broken.iter("error")
+    assert error.get("message") == f"{told}: no\\nscene"
+
+
+def test_a_scene_that_is_refused_or_cannot_be_read_is_an_error_and_the_others_go_on(tmp_path: Path) -> None:
+    good = short_scene(tmp_path, "good.toml")
+    past = short_scene(tmp_path, "past.toml", samples="27", **PAST_ITS_END)
+    bad = short_scene(tmp_path, "bad.toml", samples="0")
+    target, data = tmp_path / "out.xml", tmp_path / "out.json"
+    words = ["validate", past, bad, good, "--second", "absolute", "-q"]
+    assert main([*words, "--junit", str(target), "--json", str(data)]) == 2
+    root = checked(target.read_bytes())
+    suites = {suite.get("name", ""): suite for suite in root}
+    assert {name: suite.get("errors") for name, suite in suites.items()} == {
+        past: "2",
+        bad: "1",
+        f"{good}: pointcoord and absolute": "0",
+    }
+    types = [(case.get("name"), case.find("error").get("type")) for case in suites[past].iter("testcase")]
+    assert types == [
+        ("solved by pointcoord", "AssemblyError"),
+        ("solved by absolute", "UnreachableError"),
+    ]
+    refusals = json.loads(data.read_text())["scenes"][0]["refusals"]
+    messages = [error.get("message") for error in suites[past].iter("error")]
+    assert messages == [refusal["message"] for refusal in refusals]
+    (error,) = suites[bad].iter("error")
+    assert error.get("type") == "SceneError"
+    assert "samples" in error.get("message", "")
+
+
+def test_a_defect_of_a_formulation_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(PointCoordinates, "solve", lambda self, scene: 1 / 0)
+    target = tmp_path / "out.xml"
+    words = ["validate", short_scene(tmp_path), "-q", "--junit", str(target), "--second", "absolute"]
+    assert main(words) == 4
+    (error,) = checked(target.read_bytes()).iter("error")
+    assert error.get("type") == "ZeroDivisionError"

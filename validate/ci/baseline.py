@@ -1,0 +1,426 @@
+r"""Baselines: the solved numbers of a run with what was claimed of them, and what moved since.
+
+A number that was x0 and is x now, with claimed errors e0 and e, was right both times only if
+
+    |x - x0| <= e0 + e + eps^2 M        (see `comparison.tolerance`).
+
+Beyond that bound it has moved: one of the claims is broken. Below it both may be right, and bits may differ.
+
+The file is an npz: `format`, `version`, and `head`, a text of JSON, beside arrays `a0`, `a1`, ...; nothing in
+it runs when it is read. The head has `program`, the version that wrote it, and `scenes`. Each of these has
+`scene`, the name that it was run under; `mechanism`, the car's type, axes and points, and `car`, a SHA-256 of
+that; `motion`, a SHA-256 of its inputs and time; and `solutions`. Each of these has `formulation`, and the
+numbers of its arrays: of `times` (s) and `condition`, (N,), and by quantity and name of the `numbers`, (N, 3)
+or (N,), in the units of pointcoord's quantities, and of the `claims` about them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import IO, Any, BinaryIO, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.registry import QUANTITIES
+from validate.comparison.compare import Comparison, Outcome, compare_solutions
+from validate.comparison.given import given
+from validate.exit_status import ExitStatus
+from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
+from validate.output.files import unwritable, write_whole
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+Places = Mapping[str, Mapping[str, int]]
+"""Numbers of arrays by quantity and name."""
+
+FORMAT, VERSION = "pointcoord baseline", 1
+ALLOWED = "a file that --save-baseline wrote"
+DAMAGED = (
+    ValueError,
+    EOFError,
+    AttributeError,
+    LookupError,
+    TypeError,
+    MemoryError,  # a size that was never written
+    RuntimeError,  # a way of packing that there is not, or a password
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading other bytes than those of a baseline ends with."""
+
+Standing = Literal["compared", "new", "not solved now", "another car", "another motion"]
+MoveVerdict = Literal["agrees", "moved", "not tested", "new", "gone"]
+
+
+class BaselineError(Exception):
+    """A file holds no baseline that can be read.
+
+    Args:
+        target: the file. problem: why not. allowed: what it may be.
+    """
+
+    def __init__(self, target: str, problem: str, allowed: str = ALLOWED) -> None:
+        self.target = target
+        self.problem = problem
+        self.allowed = allowed
+        super().__init__(f"baseline {target}: {problem}; allowed: {allowed}")
+
+
+@dataclass(frozen=True)
+class Move:
+    """How far one quantity of one point, body or angle moved since the baseline.
+
+    Attributes:
+        moved: largest movement of any component, in `unit`, and the `instant` (s) where it is.
+        bound: what both claims allow there.
+        share: largest moved / bound over all instants and components; it agrees up to 1.
+        verdict: `moved` beyond the bound; `new` is not in the baseline and `gone` no longer given: NaN then.
+    """
+
+    formulation: str
+    quantity: str
+    name: str
+    unit: str
+    moved: float
+    bound: float
+    share: float
+    instant: float
+    verdict: MoveVerdict
+
+
+@dataclass(frozen=True)
+class Since:
+    """A scene against the baseline.
+
+    Attributes:
+        standing: whether it could be compared, and why not.
+        words: more of that, such as what of the car is another.
+    """
+
+    scene: str
+    standing: Standing
+    words: str = ""
+    moves: tuple[Move, ...] = ()
+
+    @property
+    def compared(self) -> bool:
+        """Whether any number could be held to the baseline."""
+        return any(move.verdict not in ("new", "gone") for move in self.moves)
+
+    @property
+    def moved(self) -> tuple[Move, ...]:
+        """What moved beyond what both claims allow."""
+        return tuple(move for move in self.moves if move.verdict == "moved")
+
+    @property
+    def status(self) -> ExitStatus:
+        """What the scene's movement alone would end the run with.
+
+        A scene that is new or that is refused now says nothing of movement; the latter is told of anyway.
+        """
+        if self.moved:
+            return ExitStatus.DISAGREE
+        if self.standing in ("new", "not solved now"):
+            return ExitStatus.AGREE
+        untested = any(move.verdict == "not tested" for move in self.moves)
+        return ExitStatus.AGREE if self.compared and not untested else ExitStatus.NO_VERDICT
+
+
+@dataclass(frozen=True)
+class SavedScene:
+    """A scene as a baseline has it; see the file's description."""
+
+    scene: str
+    car: str
+    mechanism: Mapping[str, Any]
+    motion: str
+    solutions: tuple[Solution, ...]
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """What a run solved once.
+
+    Attributes:
+        target: the file. program: version of the program that wrote it. scenes: by name.
+    """
+
+    target: str
+    program: str
+    scenes: Mapping[str, SavedScene]
+
+    def since(self, name: str, scene: Scene, outcomes: Sequence[Outcome], factor: float = 1.0) -> Since:
+        """What of a scene moved.
+
+        Args:
+            outcomes: all that the scene was compared in now. factor: how many times the bound is allowed.
+        """
+        then = self.scenes.get(name)
+        if then is None:
+            return Since(name, "new", f"{name} is not in the baseline")
+        mechanism = _mechanism(scene)
+        if _digest(mechanism) != then.car:
+            other = ", ".join(_differing(then.mechanism, mechanism))
+            return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
+        if _digest(_motion(scene)) != then.motion:
+            words = f"{name} has other inputs or another time than in the baseline"
+            return Since(name, "another motion", words)
+        if not outcomes:
+            return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
+        return Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
+
+    def gone(self, names: Iterable[str]) -> tuple[str, ...]:
+        """The scenes of the baseline that are none of these."""
+        there = set(names)
+        return tuple(name for name in self.scenes if name not in there)
+
+
+def _moves(
+    name: str, scene: Scene, then: Sequence[Solution], outcomes: Sequence[Outcome], factor: float
+) -> Iterator[Move]:
+    before, now = ({one.formulation: one for one in some} for some in (then, solutions_of(scene, outcomes)))
+    for formulation in dict.fromkeys((*now, *before)):
+        if formulation not in now:
+            yield from _only(before[formulation], "gone")
+        elif formulation not in before:
+            yield from _only(now[formulation], "new")
+        else:
+            ends = before[formulation], now[formulation]
+            asked = {
+                quantity: tuple(dict.fromkeys(name for end in ends for name in end.numbers.get(quantity, ())))
+                for quantity in QUANTITIES
+            }
+            outcome = compare_solutions(scene, *ends, name, asked, factor)
+            yield from (_move(row, formulation, ends[0]) for row in outcome.rows)
+
+
+def _only(solution: Solution, verdict: MoveVerdict) -> Iterator[Move]:
+    """What one of the two runs alone has."""
+    nan = math.nan
+    for quantity, numbers in solution.numbers.items():
+        unit = QUANTITIES[quantity].unit
+        yield from (
+            Move(solution.formulation, quantity, name, unit, nan, nan, nan, nan, verdict) for name in numbers
+        )
+
+
+def _move(row: Comparison, formulation: str, then: Solution) -> Move:
+    verdict: MoveVerdict
+    if row.verdict == "disagrees":
+        verdict = "moved"
+    elif row.verdict == "not given":
+        verdict = "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
+    else:
+        verdict = row.verdict
+    return Move(
+        formulation=formulation,
+        quantity=row.quantity,
+        name=row.name,
+        unit=row.unit,
+        moved=row.difference,
+        bound=row.tolerance,
+        share=row.share,
+        instant=row.instant,
+        verdict=verdict,
+    )
+
+
+def solutions_of(scene: Scene, outcomes: Iterable[Outcome]) -> tuple[Solution, ...]:
+    """Each formulation's solution once, as a comparison takes it: what is no number of the scene is out."""
+    found: dict[str, Solution] = {}
+    for solution in (solution for outcome in outcomes for solution in outcome.solutions):
+        if solution.formulation not in found:
+            clean = given(solution, scene.instants)
+            numbers, claims = (
+                {quantity: part for quantity, part in arrays.items() if part}
+                for arrays in (clean.numbers, clean.claims)
+            )
+            accuracy = Accuracy(clean.condition, claims)
+            found[solution.formulation] = Solution(
+                solution.formulation, scene.instants[clean.found], numbers, accuracy
+            )
+    return tuple(found.values())
+
+
+def _mechanism(scene: Scene) -> dict[str, Any]:
+    """The car as plain data: everything of it that is solved for."""
+    return dict(scene.mechanism.model_dump(mode="json"))
+
+
+def _motion(scene: Scene) -> dict[str, Any]:
+    """What drives the car, and when."""
+    content = scene.model_dump(mode="json")
+    return {key: content[key] for key in ("inputs", "time")}
+
+
+def _digest(content: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
+    """The keys of a car that are other ones, and of its points those that are."""
+    for key in sorted(then.keys() | now.keys()):
+        before, after = then.get(key), now.get(key)
+        if isinstance(before, Mapping) and isinstance(after, Mapping):
+            yield from (n for n in sorted(before.keys() | after.keys()) if before.get(n) != after.get(n))
+        elif before != after:
+            yield key
+
+
+class Recorder:
+    """Gathers scenes for a baseline, on disk, so that a run of many takes no memory for it.
+
+    Raises:
+        OutputError: there is no room for that.
+    """
+
+    def __init__(self, program: str) -> None:
+        self._program = program
+        self._scenes: dict[str, dict[str, Any]] = {}
+        self._count = 0
+        self._gathered = _gathering_place()
+        self._archive = zipfile.ZipFile(self._gathered, "w", zipfile.ZIP_DEFLATED, allowZip64=True)
+
+    def __len__(self) -> int:
+        return len(self._scenes)
+
+    def add(self, name: str, scene: Scene, outcomes: Sequence[Outcome]) -> None:
+        """Take in a scene that was compared; one that was not has no numbers to keep.
+
+        Raises:
+            OutputError: there is no room for it.
+        """
+        if not outcomes or name in self._scenes:
+            return
+        mechanism = _mechanism(scene)
+        self._scenes[name] = {
+            "scene": name,
+            "car": _digest(mechanism),
+            "mechanism": mechanism,
+            "motion": _digest(_motion(scene)),
+            "solutions": [
+                {
+                    "formulation": solution.formulation,
+                    "times": self._put(solution.times),
+                    "condition": self._put(solution.accuracy.condition),
+                    "numbers": self._put_all(solution.numbers),
+                    "claims": self._put_all(solution.accuracy.claims),
+                }
+                for solution in solutions_of(scene, outcomes)
+            ],
+        }
+
+    def _put_all(self, arrays: Mapping[str, Mapping[str, Array]]) -> Places:
+        return {
+            quantity: {name: self._put(array) for name, array in part.items()}
+            for quantity, part in arrays.items()
+        }
+
+    def _put(self, array: Array) -> int:
+        self._member(f"a{self._count}", array)
+        self._count += 1
+        return self._count - 1
+
+    def _member(self, name: str, array: NDArray[Any]) -> None:
+        # The same bytes whenever it is written: an entry made by hand has no time of its own.
+        entry = zipfile.ZipInfo(f"{name}.npy")
+        entry.compress_type = zipfile.ZIP_DEFLATED
+        try:
+            with self._archive.open(entry, "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, np.asarray(array, order="C"), allow_pickle=False)
+        except OSError as error:
+            raise unwritable(tempfile.gettempdir(), error) from None
+
+    def write(self, target: str) -> None:
+        """Write the baseline; nothing can be added after that.
+
+        Raises:
+            OutputError: it cannot be written; what was there is whole.
+        """
+        head = {"program": self._program, "scenes": list(self._scenes.values())}
+        words = {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
+        for name, word in words.items():
+            self._member(name, np.array(word))
+        self._archive.close()
+
+        def put(stream: BinaryIO) -> None:
+            self._gathered.seek(0)
+            while block := self._gathered.read(2**20):
+                stream.write(block)
+
+        write_whole(target, put)
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Give the disk back."""
+        with suppress(OSError):  # of a full one: what is thrown away needs no end
+            self._archive.close()
+        self._gathered.close()
+
+
+def _gathering_place() -> IO[bytes]:
+    try:
+        return tempfile.TemporaryFile()
+    except OSError as error:
+        raise unwritable(tempfile.gettempdir(), error) from None
+
+
+def read_baseline(target: str) -> Baseline:
+    """Read a baseline.
+
+    Raises:
+        BaselineError: there is none, it is damaged, or it is of another version.
+    """
+    try:
+        with open(target, "rb") as stream, np.load(stream, allow_pickle=False) as file:
+            found = {name: file[name] for name in file.files}
+    except OSError as error:
+        raise BaselineError(target, f"cannot be read ({error.strerror or error})") from None
+    except DAMAGED:
+        raise BaselineError(target, "is no npz file, or a damaged one") from None
+    if str(found.get("format", "")) != FORMAT:
+        raise BaselineError(target, "holds no baseline")
+    if str(found.get("version", "")) != str(VERSION):
+        version = shown(str(found.get("version", "none")))
+        raise BaselineError(target, f"is of version {version}", f"version {VERSION}; save it again")
+    try:
+        head = json.loads(str(found["head"]))
+        scenes = {one["scene"]: _scene(one, found) for one in head["scenes"]}
+        return Baseline(target, str(head["program"]), scenes)
+    except (*DAMAGED, AccuracyError, FormulationError) as error:
+        raise BaselineError(target, f"does not hold a whole baseline ({shown(str(error))})") from None
+
+
+def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SavedScene:
+    if _digest(head["mechanism"]) != head["car"]:
+        raise ValueError(f"the car of {head['scene']} is not the one that was saved")
+    solutions = tuple(
+        Solution(
+            one["formulation"],
+            arrays[f"a{one['times']}"],
+            _taken(one["numbers"], arrays),
+            Accuracy(arrays[f"a{one['condition']}"], _taken(one["claims"], arrays)),
+        )
+        for one in head["solutions"]
+    )
+    for solution in solutions:
+        given(solution, solution.times)
+        if unknown := solution.numbers.keys() - QUANTITIES.keys():
+            raise ValueError(f"{sorted(unknown)[0]} is no quantity")
+    return SavedScene(head["scene"], head["car"], head["mechanism"], head["motion"], solutions)
+
+
+def _taken(places: Places, arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, Array]]:
+    return {q: {name: arrays[f"a{place}"] for name, place in part.items()} for q, part in places.items()}

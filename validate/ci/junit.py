@@ -1,0 +1,208 @@
+"""A run as JUnit has it: XML that services for continuous integration show as test results.
+
+A suite is a comparison of a scene, and a case of it one quantity of one point, body or angle. The
+`system-out` of a case has a line each for difference, tolerance, instant and difference / tolerance, also
+where it agrees.
+
+| in the run | in the file |
+|---|---|
+| agrees | a case that passes |
+| disagrees, moved since the baseline | `failure` |
+| not tested, not given, new or gone since the baseline, not run | `skipped`, with the reason |
+| a scene that cannot be read, is refused, or fails; another car than in the baseline | `error` |
+
+The elements, attributes and their order are those of the schema `junit-10.xsd` of Jenkins' xUnit plugin. It
+asks for no time stamps and no times: the same run gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from xml.etree import ElementTree
+
+from pointcoord.data_classes import dataclass
+from validate.ci.baseline import Move, Since
+from validate.ci.record import Record, why_undecided
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.examined import Examined
+from validate.formulations.refusals import Refusal
+from validate.output.report import about, held_to
+from validate.plain_text import shown
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A test case. `kind` is "" of one that passes; `out` is what it says, line by line."""
+
+    name: str
+    kind: str = ""
+    type: str = ""
+    message: str = ""
+    out: tuple[str, ...] = ()
+
+
+def junit(record: Record) -> bytes:
+    """The XML of a run."""
+    suites = [*_suites(record)]
+    counts = [_counts(cases) for _, _, cases in suites]
+    totals = {key: str(sum(one[key] for one in counts)) for key in ("tests", "failures", "errors")}
+    root = ElementTree.Element("testsuites", {"name": "pointcoord validate", **totals})
+    for (name, properties, cases), each in zip(suites, counts, strict=True):
+        _add_suite(root, shown(name), properties, cases, each)
+    ElementTree.indent(root, " ")
+    text: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    return text + b"\n"
+
+
+Suite = tuple[str, Mapping[str, str], Sequence[_Case]]
+
+
+def _suites(record: Record) -> Iterator[Suite]:
+    factor = {"tolerance_factor": repr(record.factor)}
+    for examined in record.examined:
+        for outcome in examined.outcomes:
+            first, second = (solution.formulation for solution in outcome.solutions)
+            properties = {
+                "scene": examined.name,
+                "first": first,
+                "second": second,
+                "instants": str(len(outcome.solutions[0].times)),
+                **factor,
+            }
+            cases = [_compared(row, outcome) for row in outcome.rows]
+            yield f"{examined.name}: {first} and {second}", properties, cases
+        if faults := [*_faults(examined)]:
+            yield examined.name, {"scene": examined.name}, faults
+    for since in record.since:
+        properties = {"scene": since.scene, "baseline": str(record.baseline), **factor}
+        yield f"{since.scene}: since the baseline", properties, [*_since(since, record.factor)]
+    for name in record.gone:
+        case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
+        yield f"{name}: since the baseline", {"scene": name, "baseline": str(record.baseline)}, [case]
+    for name in record.not_run:
+        yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {record.stopped}")]
+
+
+def _counts(cases: Sequence[_Case]) -> dict[str, int]:
+    kinds = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+    found = {name: sum(case.kind == kind for case in cases) for name, kind in kinds.items()}
+    return {"tests": len(cases), **found}
+
+
+def _add_suite(
+    root: ElementTree.Element,
+    name: str,
+    properties: Mapping[str, str],
+    cases: Sequence[_Case],
+    counts: Mapping[str, int],
+) -> None:
+    told = {key: str(count) for key, count in counts.items()}
+    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **told})
+    listed = ElementTree.SubElement(suite, "properties")
+    for key, value in properties.items():
+        ElementTree.SubElement(listed, "property", {"name": key, "value": shown(value)})
+    for case in cases:
+        element = ElementTree.SubElement(suite, "testcase", {"classname": name, "name": shown(case.name)})
+        lines = "\n".join(map(shown, case.out))
+        if case.kind:
+            ends = {"type": shown(case.type), "message": shown(case.message)}
+            ElementTree.SubElement(element, case.kind, ends).text = lines or shown(case.message)
+        if lines:
+            ElementTree.SubElement(element, "system-out").text = lines
+
+
+def _compared(row: Comparison, outcome: Outcome) -> _Case:
+    name = about(row.quantity, row.name)
+    if row.verdict == "not given":
+        return _Case(name, "skipped", row.verdict, f"not given: {why_undecided(row, outcome)}")
+    out = _numbers("difference", row.difference, "tolerance", row.tolerance, row.unit, row.instant, row.share)
+    out = (*out, f"the tolerance rests on: {row.rests_on} ({row.part:.0%} of it)")
+    if row.verdict == "not tested":
+        return _Case(name, "skipped", row.verdict, f"not tested: {why_undecided(row, outcome)}", out)
+    if row.verdict == "agrees":
+        return _Case(name, out=out)
+    message = (
+        f"{row.first} and {row.second} disagree: the largest difference is {_told(row.difference, row.unit)} "
+        f"at {row.instant:.9g} s, the tolerance there {_told(row.tolerance, row.unit)}; "
+        f"{_times(row.share)}{_held(outcome.factor)}"
+    )
+    return _Case(name, "failure", row.verdict, message, out)
+
+
+def _numbers(
+    gap: str, difference: float, bound: str, tolerance: float, unit: str, instant: float, share: float
+) -> tuple[str, ...]:
+    return (
+        f"{gap}: {_told(difference, unit)}",
+        f"{bound}: {_told(tolerance, unit)}",
+        f"instant: {instant:.9g} s",
+        f"{gap} / {bound}: {share:.6g}" if math.isfinite(share) else f"{gap} / {bound}: none",
+    )
+
+
+def _told(value: float, unit: str) -> str:
+    return f"{value:.6g} {unit}" if math.isfinite(value) else "not a number"
+
+
+def _times(share: float) -> str:
+    return f"up to {share:.6g} times what is allowed" if math.isfinite(share) else "which nothing allows"
+
+
+def _held(factor: float) -> str:
+    return f"; {held_to(factor)}" if factor != 1.0 else ""
+
+
+def _faults(examined: Examined) -> Iterator[_Case]:
+    """Why a scene has no verdict."""
+    if examined.problem is not None:
+        yield _Case("read", "error", "SceneError", examined.problem)
+    for refusal in examined.refusals:
+        name = f"solved by {refusal.formulation}"
+        yield _Case(name, "error", refusal.error, refusal.message, tuple(_about(refusal)))
+    for failure in examined.failures:
+        yield _Case(f"solved by {failure.formulation}", "error", failure.error, failure.message)
+
+
+def _about(refusal: Refusal) -> Iterator[str]:
+    yield f"reason: {refusal.reason}"
+    if refusal.instant is not None:
+        yield f"instant: {refusal.instant:.9g} s"
+    if refusal.input is not None:
+        yield f"input: {refusal.input}"
+    yield from (
+        f"{key}: {value}"
+        for key, value in (("value", refusal.value), ("limit", refusal.limit))
+        if value is not None
+    )
+
+
+def _since(since: Since, factor: float) -> Iterator[_Case]:
+    if since.standing == "new" or since.standing == "not solved now":
+        yield _Case("in the baseline", "skipped", since.standing, since.words)
+    elif since.standing != "compared":
+        yield _Case("in the baseline", "error", since.standing, since.words)
+    for move in since.moves:
+        yield _moved(move, factor)
+
+
+def _moved(move: Move, factor: float) -> _Case:
+    name = f"{move.formulation}: {about(move.quantity, move.name)}"
+    if move.verdict == "new":
+        return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
+    if move.verdict == "gone":
+        return _Case(
+            name, "skipped", move.verdict, "gone: the baseline has such numbers, and this run has none"
+        )
+    out = _numbers("moved", move.moved, "bound", move.bound, move.unit, move.instant, move.share)
+    if move.verdict == "agrees":
+        return _Case(name, out=out)
+    if move.verdict == "not tested":
+        return _Case(
+            name, "skipped", move.verdict, "not tested: one claim is too wide to test the other", out
+        )
+    message = (
+        f"moved by {_told(move.moved, move.unit)} at {move.instant:.9g} s, where both claims together allow "
+        f"{_told(move.bound, move.unit)}; {_times(move.share)}{_held(factor)}"
+    )
+    return _Case(name, "failure", move.verdict, message, out)

@@ -1,0 +1,104 @@
+"""What a run has come to so far, without the numbers: what its test results and its summary are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pointcoord.effects.registry import QUANTITIES
+from validate.ci.baseline import Since
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.examined import Examined
+from validate.exit_status import ExitStatus, combined
+from validate.formulations.protocol import Accuracy, Solution
+from validate.output.report import about
+
+Case = tuple[Examined, Outcome]
+
+
+@dataclass
+class Record:
+    """A run of comparisons.
+
+    Attributes:
+        names: of all scenes, as they are shown; the examined ones come first.
+        factor: how many times the derived tolerance differences are held to.
+        baseline: the file that the scenes are held to, if there is one.
+        examined: what came of each scene, in order. since: each against the baseline.
+        gone: the scenes of the baseline that are none of the run's.
+        stopped: why the rest was not run. ended: the status of a run that came to its end.
+    """
+
+    names: Sequence[str]
+    factor: float = 1.0
+    baseline: str | None = None
+    gone: tuple[str, ...] = ()
+    examined: list[Examined] = field(default_factory=list)
+    since: list[Since] = field(default_factory=list)
+    stopped: str = "the run did not come to its end"
+    ended: ExitStatus | None = None
+
+    def add(self, examined: Examined, since: Since | None) -> None:
+        """Take in a scene; the numbers themselves are let go."""
+        self.examined.append(replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=None))
+        if since is not None:
+            self.since.append(since)
+
+    @property
+    def not_run(self) -> tuple[str, ...]:
+        """The scenes that the run did not come to."""
+        return tuple(self.names[len(self.examined) :])
+
+    @property
+    def outcomes(self) -> Iterator[Case]:
+        """Every comparison of every scene."""
+        for examined in self.examined:
+            yield from ((examined, outcome) for outcome in examined.outcomes)
+
+    @property
+    def status(self) -> ExitStatus:
+        """What the run ends with; one that compares nothing with its baseline tests nothing by it."""
+        found = [*(one.status for one in self.examined), *(one.status for one in self.since)]
+        if self.baseline is not None and not any(one.compared for one in self.since):
+            found.append(ExitStatus.NO_VERDICT)
+        return combined(found)
+
+
+def _told(outcome: Outcome) -> Outcome:
+    one, two = (
+        Solution(solution.formulation, solution.times, {}, Accuracy(np.ones(0)))
+        for solution in outcome.solutions
+    )
+    return replace(outcome, solutions=(one, two))
+
+
+def ends_the_run(examined: Examined, since: Since | None) -> bool:
+    """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
+    disagrees = any(outcome.disagreements for outcome in examined.outcomes)
+    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved))
+
+
+def why_undecided(row: Comparison, outcome: Outcome) -> str:
+    """The reason of a row that says nothing: who does not give it, or what makes its tolerance too wide."""
+    words = QUANTITIES[row.quantity].words
+    if row.verdict == "not given":
+        found = [line for line in outcome.missing if _is_about(line, words, row)]
+        where = f"{about(row.quantity, row.name)} is given at no instant of the scene"
+        return "; ".join(found or outcome.notes) or where
+    notes = [note for note in outcome.notes if f": {words} of {row.name}: its accuracy " in note]
+    if notes:
+        return "; ".join(notes)
+    return f"the tolerance rests on what {row.rests_on} claims, and is too wide to test the other one"
+
+
+def _is_about(line: str, words: str, row: Comparison) -> bool:
+    """Whether a line on what is missing names a row, or its whole quantity."""
+    for who in (row.first, row.second):
+        lacking, misspelt = f"{who} gives no {words}", f"{who} gives {words} of "
+        if line == lacking or (line.startswith(misspelt) and f"'{row.name}'" in line):
+            return True
+        if line.startswith(f"{lacking} of ") and row.name in line.removeprefix(f"{lacking} of ").split(", "):
+            return True
+    return False

@@ -1,0 +1,42 @@
+"""The scenes of a folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+class SceneFolderError(Exception):
+    """A folder that is to hold scenes is none, cannot be read, or holds none."""
+
+    def __init__(self, folder: str, problem: str) -> None:
+        self.folder = folder
+        self.problem = problem
+        super().__init__(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")
+
+
+def scenes_below(folder: str) -> tuple[str, ...]:
+    """The paths of all scene files (*.toml) in a folder and in those below it, sorted.
+
+    Links to folders are not followed.
+
+    Raises:
+        SceneFolderError: there is no such folder, a part of it cannot be read, or it holds no scene.
+    """
+
+    def stop(error: OSError) -> None:
+        where = f" {error.filename!r}" if error.filename not in (None, folder) else ""
+        raise SceneFolderError(folder, f"cannot be read{where} ({error.strerror or error})") from None
+
+    try:
+        found = [
+            Path(place, name)
+            for place, _, names in os.walk(folder, onerror=stop)
+            for name in names
+            if name.endswith(".toml")
+        ]
+    except ValueError as error:  # a zero byte in the name
+        raise SceneFolderError(folder, f"names no folder ({error})") from None
+    if not found:
+        raise SceneFolderError(folder, "holds no scene")
+    return tuple(str(path) for path in sorted(found, key=lambda path: path.parts))

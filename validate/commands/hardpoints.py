@@ -1,0 +1,145 @@
+"""`pointcoord import`: hardpoints from another program's file, written as a scene."""
+
+from __future__ import annotations
+
+import argparse
+from typing import BinaryIO
+
+from validate.closed_drawing import warnings_of
+from validate.commands.usage import require_target
+from validate.exit_status import ExitStatus
+from validate.hardpoint_files.axes import DIRECTIONS, UNITS
+from validate.hardpoint_files.format import formats
+from validate.hardpoint_files.importing import PARTS, SIDES, Imported, import_hardpoints
+from validate.output.console import Console
+from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.plain_text import shown
+
+ENDINGS = (".toml",)
+
+DESCRIPTION = """\
+Make a scene from a file of hardpoints of another program. Points get our names, axes and unit;
+the scene has x rearward, y right, z up, mm, a comment with the source of each point, and a
+bounce to begin with. Points that are not known are listed, and what the file lacks is asked for.
+
+formats:
+""" + "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values())
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser(
+        "import", help="make a scene from another program's hardpoints", description=DESCRIPTION
+    )
+    parser.add_argument("file", metavar="FILE", help="the other program's file")
+    parser.add_argument(
+        "-o", "--output", metavar="SCENE.toml", help="the scene; standard output if not given, or for -"
+    )
+    parser.add_argument("--format", metavar="NAME", help="one of the formats; seen in the file if not given")
+    parser.add_argument(
+        "--suspension", metavar="TYPE", help="as in a scene; seen in the file or by its points if not given"
+    )
+    parser.add_argument(
+        "--side", metavar="|".join(SIDES), help="the wheel, of a file that has both or does not say"
+    )
+    parser.add_argument("--part", metavar="|".join(PARTS), help="the axle, of a file that has both")
+    parser.add_argument(
+        "--names",
+        metavar="FILE.toml",
+        help='what the file calls our points: a table [names] of our_name = "its name", or of '
+        "our_name = [x, y, z] for a point that it does not have",
+    )
+    parser.add_argument(
+        "--axes",
+        metavar="X,Y,Z",
+        help=f"where the file's x, y and z point, such as forward,left,up, of {', '.join(DIRECTIONS)}",
+    )
+    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(UNITS)}")
+    parser.add_argument(
+        "--camber",
+        metavar="DEG",
+        type=float,
+        help="static camber, + leaning out at the top, of a file without an inner point of the spin axis",
+    )
+    parser.add_argument("--toe", metavar="DEG", type=float, help="static toe of such a file, + toe in")
+    parser.add_argument("--mirror", action="store_true", help="make the wheel of the other side of it")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write a scene from another program's file, and say what became of each of its points.
+
+    Returns:
+        DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
+    Raises:
+        UsageError, UnknownEnding: the scene has no name, or another ending than .toml.
+        SceneError, HardpointFileError, UnknownName, UnknownAxes: the file or an option is wrong.
+        AssemblyError: the points cannot be put together.
+        OutputError: the scene cannot be written.
+    """
+    target = None if options.output == "-" else options.output
+    require_target(target, "-o", (options.file,))
+    if target is None:
+        console.require("use -o FILE")
+    else:
+        require_known_ending(target, ENDINGS)
+        require_writable(target)
+    found = import_hardpoints(
+        options.file,
+        format=options.format,
+        suspension=options.suspension,
+        side=options.side,
+        part=options.part,
+        names=options.names,
+        axes=options.axes,
+        unit=options.unit,
+        camber=options.camber,
+        toe=options.toe,
+        mirror=options.mirror,
+    )
+    name = shown(options.file)
+    told = (*found.doubts, *warnings_of(found.scene, found.bounce.closing))
+    if target is None:
+        console.write(found.text)
+        console.flush()
+    else:
+        write_whole(target, lambda stream: _put(stream, found.text))
+        console.written = [f"{target} holds the scene"]
+        console.say("\n".join(_report(name, found)))
+        console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
+    for warning in told:
+        console.warn(f"{name}: {warning}")
+    for point in found.unknown:
+        console.note(f"{name}: line {point.line}: no point of ours: {shown(point.name)}")
+    wrong = [check for check in found.angles if check.verdict == "disagrees"]
+    for check in wrong:
+        console.complain(
+            f"{name}: line {check.line}: {check.words} is printed as {check.printed:g} deg, but the points "
+            f"give {check.drawn:.4f}; allowed: within {check.tolerance:.2g} deg, by the printed digits; are "
+            "these the points, axes and side of this drawing?"
+        )
+    return ExitStatus.DISAGREE if wrong else ExitStatus.AGREE
+
+
+def _put(stream: BinaryIO, text: str) -> None:
+    stream.write(text.encode())
+
+
+def _report(name: str, found: Imported) -> list[str]:
+    part = found.scene.mechanism
+    width = max(len(point.name) for point in found.points)
+    wide = max(len(point.written) for point in found.points)
+    lines = [f"{name}: {found.format.words}, read as a {part.type} of the {part.side} wheel"]
+    lines += [f"  {fact}" for fact in found.facts]
+    lines += [
+        f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
+        for point in found.points
+    ]
+    lines += [f"  known and not needed: {shown(p.name)}, line {p.line}" for p in found.not_needed]
+    lines += [f"  not known and left out: {shown(p.name)}, line {p.line}" for p in found.unknown]
+    lines += [
+        f"  {check.name}: the file prints {check.printed:g} deg, its points give {check.drawn + 0.0:.4f}: "
+        f"{check.verdict}"
+        for check in found.angles
+    ]
+    return lines

@@ -1,0 +1,119 @@
+"""What a file of hardpoints holds, whatever its form: points as they stand there, with their lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from decimal import Decimal, InvalidOperation
+
+from validate.plain_text import shown
+
+Place = tuple[Decimal, Decimal, Decimal]
+"""Three coordinates with the digits that were printed: a metre is 1000 mm and not 1000.0000000000001."""
+
+# No hardpoint is farther off, in any unit, and no number of a file is longer than this makes it.
+FARTHEST = Decimal("1e9")
+
+
+class HardpointFileError(Exception):
+    """A file of hardpoints, or a table of their names, cannot be used as it is.
+
+    Args:
+        source: the file.
+        line: the line at fault; 0 if it is none in particular.
+        problem: what is wrong, with the value.
+        allowed: what would be right, or what to try.
+    """
+
+    def __init__(self, source: str, line: int, problem: str, allowed: str) -> None:
+        self.source = source
+        self.line = line
+        self.problem = problem
+        self.allowed = allowed
+        where = f"{source}: line {line}" if line else source
+        super().__init__(shown(f"{where}: {problem}; allowed: {allowed}"))
+
+
+@dataclass(frozen=True)
+class FilePoint:
+    """A point as the file has it.
+
+    Attributes:
+        name: what the file calls it.
+        place: its coordinates in the file's axes and unit.
+        line: where it is, counted from 1.
+        side: the wheel that the file says it belongs to, left or right; empty if it does not say.
+        part: the axle that the file says it belongs to, front or rear; empty if it does not say.
+    """
+
+    name: str
+    place: Place
+    line: int
+    side: str = ""
+    part: str = ""
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A number that the file prints of its own drawing, and its line."""
+
+    value: Decimal
+    line: int
+
+
+@dataclass(frozen=True)
+class Contents:
+    """A file, read.
+
+    Attributes:
+        points: in the order of the file.
+        called: what it calls its suspension, by part; empty if it does not say.
+        unit: of its lengths, if it says so.
+        angles: static angles that it prints, by part and its own words, deg.
+        spin_axis: where its wheel's spin axis points, forward, outboard and up, if said without a point.
+        spin_words: what that is taken from.
+    """
+
+    points: tuple[FilePoint, ...]
+    called: Mapping[str, str] = field(default_factory=dict)
+    unit: str = ""
+    angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
+    spin_axis: tuple[float, float, float] | None = None
+    spin_words: str = ""
+
+
+def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
+    """A finite number with the digits of its text.
+
+    Raises:
+        HardpointFileError: it is none.
+    """
+    try:
+        number = Decimal(text.strip())
+    except InvalidOperation:
+        raise HardpointFileError(source, line, f"{what} is {short(text)}", "a number") from None
+    return finite(number, source, line, what)
+
+
+def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
+    """A number that a coordinate or an angle can be.
+
+    Raises:
+        HardpointFileError: it is not finite, or farther off than any car.
+    """
+    # The exponent first: 1e-999999999 compares as small and has a billion digits.
+    if not number.is_finite() or abs(number) > FARTHEST or int(number.as_tuple().exponent) < -30:
+        raise HardpointFileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
+    return number
+
+
+def plain(name: str) -> str:
+    """A name without capitals and signs: `CHAS_LowFor` and `chas lowfor` are one."""
+    return " ".join(re.findall(r"[^\W_]+", name.casefold()))
+
+
+def short(text: str) -> str:
+    """A text of a file in at most 60 characters, in quotes."""
+    quoted = repr(text if len(text) <= 60 else text[:57] + "...")
+    return shown(quoted)

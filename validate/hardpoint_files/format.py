@@ -1,0 +1,149 @@
+"""The formats that are known, each a table in `formats/`: a program's names of points, its axes, its unit.
+
+A new format of a form that is read already is a new table and nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from pointcoord.errors import UnknownName
+from validate.hardpoint_files import chrono_json, columns, lotus_report
+from validate.hardpoint_files.axes import Axes
+from validate.hardpoint_files.contents import Contents, plain
+
+FORMATS = Path(__file__).parent / "formats"
+FORMS: Mapping[str, Callable[[str, str], Contents]] = {
+    "lotus_report": lotus_report.read,
+    "columns": columns.read,
+    "chrono_json": chrono_json.read,
+}
+"""How a text becomes points, by the form that a format names."""
+
+# Characters at the beginning of a file in which its format is looked for.
+HEAD = 4000
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A point that a file does not have and that follows from others.
+
+    Attributes:
+        rule: how. of: from which points.
+    """
+
+    rule: str
+    of: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Names:
+    """A suspension in the words of a format.
+
+    Attributes:
+        called: a pattern of what the format calls it; empty if it does not say.
+        names: what it calls each of our points, any of several names.
+        derived: points that follow from others where the file does not have them.
+        notes: what the user should know of these points.
+    """
+
+    called: str
+    names: Mapping[str, tuple[str, ...]]
+    derived: Mapping[str, Derived]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format, as its table says it.
+
+    Attributes:
+        name: what the command line calls it. words: the same for people.
+        known_by: a pattern by which the beginning of a file shows it; empty fits every file.
+        axes, unit: of a file that does not say.
+        side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
+        endings: sides and axles by what a point's name ends with.
+        angles: for our names, a pattern of its own words for a static angle.
+        not_needed: patterns of names that are known and hold nothing that moves the wheel.
+        suspensions: by our name of each.
+    """
+
+    name: str
+    words: str
+    form: str
+    known_by: str
+    axes: Axes
+    unit: str
+    side: str
+    endings: Mapping[str, Mapping[str, str]]
+    angles: Mapping[str, str]
+    not_needed: tuple[str, ...]
+    our_own_names: bool
+    suspensions: Mapping[str, Names]
+
+    def read(self, text: str, source: str) -> Contents:
+        """What a file of this format holds.
+
+        Raises:
+            HardpointFileError: it is not written as it must be.
+        """
+        return FORMS[self.form](text, source)
+
+    def holds_nothing(self, name: str) -> bool:
+        """Whether a point of this name is known and not needed."""
+        return any(re.fullmatch(pattern, plain(name)) for pattern in self.not_needed)
+
+
+@lru_cache
+def formats() -> Mapping[str, Format]:
+    """Every format by name; the one that fits every file comes last."""
+    found = [_format(path.stem, tomllib.loads(path.read_text("utf-8"))) for path in FORMATS.glob("*.toml")]
+    return {one.name: one for one in sorted(found, key=lambda one: (not one.known_by, one.name))}
+
+
+def _format(name: str, table: Mapping[str, Any]) -> Format:
+    return Format(
+        name=name,
+        words=table["words"],
+        form=table["form"],
+        known_by=table["known_by"],
+        axes=Axes.of(table["axes"]),
+        unit=table["unit"],
+        side=table.get("side", ""),
+        endings={plain(ending): sense for ending, sense in table.get("endings", {}).items()},
+        angles=table.get("angles", {}),
+        not_needed=tuple(table.get("not_needed", {}).get("names", ())),
+        our_own_names=table.get("our_own_names", False),
+        suspensions={
+            kind: Names(
+                called=own.get("called", ""),
+                names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
+                derived={
+                    ours: Derived(rule["rule"], tuple(rule["of"]))
+                    for ours, rule in own.get("derived", {}).items()
+                },
+                notes=tuple(own.get("notes", ())),
+            )
+            for kind, own in table["suspensions"].items()
+        },
+    )
+
+
+def format_of(text: str, name: str | None) -> Format:
+    """The format that is named, or the first that the beginning of a text shows.
+
+    Raises:
+        UnknownName: there is none of that name.
+    """
+    known = formats()
+    if name is not None:
+        if name not in known:
+            raise UnknownName("format", name, known)
+        return known[name]
+    return next(one for one in known.values() if re.search(one.known_by, text[:HEAD]))

@@ -1,0 +1,479 @@
+"""From a file of another program to a scene of ours: points by name, in our axes and unit, of one wheel.
+
+What is not known is refused or listed, never guessed: axes and units that the points speak against, points
+without a name of ours, points of ours that the file lacks.
+"""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from math import radians, tan
+from pathlib import Path
+
+from pointcoord import Scene
+from pointcoord.errors import UnknownName
+from pointcoord.linkage.topology import Topology
+from pointcoord.scene.scene_text import read_file
+from pointcoord.suspensions import SUSPENSIONS
+from validate.hardpoint_files.axes import UNITS, Axes, axes_seen
+from validate.hardpoint_files.contents import Contents, FilePoint, HardpointFileError, Place, plain, short
+from validate.hardpoint_files.derived import RULES, SpinAxis
+from validate.hardpoint_files.format import Format, Names, format_of
+from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
+from validate.hardpoint_files.static_angles import AngleCheck, check_angles
+from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+
+# mm: the points of one wheel's suspension, from model cars to lorries, span no less and no more.
+SMALLEST, LARGEST = Decimal(150), Decimal(4000)
+SIDES = ("left", "right")
+PARTS = ("front", "rear")
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What the user says of a file; what is left out is read from it or is the format's own.
+
+    Attributes:
+        format: its name. suspension: our type. side: of the wheel, left or right. part: the axle, front or
+            rear, of a file that holds both.
+        names: path of a file of names (see `names_file`).
+        axes: where x, y and z point, such as "forward,left,up". unit: of its lengths.
+        camber, toe: static angles of a wheel whose spin axis the file does not give, deg, + leaning out at
+            the top and + toe in, projected.
+        mirror: make the wheel of the other side of it.
+    """
+
+    format: str | None = None
+    suspension: str | None = None
+    side: str | None = None
+    part: str | None = None
+    names: str | None = None
+    axes: str | None = None
+    unit: str | None = None
+    camber: float | None = None
+    toe: float | None = None
+    mirror: bool = False
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A scene from another program's file, and what became of everything that the file holds.
+
+    Attributes:
+        scene: checked, with a bounce. text: the same as a scene file, with a comment for each point.
+        points: of the scene, in its axes, with where each comes from.
+        not_needed: points of the file that are known and hold nothing. unknown: points that are not known.
+        angles: static angles that the file prints, held to the drawing's.
+        bounce: the motion that is written. facts: what was taken for granted, in words.
+        doubts: what looks wrong and was taken as the user said it.
+    """
+
+    format: Format
+    scene: Scene
+    text: str
+    points: tuple[ScenePoint, ...]
+    not_needed: tuple[FilePoint, ...]
+    unknown: tuple[FilePoint, ...]
+    angles: tuple[AngleCheck, ...]
+    bounce: Bounce
+    facts: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def import_hardpoints(
+    path: str | Path,
+    *,
+    format: str | None = None,
+    suspension: str | None = None,
+    side: str | None = None,
+    part: str | None = None,
+    names: str | None = None,
+    axes: str | None = None,
+    unit: str | None = None,
+    camber: float | None = None,
+    toe: float | None = None,
+    mirror: bool = False,
+) -> Imported:
+    """Make a scene from a file of hardpoints; the arguments are those of `Choices`.
+
+    Raises:
+        SceneError: the file cannot be read.
+        HardpointFileError: it is not as it must be, or does not say all that is needed.
+        UnknownName: no such format, suspension, side, part, unit or point.
+        UnknownAxes: `axes` are none.
+        AssemblyError: its points cannot be put together.
+
+    >>> import_hardpoints("report.txt", side="right").scene.mechanism.side  # doctest: +SKIP
+    'right'
+    """
+    choices = Choices(format, suspension, side, part, names, axes, unit, camber, toe, mirror)
+    _known_choices(choices)
+    source = str(path)
+    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
+    own_names = NO_NAMES if names is None else read_names(names)
+    found = format_of(text, format)
+    return _Import(source, choices, found, found.read(text, source), own_names).result()
+
+
+def _known_choices(choices: Choices) -> None:
+    allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
+        ("suspension", choices.suspension, SUSPENSIONS),
+        ("side", choices.side, SIDES),
+        ("part", choices.part, PARTS),
+        ("unit", choices.unit, UNITS),
+    )
+    for kind, chosen, names in allowed:
+        if chosen is not None and chosen not in names:
+            raise UnknownName(kind, chosen, names)
+
+
+def _decoded(data: bytes, source: str) -> str:
+    """Text as programs write it: UTF-8, UTF-16 with its mark, or the code page of Western Windows."""
+    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    for code in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
+        try:
+            text = data.decode(code)
+        except UnicodeDecodeError:
+            continue
+        if "\0" not in text:
+            return text
+    raise HardpointFileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
+
+
+@dataclass(frozen=True)
+class _Import:
+    """One import, in its steps."""
+
+    source: str
+    choices: Choices
+    format: Format
+    contents: Contents
+    own: NamesFile
+
+    def refuse(self, problem: str, allowed: str, line: int = 0) -> HardpointFileError:
+        return HardpointFileError(self.source, line, problem, allowed)
+
+    def result(self) -> Imported:
+        kind = self.suspension()
+        words = self.format.suspensions.get(kind, Names("", {}, {}))
+        topology = SUSPENSIONS[kind].closures["drawn"]
+        ours, others, side_said = self.chosen(kind)
+        axis = self.spin_axis()
+        self.require_all(kind, topology, words, ours, others, axis)
+        doubts: list[str] = []
+        axes, unit = self.axes(), self.unit()
+        doubts += self.against_axes(axes, topology, ours)
+        doubts += self.against_unit(unit, ours)
+        turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
+        side = self.side(side_said, topology, turned)
+        points = self.placed(topology, words, ours, turned, axis, side)
+        facts = [f"the file's axes are {axes.words}, in {unit}; here x rearward, y right, z up, in mm"]
+        facts += words.notes
+        if not axes.right_handed:
+            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
+        if self.choices.mirror:
+            facts.append(f"the file's wheel is a {side} one; here it is mirrored in the middle of the car")
+            side = SIDES[side == "left"]
+            points = {name: point.mirrored for name, point in points.items()}
+        facts += [
+            f"{name} is not in the file: {other} stands in for it"
+            for name, other in topology.stand_ins.items()
+            if name not in points
+        ]
+        drawn = scene_of(self.source, kind, side, points.values())
+        bounce = bounce_of(drawn)
+        text = scene_text(self.source, self.format.words, drawn, points.values(), bounce, facts, others)
+        return Imported(
+            format=self.format,
+            scene=Scene.from_mapping(bounce.added_to(drawn), self.source),
+            text=text,
+            points=tuple(points.values()),
+            not_needed=tuple(point for point in others if self.format.holds_nothing(point.name)),
+            unknown=tuple(point for point in others if not self.format.holds_nothing(point.name)),
+            angles=self.angles(bounce.angles, topology, ours, unit),
+            bounce=bounce,
+            facts=tuple(facts),
+            doubts=tuple(doubts),
+        )
+
+    # Which suspension, and which of the file's points are which of ours.
+
+    def suspension(self) -> str:
+        """Our type of the suspension: as the user or the file says, or the one whose points are there."""
+        if self.choices.suspension:
+            return self.choices.suspension
+        called = self.contents.called
+        said = called.get(self.choices.part or "") or next(iter(called.values()), "")
+        if said:
+            for kind, words in self.format.suspensions.items():
+                if words.called and words.called in said.casefold():
+                    return kind
+            raise self.refuse(
+                f"holds a suspension called {short(said)}",
+                f"{', '.join(self.format.suspensions)}; if it is like one of these, say so with --suspension",
+            )
+        missing = {
+            kind: len(self.missing(SUSPENSIONS[kind].closures["drawn"], self.named(kind)[0]))
+            for kind in self.format.suspensions
+        }
+        least = min(missing.values())
+        best = [kind for kind, count in missing.items() if count == least]
+        if len(best) > 1:
+            raise self.refuse(
+                f"could be a {' or a '.join(best)}", f"--suspension {' or --suspension '.join(best)}"
+            )
+        return best[0]
+
+    def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
+        """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
+        words = self.format.suspensions.get(kind, Names("", {}, {})).names
+        ours = {plain(their): our for our, theirs in words.items() for their in theirs}
+        if self.format.our_own_names:
+            ours |= {plain(name): name for name in SUSPENSIONS[kind].points}
+        # What the user says goes before what the format says, of this point and of that name.
+        said = {plain(their): our for our, their in self.own.names.items()}
+        taken = self.own.names.keys() | self.own.points.keys()
+        ours = {their: our for their, our in ours.items() if our not in taken} | said
+
+        def found(point: FilePoint) -> tuple[str, FilePoint]:
+            name = plain(point.name)
+            base, _, ending = name.rpartition(" ")
+            if name not in ours and base in ours and ending in self.format.endings:
+                sense = self.format.endings[ending]
+                own = replace(point, side=sense.get("side", point.side), part=sense.get("part", point.part))
+                return ours[base], own
+            return ours.get(name, ""), point
+
+        return found
+
+    def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
+        """The file's points that are ours, by our names, and the others."""
+        found = [self.lookup(kind)(point) for point in self.contents.points]
+        return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
+
+    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str]:
+        """The points of one wheel by our names, the file's other points, and the side that the file says."""
+        known, others = self.named(kind)
+        unused = [
+            their
+            for their in self.own.names.values()
+            if plain(their) not in {plain(p.name) for _, p in known}
+        ]
+        if unused:
+            raise UnknownName(f"point in {self.source}", unused[0], {p.name for p in self.contents.points})
+        part = self.one_of("part", "axle", self.choices.part, {point.part for _, point in known})
+        known = [(ours, point) for ours, point in known if point.part in ("", part)]
+        others = [point for point in others if point.part in ("", part)]
+        labels = {point.side for _, point in known} - {""}
+        side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
+        found: dict[str, FilePoint] = {}
+        for ours, point in known:
+            if point.side not in ("", side):
+                continue
+            other = found.setdefault(ours, point)
+            if other.place != point.place:
+                raise self.refuse(
+                    f"has {ours} twice, {short(other.name)} on line {other.line} and {short(point.name)} "
+                    "elsewhere",
+                    "one of them, or a file of names (--names) that says which",
+                    point.line,
+                )
+        return found | dict(self.own.points), others, side
+
+    def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
+        """The part or side of a file that may hold several."""
+        labels = sorted(there - {""})
+        if chosen and labels and chosen not in labels:
+            raise self.refuse(f"has no points of the {chosen} {what}", f"--{option} {labels[0]}")
+        if not chosen and len(labels) > 1:
+            raise self.refuse(
+                f"has points of the {' and of the '.join(labels)} {what}",
+                " or ".join(f"--{option} {label}" for label in labels),
+            )
+        return chosen or (labels[0] if labels else "")
+
+    # What is needed and is not there.
+
+    def missing(self, topology: Topology, known: Iterable[tuple[str, FilePoint]]) -> list[str]:
+        """Points that a car of ours must have; its spin axis is not left to what may stand in for it."""
+        there = {name for name, _ in known} | self.own.points.keys()
+        needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
+        return [name for name in needed if name not in there]
+
+    def require_all(
+        self,
+        kind: str,
+        topology: Topology,
+        words: Names,
+        ours: Mapping[str, FilePoint],
+        others: Sequence[FilePoint],
+        axis: SpinAxis | None,
+    ) -> None:
+        lacking = self.missing(topology, ours.items())
+        # The rule of the spin axis gives nothing without a direction.
+        lost = [name for name in lacking if not self.follows(name, words, ours, axis)]
+        if not lost:
+            return
+        theirs = [
+            f"{name} (looked for: {', '.join(map(short, words.names[name]))})"
+            if name in words.names
+            else name
+            for name in lost
+        ]
+        unknown = [point for point in others if not self.format.holds_nothing(point.name)]
+        listed = ", ".join(f"{short(point.name)} on line {point.line}" for point in unknown[:12])
+        if len(unknown) > 12:
+            listed += f" and {len(unknown) - 12} more"
+        advice = f'a file of names (--names) with {lost[0]} = "its name" or {lost[0]} = [x, y, z]'
+        if any(name in words.derived and words.derived[name].rule == "spin axis" for name in lost):
+            advice += "; for the spin axis --camber and --toe will do"
+        raise self.refuse(
+            f"lacks {', '.join(theirs)} of a {kind}" + (f"; not known in it: {listed}" if listed else ""),
+            advice,
+        )
+
+    def follows(self, name: str, words: Names, ours: Mapping[str, FilePoint], axis: SpinAxis | None) -> bool:
+        rule = words.derived.get(name)
+        if rule is None or any(other not in ours for other in rule.of):
+            return False
+        return RULES[rule.rule]([ours[other].place for other in rule.of], 1, axis) is not None
+
+    def spin_axis(self) -> SpinAxis | None:
+        """Where the file or the user says that the wheel's spin axis points."""
+        camber, toe = self.choices.camber, self.choices.toe
+        if self.contents.spin_axis is not None:
+            if camber is not None or toe is not None:
+                raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
+            return SpinAxis(self.contents.spin_axis, self.contents.spin_words)
+        if camber is None or toe is None:
+            if camber is not None or toe is not None:
+                raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")
+            return None
+        for option, angle in (("--camber", camber), ("--toe", toe)):
+            if not abs(angle) < 45.0:
+                raise self.refuse(f"has {option} {angle:g} said of it", "an angle of less than 45 deg")
+        # Projected angles: tan(toe) = forward / outboard, tan(camber) = -up / outboard.
+        direction = (tan(radians(toe)), 1.0, -tan(radians(camber)))
+        return SpinAxis(direction, f"--camber {camber:g} and --toe {toe:g}, deg")
+
+    # Axes, unit and side, and what speaks against them.
+
+    def axes(self) -> Axes:
+        return self.format.axes if self.choices.axes is None else Axes.of(self.choices.axes)
+
+    def unit(self) -> str:
+        said, chosen = self.contents.unit, self.choices.unit
+        if said and said not in UNITS:
+            raise self.refuse(f"has lengths in {short(said)}", ", ".join(UNITS))
+        if said and chosen and said != chosen:
+            raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
+        return chosen or said or self.format.unit
+
+    def against_axes(self, axes: Axes, topology: Topology, ours: Mapping[str, FilePoint]) -> list[str]:
+        """Refuse axes of the format that the car's points speak against; doubt those of the user."""
+        (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
+        inner, wheel = topology.inboard, topology.wheel_centre
+        pairs = ((front, rear), (wheel, inner), (high, low))
+        ends = [(ours[one].place, ours[other].place) for one, other in pairs]
+        forward, outboard, upward = (_difference(one, other) for one, other in ends)
+        seen = axes_seen(forward, outboard, upward)
+        # A left-handed choice may differ in the way of left only, which no point can show.
+        said = set(zip("xyz", axes.directions, strict=True))
+        shown = set() if seen is None else set(zip("xyz", seen.directions, strict=True))
+        sideways = {(axis, way) for axis in "xyz" for way in SIDES}
+        same_line = {axis for axis, way in said if way in SIDES} == {
+            axis for axis, way in shown if way in SIDES
+        }
+        if seen is None or (said - sideways == shown - sideways and same_line):
+            return []
+        told = (
+            f"has axes {axes.words} by {'its format' if self.choices.axes is None else '--axes'}, but "
+            f"{front} seen from {rear}, {wheel} from {inner} and {high} from {low} lie as in {seen.words}"
+        )
+        if self.choices.axes is not None:
+            return [f"{told}: are these the right axes and names?"]
+        raise self.refuse(told, f"--axes {seen.option} if that is so, --axes {axes.option} if not")
+
+    def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
+        """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
+        places = [point.place for point in ours.values()]
+        span = max(max(column) - min(column) for column in zip(*places, strict=True))
+        if SMALLEST <= span * UNITS[unit] <= LARGEST:
+            return []
+        fitting = {other: span * size for other, size in UNITS.items() if SMALLEST <= span * size <= LARGEST}
+        told = f"spans {span * UNITS[unit]:.4g} mm if its lengths are in {unit}"
+        others = "; ".join(f"--unit {other} makes {size:.4g} mm" for other, size in fitting.items())
+        if self.choices.unit is not None:
+            return [f"the file {told}" + (f"; {others}" if others else "")]
+        raise self.refuse(told, others or f"--unit {unit} if that is so")
+
+    def side(self, label: str, topology: Topology, turned: Mapping[str, Place]) -> str:
+        """The wheel's side, from where it lies; it must be the one that the file or the user says."""
+        wheel, inner = topology.wheel_centre, topology.inboard
+        lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
+        if not out:
+            raise self.refuse(f"has {wheel} as far out as {inner}", "a wheel outboard of it; see --axes")
+        seen = SIDES[out > 0]
+        where = f"{wheel} lies {abs(out):.6g} mm to the {seen} of {inner}"
+        for said, by in (
+            (self.choices.side, "--side"),
+            (label, "the file"),
+            (self.format.side, "its format"),
+        ):
+            if said and said != seen:
+                raise self.refuse(
+                    f"has a {said} wheel by {by}, but {where}",
+                    f"--axes with the other of left and right than {self.axes().option}, or the {seen} side; "
+                    "--mirror makes the other wheel",
+                )
+        if (lies > 0) != (out > 0) and not (self.choices.side or label or self.format.side):
+            raise self.refuse(
+                f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car",
+                f"--side {seen} if y is not counted from the middle, or other --axes",
+            )
+        return seen
+
+    # The scene's points.
+
+    def placed(
+        self,
+        topology: Topology,
+        words: Names,
+        ours: Mapping[str, FilePoint],
+        turned: Mapping[str, Place],
+        axis: SpinAxis | None,
+        side: str,
+    ) -> dict[str, ScenePoint]:
+        """The scene's points in the order of its topology, with where each comes from."""
+        out = 1 if side == "right" else -1
+        needed = {*topology.required_points, *topology.wheel_axis}
+        found = {}
+        for name in topology.points:
+            if name in turned:
+                line = f", line {ours[name].line}" if ours[name].line else ""
+                found[name] = ScenePoint(name, turned[name], f"{ours[name].name}{line}")
+            elif name in needed and name in words.derived:
+                rule = words.derived[name]
+                derived = RULES[rule.rule]([turned[other] for other in rule.of], out, axis)
+                if derived is not None:
+                    place, how = derived
+                    found[name] = ScenePoint(
+                        name, place, f"from {' and '.join(rule.of)}: {how}", derived=True
+                    )
+        return found
+
+    def angles(
+        self, drawn: Mapping[str, float], topology: Topology, ours: Mapping[str, FilePoint], unit: str
+    ) -> tuple[AngleCheck, ...]:
+        """The static angles that the file prints of this axle beside those of the drawing."""
+        parts = {point.part for point in ours.values()} | {""}
+        printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
+        places = {name: point.place for name, point in ours.items()}
+        return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+
+
+def _difference(one: Place, other: Place) -> Place:
+    return one[0] - other[0], one[1] - other[1], one[2] - other[2]

@@ -1,0 +1,70 @@
+"""The text report of Lotus Suspension Analysis: a block of points for each axle, then its static values.
+
+A point is a line `X Y Z POINT ( number ) = name`. Tables of results follow, which are not read here.
+"""
+
+from __future__ import annotations
+
+import re
+
+from validate.hardpoint_files.contents import (
+    Contents,
+    FilePoint,
+    HardpointFileError,
+    Printed,
+    decimal_of,
+    short,
+)
+
+_AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
+_TYPE = re.compile(r"^\s*TYPE\s+\d+\s+(.*\S)")
+_UNIT = re.compile(r"^\s*\((\w+)\)\s+\(\1\)\s+\(\1\)\s*$")
+_POINT = re.compile(r"^(.*?)\bPOINT\s*\(\s*\d+\s*\)\s*=?(.*)$")
+_ANGLE = re.compile(r"^\s*(.*ANGLE.*?)\s*\(deg\)\s*:\s*(\S+)\s*$")
+
+
+def read(text: str, source: str) -> Contents:
+    """The points and static angles of a report.
+
+    Raises:
+        HardpointFileError: a line of a point is not as it must be, or there is none.
+    """
+    points: list[FilePoint] = []
+    called: dict[str, str] = {}
+    angles: dict[tuple[str, str], Printed] = {}
+    part = unit = ""
+    for line, words in enumerate(text.splitlines(), 1):
+        if found := _AXLE.match(words):
+            part = found[1].lower()
+        elif found := _TYPE.match(words):
+            called.setdefault(part, found[1])
+        elif found := _UNIT.match(words):
+            unit = unit or found[1]
+        elif found := _POINT.match(words):
+            points.append(_point(found[1], found[2].strip(), source, line, part))
+        elif found := _ANGLE.match(words):
+            value = decimal_of(found[2], source, line, found[1].strip())
+            angles.setdefault((part, found[1].strip()), Printed(value, line))
+    if not points:
+        raise HardpointFileError(
+            source,
+            0,
+            "has no points",
+            "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot",
+        )
+    return Contents(tuple(points), called=called, unit=unit, angles=angles)
+
+
+def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePoint:
+    given = numbers.split()
+    if len(given) != 3:
+        raise HardpointFileError(
+            source, line, f"has {len(given)} numbers before POINT ({short(numbers.strip())})", "x, y and z"
+        )
+    if not name:
+        raise HardpointFileError(source, line, "has a point without a name", "POINT ( number ) = name")
+    x, y, z = (
+        decimal_of(number, source, line, f"{axis} of {short(name)}")
+        for axis, number in zip("xyz", given, strict=True)
+    )
+    return FilePoint(name, (x, y, z), line, part=part)

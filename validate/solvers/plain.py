@@ -1,0 +1,232 @@
+"""Anybody's solver as a formulation: plain data in, plain data out, no import of this project.
+
+A solver is a function of one argument, or an object with a method `solve` of one argument, or a class without
+arguments that makes one. What it is given is a mapping (lengths in mm, angles in rad, times in s; arrays are
+numpy's, its own copies, and cannot be written to):
+
+    suspension  "macpherson", "double_wishbone"; closure, such as "drawn" (see the README); side of the car
+    up, right   unit vectors of the car's axes, [x, y, z]
+    points      where the hardpoints are drawn, {name: [x, y, z]}
+    carried     names of the points that ride on the knuckle without holding it
+    instants    (N,)
+    inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}}; all that the car has,
+                those that rest too
+    asked       what is compared, {quantity: [names]}
+
+It answers with a mapping of what it has, any part of what is asked, as arrays or lists:
+
+    {"position": {"wheel_centre": (N, 3)}, "velocity": {...}, "wheel": {"camber": (N,)}}
+
+A number that the whole car has, such as camber, may also stand by itself: {"camber": (N,)}. A solver that has
+other instants than it was given, of which some are among these, names them: {"instants": (M,), ...}.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from pointcoord.data_classes import dataclass
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.scene.messages import meant, shown
+from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Accuracy, FormulationError, Solution
+
+Array = NDArray[np.float64]
+Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+
+ORDERS = ("position", "velocity", "acceleration")
+INSTANTS = "instants"
+METHOD = "solve"
+
+
+class NoSolver(Exception):
+    """Something that was to be a solver is none, or cannot be found."""
+
+    def __init__(self, what: str, problem: str, remedy: str) -> None:
+        self.what = what
+        self.problem = problem
+        self.remedy = remedy
+        super().__init__(f"{what} {problem}; {remedy}")
+
+
+class SolverFailed(Exception):
+    """A solver raised an error, or answered with nothing that can be compared.
+
+    Attributes:
+        problem: what went wrong, in one line, with the solver's own words. where: its own file and line.
+    """
+
+    def __init__(self, problem: str, where: str = "") -> None:
+        self.problem = problem
+        self.where = where
+        super().__init__(problem + (f" at {where}" if where else ""))
+
+
+def given_to_solver(scene: Scene) -> dict[str, Any]:
+    """A scene as plain data, in the form that the top of this file tells; new arrays at every call."""
+    part, instants = scene.mechanism, scene.instants.copy()
+    still = np.zeros((len(instants), 3))
+    laws = {
+        name: rates(scene.inputs[name], instants) if name in scene.inputs else still
+        for name in part.topology.inputs
+    }
+    return {
+        "suspension": part.type,
+        "closure": part.closure,
+        "side": part.side,
+        "up": list(part.up),
+        "right": list(part.right),
+        "points": {name: list(place) for name, place in part.points.items()},
+        "carried": list(part.topology.carried),
+        INSTANTS: _read_only(instants),
+        "inputs": {
+            name: {order: _read_only(law[:, d].copy()) for d, order in enumerate(ORDERS)}
+            for name, law in laws.items()
+        },
+        "asked": {quantity: list(names) for quantity, names in asked_numbers(scene).items()},
+    }
+
+
+def _read_only(array: Array) -> Array:
+    array.flags.writeable = False
+    return array
+
+
+def as_function(solver: object, name: str) -> Solve:
+    """What to call of a solver.
+
+    Raises:
+        NoSolver: it is nothing that can be called and has no method `solve`, or it cannot be made.
+    """
+    if isinstance(solver, type):
+        try:
+            solver = solver()
+        except Exception as error:
+            problem = f"cannot be made without arguments: {said(error)}"
+            raise NoSolver(
+                name, problem, "give a class without arguments, or an object or a function"
+            ) from error
+    method = getattr(solver, METHOD, None)
+    found = method if callable(method) else solver
+    if not callable(found):
+        problem = f"is a {type(solver).__name__}, which is no solver"
+        raise NoSolver(name, problem, f"give a function, or an object or a class with a method {METHOD!r}")
+    return cast("Solve", found)
+
+
+def said(error: BaseException) -> str:
+    """An error in its own words, with its class, in one line."""
+    words = " ".join(str(error).split())
+    return f"{type(error).__name__}: {words}" if words else type(error).__name__
+
+
+@dataclass(frozen=True)
+class PlainSolver:
+    """Anybody's solver, held to the accuracy that it states.
+
+    Attributes:
+        name: in tables and messages.
+        function: see the top of this file.
+        accuracy: how exactly it says it places every point, mm; what that makes of each number is derived in
+            `held`.
+    """
+
+    name: str
+    function: Solve
+    accuracy: float
+
+    def solve(self, scene: Scene) -> Solution:
+        """Ask the solver, and say how far off its numbers may be.
+
+        Raises:
+            FormulationError: the solver raises an error (SolverFailed), or answers with no mapping.
+        """
+        from validate.solvers.held import accuracy_for
+
+        given = given_to_solver(scene)
+        try:
+            answer = self.function(given)
+        except (Exception, SystemExit) as error:
+            raise FormulationError(self.name, SolverFailed(said(error), _where(error))) from error
+        if not isinstance(answer, Mapping):
+            problem = SolverFailed(
+                f"it answers with a {type(answer).__name__}; needed: a mapping of what it has"
+            )
+            raise FormulationError(self.name, problem)
+        numbers, notes = _numbers(self.name, answer, asked_numbers(scene))
+        times = self._times(answer, scene)
+        accuracy = accuracy_for(scene, self.accuracy)
+        if times is not scene.instants:
+            accuracy = _at(accuracy, scene.instants, times)
+        return Solution(self.name, times, numbers, accuracy, notes)
+
+    def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
+        if INSTANTS not in answer:
+            return scene.instants
+        try:
+            times = np.asarray(answer[INSTANTS], dtype=float)
+        except (ValueError, TypeError) as error:
+            raise FormulationError(
+                self.name, SolverFailed(f"its {INSTANTS} are no numbers ({error})")
+            ) from error
+        if times.ndim != 1 or not np.isin(times, scene.instants).any():
+            problem = f"its {INSTANTS} have the shape {times.shape} and none of the scene's among them"
+            raise FormulationError(
+                self.name, SolverFailed(f"{problem}; give (M,) of those that it was given")
+            )
+        return times
+
+
+def _numbers(
+    who: str, answer: Mapping[str, Any], asked: Mapping[str, tuple[str, ...]]
+) -> tuple[dict[str, dict[str, Any]], tuple[str, ...]]:
+    """What was asked for, of all that was answered, and a line for everything else."""
+    of_the_car = {n: q for q, names in asked.items() if QUANTITIES[q].of == "car" for n in names}
+    found: dict[str, dict[str, Any]] = {}
+    notes: list[str] = []
+    for key, part in answer.items():
+        if key in of_the_car:
+            found.setdefault(of_the_car[key], {})[key] = part
+        elif key in asked and isinstance(part, Mapping):
+            for name, array in part.items():
+                if name in asked[key]:
+                    found.setdefault(key, {})[name] = array
+                else:
+                    what = f"{QUANTITIES[key].words} of {shown(name)}"
+                    notes.append(_left_out(who, what, name, asked[key]))
+        elif key in asked:
+            notes.append(f"{who}: {key} is a {type(part).__name__}; needed: arrays by name; it is left out")
+        elif key != INSTANTS:
+            notes.append(_left_out(who, shown(key), key, (*asked, *of_the_car)))
+    return found, tuple(notes)
+
+
+def _left_out(who: str, what: str, name: object, there: Iterable[str]) -> str:
+    names = tuple(there)
+    hint = meant(str(name), names)
+    return f"{who} gives {what}, which the scene does not ask for{hint}; it is left out" + (
+        "" if hint else f"; asked for: {', '.join(names)}"
+    )
+
+
+def _at(accuracy: Accuracy, instants: Array, times: Array) -> Accuracy:
+    """An accuracy at instants, at times of which some are among these; the others are not compared."""
+    places = np.clip(np.searchsorted(instants, times), 0, len(instants) - 1)
+    claims = {q: {n: array[places] for n, array in arrays.items()} for q, arrays in accuracy.claims.items()}
+    blind = None if accuracy.blind is None else accuracy.blind[places]
+    return replace(accuracy, condition=accuracy.condition[places], claims=claims, blind=blind)
+
+
+def _where(error: BaseException) -> str:
+    """The file and line of the solver's that raised; empty where it is the call itself that does not fit."""
+    frames = traceback.extract_tb(error.__traceback__)[1:]
+    return f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
