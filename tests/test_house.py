@@ -54,11 +54,8 @@ ROOMS = {
         "ci",
         "hard",
         "cost",
-<<<<<<< HEAD
         "curves",
-=======
         "hardpoint_files",
->>>>>>> main
         "commands",
         "door",
         "studies",

@@ -32,12 +32,8 @@ from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
-<<<<<<< HEAD
 from validate.curves.numbers import found, numbers_of
-from validate.formulations.protocol import Accuracy
-=======
 from validate.formulations.protocol import Accuracy, FormulationError
->>>>>>> main
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes

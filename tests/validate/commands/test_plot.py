@@ -107,7 +107,7 @@ def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
     velocity = found("velocity.wheel_centre", NUMBERS)
     for curves in (Curves(every, travel), Curves(time, every + velocity)):
         page = picture.figure(curves, MOTION, MOTION, WISHBONE.title, True)
-        page.canvas.draw()
+        page.draw_without_rendering()
         frame = page.bbox
         named = [axis.label for a in page.axes for axis in (a.xaxis, a.yaxis) if axis.label.get_text()]
         labels = [label.get_window_extent() for label in named]
