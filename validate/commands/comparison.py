@@ -179,9 +179,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
+        console.working("scenes", len(names)) as told,
     ):
         for place, (name, scene) in enumerate(_loaded(names, console)):
             since = None
+            told(shown_names[place], place)
             if isinstance(scene, Scene):
                 examined = examine(name, scene, pairs, name in PAPER_SCENES, record.factor)
                 _say(examined, console)
@@ -273,12 +275,13 @@ def _say(examined: Examined, console: Console) -> None:
         for warning in examined.warnings:
             console.warn(f"{examined.name}: {warning}")
     for outcome in examined.outcomes[:1]:
-        notes = "".join(f"\n  note: {note}" for note in examined.defaults)
-        console.say(report.outcome_text(outcome) + notes + "\n")
+        notes = (f"  note: {note}" for note in examined.defaults)
+        console.show((*report.outcome_parts(outcome), *notes, ""))
     for outcome in examined.outcomes[1:]:
         # The tables of a further pair would say nearly the same.
-        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome)
-        console.say(text + "\n")
+        same = outcome.agreed
+        parts = (report.agreement_line(outcome),) if same else report.outcome_parts(outcome)
+        console.show((*parts, ""))
 
 
 def _finished(results: _Results, names: Sequence[str]) -> str:

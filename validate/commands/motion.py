@@ -96,7 +96,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:
-        with told_as(name):
+        with told_as(name), console.working(f"solving {name}"):
             motion = simulate(scene, BY_NAME[options.method])
         comment(scene, name, motion, console)
         _write(target, motion, options.instants, console)

@@ -97,7 +97,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     chosen = _chosen(options, numbers, name)
     problem: PointcoordError | None = None
     try:
-        with told_as(name):
+        with told_as(name), console.working(f"solving {name}"):
             motion = simulate(scene)
     except SceneError:
         raise
