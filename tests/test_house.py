@@ -56,6 +56,7 @@ ROOMS = {
         "ci",
         "hard",
         "cost",
+        "curves",
         "hardpoint_files",
         "commands",
         "door",

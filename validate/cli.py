@@ -27,6 +27,7 @@ COMMANDS = {
     "plan": "scenes",
     "scenes": "scenes",
     "draw": "draw",
+    "plot": "plot",
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",

@@ -22,6 +22,7 @@ from pointcoord.time_functions import cosine, cosine_of_one
 Array = NDArray[np.float64]
 
 
+OPPOSITE_WORDS = {"right": "to the left", "up": "down"}
 EXTREME = 8.0  # sizes of the mechanism
 
 
@@ -41,6 +42,11 @@ class Drive(Protocol):
     @property
     def unit(self) -> str:
         """Unit of the input, rad or mm."""
+        ...
+
+    @property
+    def sign(self) -> str:
+        """Where the input is positive, in words."""
         ...
 
     @property
@@ -111,6 +117,11 @@ class ArmAngle:
     def unit(self) -> str:
         """Radians."""
         return "rad"
+
+    @property
+    def sign(self) -> str:
+        """From the arm along the direction on."""
+        return f"from the arm pointing {self.direction}"
 
     @property
     def pushes(self) -> str:
@@ -217,6 +228,11 @@ class Travel:
     def unit(self) -> str:
         """Millimetres."""
         return "mm"
+
+    @property
+    def sign(self) -> str:
+        """Against the direction (eq. 14)."""
+        return OPPOSITE_WORDS.get(self.direction, f"against {self.direction}")
 
     @property
     def pushes(self) -> str:

@@ -32,6 +32,7 @@ from validate.cost.store import Store as RowStore
 from validate.cost.way import Setting
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
+from validate.curves.numbers import found, numbers_of
 from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
@@ -390,6 +391,11 @@ RECIPES: dict[str, Recipe] = {
         ),
         ("singular", "condition number", "can be solved", "Look for points on one line"),
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
+    ),
+    "validate.curves.numbers.UnknownNumber": Recipe(
+        lambda *_: found("cambr", numbers_of(BOUNCE)),
+        ("'cambr' is no number of this scene (did you mean 'camber'?)", "there are: time, "),
+        {"words": "cambr"},
     ),
     "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
     "validate.commands.usage.UsageError": Recipe(

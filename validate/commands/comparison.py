@@ -97,8 +97,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--accuracy",
         metavar="A",
         type=float,
-        help=f"how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): what "
-        "is tolerated of every number is derived from it, pose by pose; or how far off the numbers of "
+        help=f"how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): "
+        "what is tolerated of every number is derived from it, pose by pose; or how far off the numbers of "
         "--data may be beside their digits, each in its column's unit",
     )
     parser.add_argument(
@@ -226,9 +226,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
+        console.working("scenes", len(names)) as told,
     ):
         for place, (name, scene) in enumerate(_loaded(names, console)):
             since = None
+            told(shown_names[place], place)
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = examine(name, scene, pairs, printed, record.factor, own)
@@ -336,12 +338,13 @@ def _say(examined: Examined, explained: Explained, console: Console) -> None:
             console.warn(f"{examined.name}: {warning}")
     told = list(zip(examined.outcomes, explained, strict=True))
     for outcome, why in told[:1]:
-        notes = "".join(f"\n  note: {note}" for note in examined.defaults)
-        console.say(report.outcome_text(outcome, why) + notes + "\n")
+        notes = (f"  note: {note}" for note in examined.defaults)
+        console.show((*report.outcome_parts(outcome, why), *notes, ""))
     for outcome, why in told[1:]:
         # The tables of a further pair would say nearly the same.
-        text = report.agreement_line(outcome) if outcome.agreed else report.outcome_text(outcome, why)
-        console.say(text + "\n")
+        same = outcome.agreed
+        parts = (report.agreement_line(outcome),) if same else report.outcome_parts(outcome, why)
+        console.show((*parts, ""))
 
 
 def _finished(results: _Results, names: Sequence[str]) -> str:

@@ -78,10 +78,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         if result.case.group not in headings:
             headings.append(result.case.group)
             console.say(f"== {result.case.group}\n")
-        console.say(hard_report.case_text(result, bool(options.cases)) + "\n")
+        console.show((*hard_report.case_parts(result, bool(options.cases)), ""))
         journal.keep(lambda: hard_report.results_data(results), finished())
+        working(f"cases, {result.case.name} done", len(results))
 
-    with journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending:
+    with (
+        journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending,
+        console.working("cases", len(cases)) as working,
+    ):
         hard_run.run(cases, tell, workers)
         if options.times:
             console.say(hard_report.times_text(results) + "\n")

@@ -48,7 +48,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--instants",
         metavar="N",
-        type=_how_many,
+        type=how_many,
         help="as many rows as this, evenly over the scene's time, instead of the scene's own samples; any "
         "number of them takes no more memory",
     )
@@ -65,7 +65,12 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.set_defaults(run=run)
 
 
-def _how_many(text: str) -> int:
+def how_many(text: str) -> int:
+    """A number of instants as a command line has it.
+
+    Raises:
+        ArgumentTypeError: it is none.
+    """
     if not (text.isascii() and text.isdigit() and int(text) > 0):
         raise argparse.ArgumentTypeError(f"{shown(text)} is no number of instants; allowed: 1 or more")
     return int(text)
@@ -91,9 +96,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:
-        with told_as(name):
+        with told_as(name), console.working(f"solving {name}"):
             motion = simulate(scene, BY_NAME[options.method])
-        _comment(scene, name, motion, console)
+        comment(scene, name, motion, console)
         _write(target, motion, options.instants, console)
     except SceneError:
         raise
@@ -103,7 +108,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.AGREE
 
 
-def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
+def comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
     """Warn of what looks wrong with the drawing, and note what was taken for granted."""
     warnings = warnings_of(scene, motion.closing)
     for warning in warnings:

@@ -11,6 +11,7 @@ from typing import Any, get_args
 from validate.hard.case import Answer, Case, Expected, Outcome
 from validate.hard.run import MAP, OURS, Examined, as_expected, counts, refusals
 from validate.output.report import table
+from validate.output.terminal import Part, Table, text_of
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
@@ -34,22 +35,27 @@ def listing(cases: Sequence[Case]) -> str:
 
 def case_text(result: Examined, every_value: bool = False) -> str:
     """What came of a case: a row per formulation, and per value as well if asked for."""
+    return text_of(case_parts(result, every_value))
+
+
+def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
+    """The same with its tables apart."""
     case, values = result.case, result.case.values
-    lines = [
+    lines: list[Part] = [
         f"{case.name}: {case.why}",
         f"  parameter: {case.parameter}, {_span(values)}",
         f"  expected: {case.behaviour}",
-        _indented(table(_head(case), [_row(result, name) for name in case.expected])),
+        Table(_head(case), tuple(_row(result, name) for name in case.expected), indent=2),
         *(f"  {line}" for line in _who_gives_up_first(result)),
     ]
     if every_value:
-        lines.append(_indented(table(_VALUE_HEAD, _value_rows(result))))
+        lines.append(Table(_VALUE_HEAD, tuple(_value_rows(result)), indent=2))
         lines += [f"  at {t.value:g}: {_facts(t.facts)}" for t in result.trials if t.facts != PLAIN]
     lines += [
         f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
         for value, answer in result.unexpected
     ]
-    return "\n".join(lines)
+    return tuple(lines)
 
 
 def _span(values: Sequence[float]) -> str:
@@ -126,10 +132,6 @@ def _value_rows(result: Examined) -> Iterable[tuple[str, ...]]:
 
 def _facts(facts: Any) -> str:
     return ", ".join(f"{k}: {v:.6g}" if isinstance(v, float) else f"{k}: {v}" for k, v in facts.items())
-
-
-def _indented(text: str) -> str:
-    return "\n".join(f"  {line}" for line in text.splitlines())
 
 
 def times_text(results: Sequence[Examined]) -> str:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable
+from validate.output.terminal import Part, Working, laid_out, rich_for, text_of
 from validate.plain_text import one_line
 
 STANDARD_OUTPUT = "standard output"
@@ -29,6 +31,7 @@ class Console:
         self.written: list[str] = []
         self._reader_gone = False
         self._in_progress = False
+        self._working: Working | None = None
 
     def require(self, what_else: str) -> None:
         """Refuse a closed standard output, before anything is solved.
@@ -49,6 +52,19 @@ class Console:
             self.write(text + "\n")
             self.flush()
 
+    def show(self, parts: Sequence[Part]) -> None:
+        """Lines and tables for people, laid out for a terminal that is one; nothing if quiet or mute.
+
+        Raises:
+            OutputError: standard output does not take them.
+        """
+        laid = None if self.quiet or self.mute else laid_out(parts, sys.stdout)
+        if laid is None:
+            self.say(text_of(parts))
+        else:
+            self.write(laid)
+            self.flush()
+
     def write(self, text: str) -> int:
         """Text on standard output, as it is; characters that it has no code for are shown as escapes.
 
@@ -58,6 +74,8 @@ class Console:
         Raises:
             OutputError: standard output does not take it.
         """
+        if self._working is not None:
+            self._working.pause()
         if not self._reader_gone:
             try:
                 code = getattr(sys.stdout, "encoding", None) or "utf-8"
@@ -78,6 +96,8 @@ class Console:
             return
         try:
             sys.stdout.flush()
+            if self._working is not None:
+                self._working.resume()
         except BrokenPipeError:
             self._leave_standard_output()
         except (OSError, ValueError) as error:
@@ -100,10 +120,34 @@ class Console:
     def complain(self, message: str) -> None:
         """One line on standard error."""
         self.end_progress()
+        if self._working is not None:
+            self._working.pause()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
                 print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
+        if self._working is not None:
+            self._working.resume()
+
+    @contextmanager
+    def working(self, message: str, total: int | None = None) -> Iterator[Callable[[str, int], None]]:
+        """A terminal's standard error says how far the block is, once it takes over two seconds.
+
+        It does so where `rich` is installed; nothing is said elsewhere, or if the run is quiet.
+
+        Yields:
+            What tells it what is being done and how much of the total is.
+        """
+        rich = None if self.quiet else rich_for(sys.stderr)
+        if rich is None or sys.stderr is None:
+            yield lambda message, done: None
+            return
+        working = self._working = Working(message, total, sys.stderr, rich)
+        try:
+            yield working.told
+        finally:
+            self._working = None
+            working.end()
 
     def progress(self, message: str) -> None:
         """A line on a terminal's standard error, in the place of the one before; nothing elsewhere."""

@@ -12,20 +12,10 @@ from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
 from validate.diagnosis import Explanation
+from validate.output.terminal import Part, Table, text_of
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 
 MOST_EXPLANATIONS = 3  # that are printed
-# Columns of words, which read better from the left.
-LEFT = (
-    "formulation",
-    "outcome",
-    "worst at",
-    "wrong quantity",
-    "erratum",
-    "slip of print",
-    "verdict",
-    "resting on",
-)
 
 # Verdicts from the one that tells least of a quantity to the one that tells most.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
@@ -34,17 +24,11 @@ OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Columns of text: words to the left, numbers to the right."""
-    lines = [list(head), *(list(row) for row in rows)]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    lines.insert(1, ["-" * width for width in widths])
-    to_left = [i == 0 or name in LEFT for i, name in enumerate(head)]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if left else cell.rjust(width)
-            for cell, width, left in zip(line, widths, to_left, strict=True)
-        ).rstrip()
-        for line in lines
-    )
+    return _table(head, rows).text
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    return Table(tuple(head), tuple(tuple(row) for row in rows))
 
 
 def _with_unit(value: float, unit: str) -> str:
@@ -101,6 +85,11 @@ def held_to(factor: float) -> str:
 
 def outcome_text(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> str:
     """The agreement table of one scene and pair, what its tolerances rest on, what would explain it."""
+    return text_of(outcome_parts(outcome, explanations))
+
+
+def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> tuple[Part, ...]:
+    """The same with its table apart."""
     first, second = (s.formulation for s in outcome.solutions)
     rows = [
         (
@@ -112,13 +101,15 @@ def outcome_text(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> 
         for row in worst_rows(outcome)
     ]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
-    lines = [
+    lines: list[Part] = [
         f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants{factor}",
-        table(("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows),
+        _table(
+            ("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows
+        ),
     ]
     told = (*outcome.missing, *outcome.notes)
     explained = (f"  what would explain it: {one.words}" for one in explanations[:MOST_EXPLANATIONS])
-    return "\n".join([*lines, *(f"  note: {note}" for note in told), *explained])
+    return (*lines, *(f"  note: {note}" for note in told), *explained)
 
 
 def agreement_line(outcome: Outcome) -> str:

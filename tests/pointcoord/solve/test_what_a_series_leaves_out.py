@@ -58,7 +58,7 @@ def test_the_unit_of_time_changes_nothing(unit: float) -> None:
 @pytest.mark.parametrize(
     ("angle", "phase", "odd", "order", "part", "at"),
     [
-        # Looked for: in a unit in which terms rise, 24 times what is said if their fall is taken in that unit.
+        # Looked for: 24 times what is said if the fall is taken in this unit, in which terms rise.
         (0.3531510656, 0.0831998326, 0.9315690877, 23, 0.6792952857, 0.6663665443),
     ],
 )

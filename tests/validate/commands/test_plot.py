@@ -1,0 +1,214 @@
+"""The command `plot` draws what was computed, with its units and signs, or says why not in one line."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from program import PAST_ITS_END, short_scene
+
+from pointcoord import NotComputed, Scene, simulate
+from pointcoord.effects.registry import EFFECTS
+from validate.cli import main
+from validate.commands import plot
+from validate.curves import picture
+from validate.curves.numbers import Curves, UnknownNumber, found, numbers_of, usual
+
+WISHBONE = Scene.load("double-wishbone")
+MOTION = simulate(WISHBONE)
+NUMBERS = numbers_of(WISHBONE)
+
+
+def read(words: str) -> list[np.ndarray]:
+    return [number.read(MOTION, MOTION) for number in found(words, NUMBERS)]
+
+
+def names(curves: Curves) -> tuple[list[str], list[str]]:
+    return [n.short for n in curves.across], [n.short for n in curves.up]
+
+
+def test_few_words_name_the_number_that_the_motion_has() -> None:
+    (camber,) = read("camber")
+    assert (camber == MOTION.wheel["camber"]).all()
+    (height,) = read("wheel_centre.z")
+    assert (height == MOTION.position["wheel_centre"][:, 2]).all()
+    components = read("velocity.wheel_centre")
+    assert (np.stack(components, axis=-1) == MOTION.velocity["wheel_centre"]).all()
+    turning = read("angular_velocity")
+    assert (np.stack(turning, axis=-1) == MOTION.angular_velocity["knuckle"]).all()
+    (rack,) = read("rack")
+    assert rack == pytest.approx(15.0 * np.sin(4.0 * MOTION.times), abs=1e-12)
+
+
+def test_every_number_of_a_motion_is_found_by_its_column_s_name() -> None:
+    for quantity, channel in MOTION.numbers.items():
+        for name, array in channel.items():
+            columns = read(f"{quantity}.{name}")
+            assert (np.stack(columns, axis=-1) == array.reshape(len(array), -1)).all()
+
+
+def test_travel_is_the_wheel_s_way_up_in_the_car_whatever_the_chassis_does() -> None:
+    heaving = Scene.load("bounce-on-a-heaving-chassis")
+    still = heaving.model_copy(update={"inputs": {k: v for k, v in heaving.inputs.items() if k != "heave"}})
+    assert heaving.inputs.keys() - still.inputs.keys() == {"heave"}
+    travels = []
+    for scene in (heaving, still):
+        (travel,) = found("travel", numbers_of(scene))
+        motion = simulate(scene)
+        travels.append(travel.read(motion, motion))
+    assert np.ptp(travels[0]) > 10.0
+    # Adding the heave of up to 100 mm and taking it away rounds by 2^-53 of some 1000 mm, twice.
+    assert travels[0] == pytest.approx(travels[1], abs=1e-12, rel=0.0)
+    # The drawn wheel stands at z = 210 mm.
+    (travel,) = read("travel")
+    assert travel == pytest.approx(MOTION.position["wheel_centre"][:, 2] - 210.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "effects", "expected"),
+    [
+        ("double-wishbone", None, (["camber", "kingpin", "toe", "caster"], ["travel"])),
+        ("steer", None, (["rack"], ["camber", "kingpin"])),
+        ("steer", (), (["time"], ["wheel_centre.x", "wheel_centre.y", "wheel_centre.z"])),
+    ],
+)
+def test_without_a_word_the_curves_are_those_of_an_engineer(
+    name: str, effects: tuple[str, ...] | None, expected: tuple[list[str], list[str]]
+) -> None:
+    scene = Scene.load(name)
+    if effects is not None:
+        scene = scene.model_copy(update={"effects": effects})
+    assert names(usual(scene, numbers_of(scene), simulate(scene))) == expected
+
+
+def drawn(words: list[str], degrees: bool = True) -> picture.Figure:
+    across, up = (tuple(found(word, NUMBERS)) for word in words)
+    return picture.figure(Curves(across, up), MOTION, MOTION, "car", degrees)
+
+
+def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
+    (axes,) = drawn(["wheel_centre.z", "camber"]).axes
+    (line, *_) = axes.lines
+    assert np.array_equal(line.get_xdata(), MOTION.position["wheel_centre"][:, 2])
+    assert np.array_equal(line.get_ydata(), np.degrees(MOTION.wheel["camber"]))
+    (angle,) = (a for a in EFFECTS["wheel_angles"].angles if a.name == "camber")
+    said = " ".join(axes.get_ylabel().split())
+    assert said == f"camber [deg] + {angle.sign}"
+    assert axes.get_xlabel().splitlines() == ["position of wheel centre, z [mm]", "+ up"]
+    (axes,) = drawn(["time", "camber"], degrees=False).axes
+    assert "[rad]" in axes.get_ylabel()
+    assert np.array_equal(axes.lines[0].get_ydata(), MOTION.wheel["camber"])
+
+
+def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
+    every = tuple(n for n in NUMBERS if n.of_the_car)
+    travel, time = found("travel", NUMBERS), found("time", NUMBERS)
+    velocity = found("velocity.wheel_centre", NUMBERS)
+    for curves in (Curves(every, travel), Curves(time, every + velocity)):
+        page = picture.figure(curves, MOTION, MOTION, WISHBONE.title, True)
+        page.draw_without_rendering()
+        frame = page.bbox
+        named = [axis.label for a in page.axes for axis in (a.xaxis, a.yaxis) if axis.label.get_text()]
+        labels = [label.get_window_extent() for label in named]
+        assert len(labels) > len(page.axes)
+        for box in (*labels, *(text.get_window_extent() for text in page.texts)):
+            assert frame.x0 <= box.x0
+            assert box.x1 <= frame.x1
+            assert frame.y0 <= box.y0
+            assert box.y1 <= frame.y1
+        assert not [(a, b) for i, a in enumerate(labels) for b in labels[:i] if a.overlaps(b)]
+
+
+def test_a_number_that_does_not_change_is_a_straight_line_and_no_rounding() -> None:
+    steer = Scene.load("steer")
+    motion = simulate(steer)
+    across, (kingpin,) = found("time", numbers_of(steer)), found("kingpin", numbers_of(steer))
+    rounding = 2.0**-53 * (-1.0) ** np.arange(len(motion.times))
+    rounded = replace(kingpin, read=lambda *of: kingpin.read(*of) * (1.0 + rounding))
+    (axes,) = picture.figure(Curves(across, (rounded,)), motion, motion, "", True).axes
+    assert np.ptp(axes.lines[0].get_ydata()) > 0.0
+    low, high = axes.get_ylim()
+    assert high - low > 1.0
+
+
+def test_the_same_scene_gives_the_same_bytes(
+    tmp_path: Path, capsysbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    target = tmp_path / "a.svg"
+    words = ["plot", "double-wishbone", "--y", "camber", "--x", "wheel_centre.z"]
+    assert main([*words, "-o", str(target)]) == 0
+    assert main(words) == 0
+    shown = capsysbinary.readouterr()
+    assert shown.err == b""
+    assert shown.out == target.read_bytes()
+    assert shown.out.startswith(b"<?xml")
+    assert main([*words, "-o", str(tmp_path / "a.png")]) == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_motion_that_stops_is_drawn_as_far_as_it_goes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene, target = short_scene(tmp_path, **PAST_ITS_END), tmp_path / "a.svg"
+    assert main(["plot", "-q", scene, "-o", str(target)]) == 3
+    said = capsys.readouterr().err
+    assert f"{target} goes up to t = " in said.splitlines()[-1]
+    assert target.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["double-wishbone", "--y", "cambr"], ["--y 'cambr'", "did you mean 'camber'", "there are: time"]),
+        (["double-wishbone", "--y", "wheel_center.z"], ["did you mean 'wheel_centre.z'"]),
+        (["bounce", "--x", "toe"], ["--x", "was not computed", "add 'toe' to the scene's effects"]),
+        (["double-wishbone", "--y", "velocity"], ["more than one number", "velocity.wheel_centre"]),
+        (
+            ["double-wishbone", "--x", "camber", "--x", "toe", "--y", "camber", "--y", "toe"],
+            ["more than once"],
+        ),
+        (
+            ["double-wishbone", "--x", "velocity.wheel_centre", "--y", "angular_velocity"],
+            ["say which component"],
+        ),
+        (["double-wishbone", "-o", "a.gif"], ["no known ending", ".svg, .png"]),
+        (["no-such-scene"], ["bounce"]),
+        (["bounce", "--instants", "0"], ["allowed: 1 or more"]),
+    ],
+)
+def test_what_cannot_be_drawn_is_said_in_a_line(
+    arguments: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plot", *arguments]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert [word for word in words if word not in shown.err] == [], shown.err
+    assert len(shown.err.splitlines()) == 1
+
+
+def test_a_point_that_the_scene_does_not_report_is_said_how_to_have() -> None:
+    scene = WISHBONE.model_copy(update={"points": ("tie_rod_outer",)})
+    for words in ("wheel_centre.z", "travel"):
+        with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
+            found(words, numbers_of(scene))
+    with pytest.raises(UnknownNumber, match="is more than one number"):
+        found("z", numbers_of(scene))
+
+
+def test_without_matplotlib_the_extra_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["plot", "bounce"]) == 2
+    shown = capsys.readouterr()
+    assert (shown.out, len(shown.err.splitlines())) == ("", 1)
+    assert "pip install 'pointcoord[plot]'" in shown.err
+    assert plot.ENDINGS == (".svg", ".png")
+
+
+def test_a_title_from_a_file_is_text_and_no_formula(tmp_path: Path) -> None:
+    scene = short_scene(tmp_path, title='"$\\\\frac{1}$ </text><script>"')
+    target = tmp_path / "a.svg"
+    assert main(["plot", "-q", scene, "-o", str(target)]) == 0
+    assert b"<script>" not in target.read_bytes()

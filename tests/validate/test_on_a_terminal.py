@@ -1,0 +1,128 @@
+"""A terminal is shown tables and progress where rich is installed; elsewhere there is plain text."""
+
+import os
+import pty
+import re
+import struct
+import subprocess
+import sys
+from collections.abc import Mapping
+from fcntl import ioctl
+from importlib.util import find_spec
+from pathlib import Path
+from termios import TIOCSWINSZ
+
+import pytest
+from program import ENVIRONMENT, PROGRAM, ROOT, run
+
+from validate.output import terminal
+from validate.output.console import Console
+
+SLOW = "import time\nfrom validate.output.console import Console\nconsole = Console()\n{more}\n"
+COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+
+
+def on_terminal(words: list[str], columns: int = 120, both: bool = True, **more: str) -> str:
+    """What a pseudo-terminal is shown of a program, of both of its outputs or of its results only."""
+    ours, theirs = pty.openpty()
+    ioctl(theirs, TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
+    dropped = {"NO_COLOR", "COLUMNS", "LINES", "FORCE_COLOR"}
+    kept = {name: value for name, value in ENVIRONMENT.items() if name not in dropped}
+    environment = {**kept, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path]), "TERM": "xterm-256color"}
+    process = subprocess.Popen(
+        words,
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs if both else subprocess.DEVNULL,
+        env={**environment, **more},
+        cwd=ROOT,
+    )
+    os.close(theirs)
+    shown = b""
+    while True:
+        try:
+            piece = os.read(ours, 65536)
+        except OSError:  # what Linux says at the end of a terminal
+            piece = b""
+        if not piece:
+            break
+        shown += piece
+    os.close(ours)
+    assert process.wait(timeout=60) == 0, shown
+    return shown.decode()
+
+
+def without_rich(folder: Path) -> Mapping[str, str]:
+    """An environment in which rich does not load."""
+    (folder / "rich.py").write_text("raise ImportError('gone', name='rich')\n")
+    return {"PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
+
+
+def validated(columns: int = 120, both: bool = False, **more: str) -> str:
+    return on_terminal([*PROGRAM, "validate", "double-wishbone"], columns, both, **more)
+
+
+def test_a_terminal_without_rich_shows_what_a_pipe_has(tmp_path: Path) -> None:
+    piped = run("validate", "double-wishbone").stdout
+    assert validated(both=True, **without_rich(tmp_path)).replace("\r\n", "\n") == piped
+    assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
+
+
+def test_a_pipe_has_plain_text_whatever_is_installed(tmp_path: Path) -> None:
+    there = run("validate", "double-wishbone")
+    gone = run("validate", "double-wishbone", env={**ENVIRONMENT, **without_rich(tmp_path)})
+    assert there.stdout == gone.stdout
+    assert (there.stderr, gone.stderr) == ("", "")
+    assert "\x1b" not in there.stdout
+
+
+def cells(text: str) -> list[str]:
+    """The words of a text without lines, colours and blanks."""
+    return re.sub(r"[─━—-]{3,}", " ", COLOURS.sub("", text)).split()
+
+
+def test_a_terminal_with_rich_shows_the_same_words_in_colours() -> None:
+    if find_spec("rich"):
+        piped, shown = run("validate", "double-wishbone").stdout, validated()
+        assert "\x1b[32magrees" in shown
+        assert cells(shown) == cells(piped)
+        assert "\x1b[3" not in validated(NO_COLOR="1")
+
+
+def test_a_narrow_terminal_shows_every_cell_in_full() -> None:
+    if find_spec("rich"):
+        piped, shown = run("validate", "double-wishbone").stdout, validated(columns=40)
+        # The name of the first column is left out: each row begins with what it is about.
+        assert {*cells(piped)} - {"quantity"} <= {*cells(shown.replace(": ", " ")), *cells(shown)}
+        assert not re.search("[─━]", shown)
+
+
+def test_progress_comes_after_two_seconds_and_goes_away() -> None:
+    if find_spec("rich"):
+        work = "with console.working('cases', 3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
+        work += "    console.say('a result')\n    time.sleep(0.6)\nconsole.say('the end')"
+        program = [sys.executable, "-c"]
+        long = on_terminal([*program, SLOW.format(more=work.format(2.6))])
+        assert "first" in long
+        assert "1/3" in long
+        last = long[long.rindex("1/3") :]
+        assert "\x1b[2K" in last  # the line is wiped
+        assert "\x1b[?25h" in last  # and the cursor is there again
+        short = on_terminal([*program, SLOW.format(more=work.format(0.1))])
+        assert short == "a result\r\nthe end\r\n"
+
+
+def test_progress_goes_to_no_pipe(capsys: pytest.CaptureFixture[str]) -> None:
+    with Console().working("cases", 3) as told:
+        told("first", 1)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_table_is_columns_of_text() -> None:
+    table = terminal.Table(("name", "size", "verdict"), (("a", "1.5", "agrees"), ("long one", "10", "no")), 2)
+    assert table.text.splitlines() == [
+        "  name      size  verdict",
+        "  --------  ----  -------",
+        "  a          1.5  agrees",
+        "  long one    10  no",
+    ]

@@ -1,0 +1,263 @@
+"""The numbers of a scene that can be drawn, found by as few words as tell them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, NotComputed, Samples, Scene
+from pointcoord.effects.angle import WheelAngles
+from pointcoord.effects.effect import Effect, Quantity
+from pointcoord.effects.registry import ALWAYS, EFFECTS
+from validate.closed_drawing import closed_drawing
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+Read = Callable[[Motion, Samples], Array]
+
+TIME, TRAVEL = "time", "travel"
+COMPONENTS = "xyz"
+
+
+class UnknownNumber(Exception):
+    """The words name no number of the scene, or more than can be drawn for them."""
+
+    def __init__(self, words: str, problem: str) -> None:
+        self.words = words
+        super().__init__(f"{shown(words)!r} {problem}")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a scene over time.
+
+    Attributes:
+        path: quantity, name and component, as far as it has them; what names it.
+        words: for people.
+        unit: of what `read` gives.
+        sign: where it is positive, in words; empty if that goes without saying.
+        panel: numbers of the same are drawn over the same axis.
+        read: its values at the instants of samples of a motion, (N,).
+        missing: why it is not there; None if the scene asks for it.
+    """
+
+    path: tuple[str, ...]
+    words: str
+    unit: str
+    sign: str
+    panel: tuple[str, ...]
+    read: Read
+    missing: NotComputed | None = None
+
+    @property
+    def of_the_car(self) -> bool:
+        """Whether it is an angle or another number that the whole car has once."""
+        return len(self.path) == 2
+
+    @property
+    def short(self) -> str:
+        """As few words as name it."""
+        if self.of_the_car:
+            return self.path[1]
+        return ".".join(self.path[1:] if self.path[0] == ALWAYS[0].quantities[0].name else self.path)
+
+
+def numbers_of(scene: Scene) -> tuple[Number, ...]:
+    """Time, travel and inputs of a scene, and every number that it can ask for."""
+    time = Number((TIME,), TIME, "s", "", (TIME,), lambda _, samples: samples.times)
+    effects = (*ALWAYS, *EFFECTS.values())
+    return (time, _travel(scene), *_inputs(scene), *(n for e in effects for n in _of_effect(e, scene)))
+
+
+def wheel_centre(scene: Scene) -> str:
+    """The point of the wheel's middle."""
+    return scene.mechanism.topology.wheel_axis[1]
+
+
+def _travel(scene: Scene) -> Number:
+    """How far the wheel centre is above its place in the drawing as closed, against the chassis; mm."""
+    centre, place = wheel_centre(scene), ALWAYS[0].quantities[0]
+    up = np.array(scene.mechanism.up)
+
+    def read(motion: Motion, samples: Samples) -> Array:
+        return np.asarray(movement(scene, motion, samples) @ up)
+
+    missing = _unreported(scene, place, centre)
+    return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", (TRAVEL,), read, missing)
+
+
+def movement(scene: Scene, motion: Motion, samples: Samples) -> Array:
+    """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
+    centre = wheel_centre(scene)
+    drawn = closed_drawing(scene).places[centre]
+    moved = samples.numbers[ALWAYS[0].quantities[0].name][centre] - drawn
+    for shift in motion.solved.readout.chassis.states(samples.times, 0):
+        moved = moved - shift
+    return np.asarray(moved)
+
+
+def _inputs(scene: Scene) -> list[Number]:
+    topology = scene.mechanism.topology
+    signs = {drive.input: drive.sign for drive in topology.drives}
+    signs |= {name: f"{along}ward" for name, along in topology.chassis_motion.items()}
+
+    def reader(name: str) -> Read:
+        return lambda _, samples: scene.functions[name].series(samples.times, 0)[:, 0]
+
+    return [
+        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), (name,), reader(name))
+        for name, unit in topology.input_units.items()
+        if name in scene.functions
+    ]
+
+
+def _of_effect(effect: Effect, scene: Scene) -> list[Number]:
+    topology = scene.mechanism.topology
+    asked = effect in ALWAYS or effect.name in scene.effects
+    found = []
+    for quantity in effect.quantities:
+        bodies = topology.bodies if quantity.of == "body" else topology.points
+        for name in effect.names or bodies:
+            missing = None
+            if not asked:
+                missing = NotComputed(f"{quantity.words} of {name}", effect.name)
+            elif effect.reports_states:
+                missing = _unreported(scene, quantity, name)
+            if quantity.of == "car":
+                found.append(_of_car(effect, quantity, name, missing))
+            else:
+                found += [_component(scene, quantity, name, i, missing) for i in range(3)]
+    return found
+
+
+def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | None:
+    if name not in scene.unreported_points:
+        return None
+    return NotComputed(f"{quantity.words} of {name}", "", f"add {name!r} to the scene's points")
+
+
+def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed | None) -> Number:
+    angles = effect.angles if isinstance(effect, WheelAngles) else ()
+    words, sign = next(((a.words, a.sign) for a in angles if a.name == name), (name, ""))
+
+    def read(_: Motion, samples: Samples) -> Array:
+        return samples.numbers[quantity.name][name]
+
+    path = (quantity.name, name)
+    return Number(path, words, quantity.unit, sign, path, read, missing)
+
+
+def _component(scene: Scene, quantity: Quantity, name: str, i: int, missing: NotComputed | None) -> Number:
+    def read(_: Motion, samples: Samples) -> Array:
+        return samples.numbers[quantity.name][name][..., i]
+
+    along = _along(scene, i)
+    sign = f"about {along}" if along and quantity.of == "body" else along
+    # Places lie far apart: on one axis nothing would be seen of how they change.
+    panel = (quantity.name, COMPONENTS[i]) if quantity in ALWAYS[0].quantities else (quantity.name,)
+    words = f"{quantity.words} of {name.replace('_', ' ')}, {COMPONENTS[i]}"
+    return Number((quantity.name, name, COMPONENTS[i]), words, quantity.unit, sign, panel, read, missing)
+
+
+def _along(scene: Scene, i: int) -> str:
+    """Where an axis of the points points in the car: up, rearward, left; empty where it is between these."""
+    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
+    named = (("up", "down", up), ("right", "left", right), ("rearward", "forward", np.cross(right, up)))
+    for positive, negative, direction in named:
+        if abs(direction[i]) > 1.0 - 1e-9:  # the axes of a scene are orthonormal to rounding
+            return positive if direction[i] > 0.0 else negative
+    return ""
+
+
+def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
+    """The numbers that some words name: one, or the components of one vector.
+
+    The words, with dots between them, are a quantity, a name and a component, of which those may be missing
+    that are not needed; without a quantity the first that fits is meant, position before velocity.
+
+    Raises:
+        UnknownNumber: they fit none, or numbers of more than one name.
+        NotComputed: the scene does not ask for it; the message says how to.
+    """
+    parts = tuple(words.split("."))
+    fitting = [n for n in numbers if _in_order(parts, n.path)]
+    fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
+    if not fitting:
+        raise UnknownNumber(words, f"is no number of this scene{_meant(words, numbers)}; {_there(numbers)}")
+    if len({n.path[:2] for n in fitting}) > 1:
+        some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))
+        raise UnknownNumber(words, f"is more than one number; say which, such as {some}")
+    for number in fitting:
+        if number.missing is not None:
+            raise number.missing
+    return tuple(fitting)
+
+
+def _in_order(parts: Sequence[str], path: Sequence[str]) -> bool:
+    rest = iter(path)
+    return all(part in rest for part in parts)
+
+
+def _meant(words: str, numbers: Sequence[Number]) -> str:
+    known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
+    near = get_close_matches(words, known, n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""
+
+
+def _there(numbers: Sequence[Number]) -> str:
+    """What can be asked for, in as few words as a line holds."""
+    single = [n.short for n in numbers if len(n.path) < 3]
+    vectors: dict[str, dict[str, None]] = {}
+    for n in numbers:
+        if len(n.path) == 3:
+            vectors.setdefault(n.path[0], {})[n.path[1]] = None
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for quantity, names in vectors.items():
+        groups.setdefault(tuple(names), []).append(quantity)
+    told = [
+        f"{' or '.join(q)} with a name and x, y or z, of {', '.join(names)}" for names, q in groups.items()
+    ]
+    return f"there are: {'; '.join([', '.join(single), *told])}"
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What is drawn over what: one number over several, or several over one."""
+
+    across: tuple[Number, ...]
+    up: tuple[Number, ...]
+
+    @property
+    def pairs(self) -> tuple[tuple[Number, Number], ...]:
+        """Each curve's two numbers."""
+        return tuple(product(self.across, self.up))
+
+
+def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
+    """What an engineer wants to see first.
+
+    The angles of the wheel against its travel, which goes upward on the paper, where the wheel goes mostly up
+    and down; else against the one input that moves, or time. The wheel centre's place over time where there
+    are no angles.
+    """
+    there = [n for n in numbers if n.missing is None]
+    one: Mapping[str, Number] = {n.path[0]: n for n in there if len(n.path) == 1}
+    angles = tuple(n for n in there if n.of_the_car)
+    if not angles:
+        points = [n for n in there if len(n.path) == 3]
+        name = wheel_centre(scene)
+        place = [n for n in points if n.path[1] == name] or points
+        return Curves((one[TIME],), tuple(n for n in place if n.path[:2] == place[0].path[:2]))
+    if TRAVEL in one:
+        moved = movement(scene, motion, motion)
+        up = np.array(scene.mechanism.up)
+        level = moved - (moved @ up)[:, None] * up
+        if np.ptp(moved @ up) > np.ptp(level, axis=0).max():
+            return Curves(angles, (one[TRAVEL],))
+    moving = [n for n in there if n.path[0] in scene.functions and np.ptp(n.read(motion, motion)) > 0.0]
+    return Curves((moving[0] if len(moving) == 1 else one[TIME],), angles)

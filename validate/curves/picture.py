@@ -1,0 +1,130 @@
+"""Curves as a picture: a panel for each kind of number, and one axis that all of them share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import fill
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from pointcoord import Motion, Samples
+from validate.cost.picture.look import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
+from validate.curves.numbers import TRAVEL, Curves, Number
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
+STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond their number
+# Inches: of a panel side by side with others and above others, of its labels, of the picture's edges.
+WIDE, HIGH, WIDER, LOWER, LABEL, EDGE = 2.1, 3.6, 5.2, 2.2, 1.2, 0.35
+TITLE, LETTER = 0.08, 0.066  # inches, of letters of a title and of a label, on average
+# Digits below which numbers that do not change differ by rounding.
+STILL = 1e-9
+
+
+def figure(curves: Curves, motion: Motion, samples: Samples, title: str, degrees: bool) -> Figure:
+    """Draw curves of a motion at the instants of samples."""
+    upright = len(_panels(curves.across)) > 1 or curves.up[0].path[0] == TRAVEL
+    several = _panels(curves.across if upright else curves.up)
+    size = (WIDE if len(several) > 1 else 1.7 * WIDE, HIGH) if upright else (WIDER, LOWER)
+    if len(several) == 1 and not upright:
+        size = (WIDER, HIGH)
+    columns, rows = (len(several), 1) if upright else (1, len(several))
+    wide = columns * (size[0] + 0.3) + LABEL + EDGE
+    heading = fill(shown(title), max(int(wide / TITLE), 20))
+    top = EDGE + 0.16 * len(heading.splitlines())
+    between = 0.15 if rows > 1 else 0.0
+    high = rows * (size[1] + between) + LABEL + top
+    with mpl.rc_context(SETTINGS):
+        page = Figure(figsize=(wide, high))
+        first: Axes | None = None
+        for i, panel in enumerate(several):
+            left = (LABEL + i * (size[0] + 0.3 if upright else 0.0)) / wide
+            below = (LABEL + (0.0 if upright else (rows - 1 - i) * (size[1] + between))) / high
+            place = (left, below, size[0] / wide, size[1] / high)
+            axes = page.add_axes(place, sharex=None if upright else first, sharey=first if upright else None)
+            first = first or axes
+            across, up = (panel, curves.up) if upright else (curves.across, panel)
+            _draw(axes, Curves(tuple(across), tuple(up)), motion, samples, degrees, size)
+            if upright and i:
+                axes.set_ylabel("")
+                axes.tick_params(labelleft=False)
+            if not upright and i < rows - 1:
+                axes.set_xlabel("")
+                axes.tick_params(labelbottom=False)
+        page.text(EDGE / wide, 1.0 - 0.5 * EDGE / high, heading, va="top", fontsize=9.0, parse_math=False)
+    return page
+
+
+def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
+    """Numbers that are drawn over the same axis together."""
+    found: dict[tuple[str, ...], list[Number]] = {}
+    for number in numbers:
+        found.setdefault((*number.panel, number.unit), []).append(number)
+    return list(found.values())
+
+
+def _draw(
+    axes: Axes, curves: Curves, motion: Motion, samples: Samples, degrees: bool, size: tuple[float, float]
+) -> None:
+    plain(axes)
+    for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
+        values = np.concatenate([_values(n, motion, samples, degrees) for n in numbers])
+        known = values[np.isfinite(values)]
+        if known.size and np.ptp(known) <= STILL * max(float(np.abs(known).max()), 1.0):
+            middle = float(np.median(known))
+            reach = max(0.1 * abs(middle), 0.1)
+            set_limits(middle - reach, middle + reach)
+    several = len(curves.across) > 1 or len(curves.up) > 1
+    for i, (across, up) in enumerate(curves.pairs):
+        axes.plot(
+            _values(across, motion, samples, degrees),
+            _values(up, motion, samples, degrees),
+            color=COLOURS[i % len(COLOURS)],
+            linestyle=STYLES[i % len(STYLES)] if several else "-",
+            linewidth=1.4,
+            label=(across if len(curves.across) > 1 else up).short,
+        )
+    for line, (low, high) in ((axes.axvline, axes.get_xlim()), (axes.axhline, axes.get_ylim())):
+        if low < 0.0 < high:
+            line(0.0, color=GREY, linewidth=0.6, zorder=1.0)
+    axes.ticklabel_format(useOffset=False)
+    axes.locator_params(nbins=6)
+    wide, high = (int(side / LETTER) for side in size)
+    axes.set_xlabel(_label(curves.across, degrees, wide))
+    axes.set_ylabel(_label(curves.up, degrees, high))
+    if several:
+        axes.legend(fontsize=7.0, framealpha=0.8, edgecolor=FAINT)
+
+
+def _values(number: Number, motion: Motion, samples: Samples, degrees: bool) -> Array:
+    values = number.read(motion, samples)
+    return np.degrees(values) if degrees and number.unit == "rad" else values
+
+
+def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
+    """What an axis shows, with its unit and its sign; of several numbers what they have in common."""
+    first = numbers[0]
+    unit = "deg" if degrees and first.unit == "rad" else first.unit
+    words = first.words if len(numbers) == 1 else _common([n.words for n in numbers])
+    signs = {n.sign for n in numbers}
+    sign = f"\n{fill(f'+ {first.sign}', letters)}" if len(signs) == 1 and first.sign else ""
+    if len(signs) > 1:
+        sign = "\n" + fill(
+            "; ".join(dict.fromkeys(f"+{n.path[-1]} {n.sign}" for n in numbers if n.sign)), letters
+        )
+    return f"{fill(f'{words} [{unit}]', letters)}{sign}"
+
+
+def _common(texts: Sequence[str]) -> str:
+    """The words that texts begin with alike."""
+    words = [text.split() for text in texts]
+    count = 0
+    while all(len(w) > count and w[count] == words[0][count] for w in words):
+        count += 1
+    return " ".join(words[0][:count]).removesuffix(" of").rstrip(",")
