@@ -613,8 +613,8 @@ def _fall(logs: Array) -> tuple[int, Array]:
 def _steady(logs: Array, window: int, fall: Array) -> Array:
     """How much logarithms of terms fall at the end, but no more than since the middle, (members, 1).
 
-    A pair of singular places beside the axis makes terms swing. Where the last window lies in a dip terms fall
-    steeply there, and those after it rise again; the fall over half of the series hardly feels a dip.
+    A pair of singular places beside the axis makes terms swing. Where the last window lies in a dip terms
+    fall steeply there, and those after it rise again; the fall over half of the series hardly feels a dip.
     """
     middle = max(logs.shape[-1] // 2, window + 1)
     half, last = logs[:, middle - window : middle], logs[:, -window:]
