@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from textwrap import fill
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Samples
 from validate.cost.picture.look import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
 from validate.curves.numbers import TRAVEL, Curves, Number
+from validate.extras import MissingPackage
 from validate.plain_text import shown
+
+try:
+    import matplotlib as mpl
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+except ImportError as error:
+    raise MissingPackage("validate.curves.picture", error, "plot") from None
 
 Array = NDArray[np.float64]
 

@@ -46,13 +46,13 @@ from math import sqrt
 from typing import Self
 
 import numpy as np
-from flint import arb
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
@@ -66,6 +66,11 @@ from validate.reference.jet import Jet
 from validate.reference.kinematics import body_turns
 from validate.reference.linkage import Known
 from validate.reference.vectors import Scalar, Vector, plus
+
+try:
+    from flint import arb
+except ImportError as error:
+    raise MissingPackage("validate.solvers.held", error) from None
 
 Array = NDArray[np.float64]
 

@@ -37,7 +37,6 @@ from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.messages import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
@@ -74,6 +73,9 @@ class SolverFailed(Exception):
 
 def given_to_solver(scene: Scene) -> dict[str, Any]:
     """A scene as plain data, in the form that the top of this file tells; new arrays at every call."""
+    # The many digits that laws are rounded from are an extra; this module is imported without it.
+    from validate.formulations.input_rates import rates
+
     part, instants = scene.mechanism, scene.instants.copy()
     still = np.zeros((len(instants), 3))
     laws = {

@@ -270,6 +270,16 @@ def test_without_the_extra_one_line_names_it(program: str, words: list[str], tmp
     assert "pip install 'pointcoord[validate]'" in line
 
 
+@pytest.mark.parametrize(
+    "words", [["simulate", "steer"], ["plan", "steer"], ["scenes"], ["draw", "steer"], ["sweep", "--help"]]
+)
+def test_solving_needs_no_extra(words: list[str], tmp_path: Path) -> None:
+    for name in ("mpmath", "flint", "pinocchio", "threadpoolctl"):
+        (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError(name={name!r})\n")
+    done = with_fake(tmp_path, *words)
+    assert done.returncode == 0, done.stderr
+
+
 def test_every_module_says_which_extra_it_lacks() -> None:
     program = (
         "import importlib, pkgutil, sys\n"
