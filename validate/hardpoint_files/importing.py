@@ -105,9 +105,6 @@ def import_hardpoints(
         UnknownName: no such format, suspension, side, part, unit or point.
         UnknownAxes: `axes` are none.
         AssemblyError: its points cannot be put together.
-
-    >>> import_hardpoints("report.txt", side="right").scene.mechanism.side  # doctest: +SKIP
-    'right'
     """
     choices = Choices(format, suspension, side, part, names, axes, unit, camber, toe, mirror)
     _known_choices(choices)
