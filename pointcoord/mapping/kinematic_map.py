@@ -253,7 +253,7 @@ class KinematicMap:
                 what moves the chassis may be given too, and is zero if it is not.
             rates, accelerations: likewise, per s and per s^2.
             bounds: whether to prove how far each number is off, at its own pose, for the inputs as they are
-                given; it takes some 50 times as long.
+                given; of 1,000 poses and more with both rates it takes some seven times as long.
         Returns:
             Positions of all points, their velocities and accelerations where rates and accelerations are
             given, and the scene's effects as far as these are known.

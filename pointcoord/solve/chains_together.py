@@ -46,8 +46,8 @@ BEGUN = 8
 # below.
 SEGMENT, PRODUCTS = 12.0, 0.015
 # A member whose last terms alone would make the segments this much shorter than the middle one's stands out.
-# What it is hardly matters: 512 designs of three kinds took 0.34 to 0.68 s with 0.25, 0.53 to 0.64 s with
-# 0.5, and 0.55 to 0.80 s with 0.75.
+# A choice: 512 designs of three kinds took 0.34 to 0.68 s with 0.25, 0.53 to 0.64 s with 0.5, and 0.55 to
+# 0.80 s with 0.75, on a machine so busy that these do not tell them apart.
 STANDS_OUT = 0.5
 
 

@@ -29,7 +29,7 @@ class Frame:
 def pretend(monkeypatch: pytest.MonkeyPatch, *there: str) -> None:
     """Have only some libraries installed, which keep their columns."""
     for name in LIBRARIES:
-        kind = type(name, (Frame,), {"library": name})
+        kind = type(name, (Frame,), {"made_by": name})
         library = ModuleType(name)
         vars(library)["DataFrame"] = kind
         monkeypatch.setitem(sys.modules, name, library if name in there else None)
@@ -79,7 +79,7 @@ def test_the_library_that_is_installed_is_taken(
     there: tuple[str, ...], made: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pretend(monkeypatch, *there)
-    assert simulate(Scene.load("steer")).to_dataframe().library == made
+    assert simulate(Scene.load("steer")).to_dataframe().made_by == made
 
 
 def test_a_library_that_is_not_there_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The absolute-coordinate model, without its claims, which take twice as long as the solution.
+"""The absolute-coordinate model, without its claims: of short motions they take several times as long.
 
 The set-up describes the bodies and their rows and assembles the drawing. The model refines many instants at
 once and solves for their rates with the factors that the last correction leaves, so its rates are part of
