@@ -22,8 +22,10 @@ SLOW = "import time\nfrom validate.output.console import Console\nconsole = Cons
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
-def on_terminal(words: list[str], columns: int = 120, both: bool = True, **more: str) -> str:
-    """What a pseudo-terminal is shown of a program, of both of its outputs or of its results only."""
+def on_terminal(
+    words: list[str], columns: int = 120, both: bool = True, folder: Path = ROOT, **more: str
+) -> str:
+    """What a pseudo-terminal is shown of a program: both of its outputs, or its results only."""
     ours, theirs = pty.openpty()
     ioctl(theirs, TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
     dropped = {"NO_COLOR", "COLUMNS", "LINES", "FORCE_COLOR"}
@@ -35,7 +37,7 @@ def on_terminal(words: list[str], columns: int = 120, both: bool = True, **more:
         stdout=theirs,
         stderr=theirs if both else subprocess.DEVNULL,
         env={**environment, **more},
-        cwd=ROOT,
+        cwd=folder,
     )
     os.close(theirs)
     shown = b""
@@ -53,24 +55,28 @@ def on_terminal(words: list[str], columns: int = 120, both: bool = True, **more:
 
 
 def without_rich(folder: Path) -> Mapping[str, str]:
-    """An environment in which rich does not load."""
+    """An environment in which rich does not load, for a program that runs in the folder.
+
+    Python looks in the folder where it runs first, then in PYTHONPATH: run where the packages are
+    installed, it would find rich beside them.
+    """
     (folder / "rich.py").write_text("raise ImportError('gone', name='rich')\n")
     return {"PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
 
 
-def validated(columns: int = 120, both: bool = False, **more: str) -> str:
-    return on_terminal([*PROGRAM, "validate", "double-wishbone"], columns, both, **more)
+def validated(columns: int = 120, both: bool = False, folder: Path = ROOT, **more: str) -> str:
+    return on_terminal([*PROGRAM, "validate", "double-wishbone"], columns, both, folder, **more)
 
 
 def test_a_terminal_without_rich_shows_what_a_pipe_has(tmp_path: Path) -> None:
     piped = run("validate", "double-wishbone").stdout
-    assert validated(both=True, **without_rich(tmp_path)).replace("\r\n", "\n") == piped
+    assert validated(both=True, folder=tmp_path, **without_rich(tmp_path)).replace("\r\n", "\n") == piped
     assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
 
 
 def test_a_pipe_has_plain_text_whatever_is_installed(tmp_path: Path) -> None:
     there = run("validate", "double-wishbone")
-    gone = run("validate", "double-wishbone", env={**ENVIRONMENT, **without_rich(tmp_path)})
+    gone = run("validate", "double-wishbone", env={**ENVIRONMENT, **without_rich(tmp_path)}, cwd=tmp_path)
     assert there.stdout == gone.stdout
     assert (there.stderr, gone.stderr) == ("", "")
     assert "\x1b" not in there.stdout

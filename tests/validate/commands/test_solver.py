@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import plain_solvers
 import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints
 
@@ -77,7 +78,8 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
 
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
     words = ["validate", "--solver", "own_solvers.prints:solve", "off-axis-strut.toml", "--json", "-"]
-    path = f"{ROOT}:{ROOT / 'tests' / 'support'}"
+    # The tests' own folder, not ROOT's: ROOT is where the packages are installed.
+    path = f"{ROOT}:{Path(plain_solvers.__file__).parent}"
     done = subprocess.run(
         [*PROGRAM, *words],
         capture_output=True,
