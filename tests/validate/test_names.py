@@ -11,7 +11,7 @@ from pointcoord.suspensions import SUSPENSIONS
 
 ROOT = Path(validate.__file__).parent
 # The paper's tables are about the paper's car; cars and hard cases are about hardpoints.
-ROOMS = ("formulations", "comparison", "diagnosis", "output", "ci", "commands", "hardpoint_files")
+ROOMS = ("formulations", "comparison", "diagnosis", "output", "ci", "commands", "hardpoint_files", "html")
 TOPOLOGIES = [topology for kind in SUSPENSIONS.values() for topology in kind.closures.values()]
 NAMES = {
     "effect": {*EFFECTS},
