@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from pointcoord import Scene, SceneError
+from pointcoord import Motion, PointcoordError, Scene, SceneError, simulate
 from validate.commands.comparison import FIRST, FURTHER, SECOND
 from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, UsageError, add_quiet, load_scene, name_of
 from validate.comparison.examined import Examined, examine
@@ -78,4 +78,14 @@ def _told(name: str) -> Told:
     except SceneError as error:
         return Told(Examined(name=name_of(name), problem=str(error)), None)
     examined = examine(name, scene, ((FIRST, SECOND), FURTHER), name in PAPER_SCENES)
-    return Told(examined, scene, tuple(explain_outcome(scene, outcome) for outcome in examined.outcomes))
+    explained = tuple(explain_outcome(scene, outcome) for outcome in examined.outcomes)
+    return Told(examined, scene, _motion(scene), explained)
+
+
+def _motion(scene: Scene) -> Motion | None:
+    try:
+        return simulate(scene)
+    except PointcoordError as error:
+        # Why it is refused is told already.
+        partial = error.partial
+        return partial if isinstance(partial, Motion) else None

@@ -77,7 +77,7 @@ def _writer(text: str) -> Callable[[BinaryIO], None]:
 
 
 def csv_text(run: Run) -> str:
-    """Every comparison of a run, a line each; numbers give their bits back, one that is not there is empty."""
+    """Every comparison of a run, a line each; numbers give their bits back, a missing one is empty."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, [field.name for field in fields(Comparison)])
     writer.writeheader()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Mapping
+from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -15,8 +17,12 @@ TEMPLATES = Path(__file__).with_name("templates")
 # What marks a page as ours, so that no other page is written over.
 GENERATOR = "pointcoord report"
 EXTRA = "report"
-# Nothing is loaded from anywhere; styles are in the page itself.
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
+# Nothing is loaded from anywhere: styles are in the page itself, pictures are what plotly makes of its own
+# plots, and the only scripts that run are those with these hashes.
+POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
+    "form-action 'none'; script-src {}"
+)
 
 
 def require_templates() -> None:
@@ -26,6 +32,7 @@ def require_templates() -> None:
         MissingPackage: a package of the extra is not there.
     """
     _package("jinja2")
+    _package("plotly.offline")
 
 
 def _package(name: str) -> Any:
@@ -42,21 +49,34 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     Args:
         files: names of the files beside it, by their kind.
     Raises:
-        MissingPackage: jinja2 is not there.
+        MissingPackage: a package of the extra is not there.
     """
     jinja2 = _package("jinja2")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )
-    # Our own text, in which no user has a say: the only one that goes into the page as it is.
-    style = jinja2.utils.markupsafe.Markup((TEMPLATES / "page.css").read_text(encoding="utf-8"))
-    made = [(section, section.blocks(run)) for section in sections()]
+    # Our own text and plotly's, in which no user has a say: all that goes into the page as it is.
+    as_it_is = jinja2.utils.markupsafe.Markup
+    made = [(section, blocks) for section in sections() if (blocks := section.blocks(run))]
+    scripts: list[str] = []
+    if any(block.scripted for _, blocks in made for block in blocks):
+        scripts = [_package("plotly.offline").get_plotlyjs(), _own("page.js")]
     text = environment.get_template("page.html").render(
         run=run,
-        parts=[(section, blocks) for section, blocks in made if blocks],
-        policy=POLICY,
+        parts=made,
+        policy=POLICY.format(" ".join(map(_hash, scripts)) or "'none'"),
         generator=GENERATOR,
-        style=style,
+        style=as_it_is(_own("page.css")),
+        scripts=[as_it_is(script) for script in scripts],
         files=files,
     )
     return str(text)
+
+
+def _own(name: str) -> str:
+    return (TEMPLATES / name).read_text(encoding="utf-8")
+
+
+def _hash(script: str) -> str:
+    """What a policy calls a script of the page, by its content."""
+    return f"'sha256-{b64encode(sha256(script.encode('utf-8')).digest()).decode('ascii')}'"

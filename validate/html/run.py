@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pointcoord import Scene
+from pointcoord import Motion, Scene
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings
 from validate.diagnosis import Explanation
@@ -21,11 +21,13 @@ class Told:
 
     Attributes:
         scene: None where its file could not be read.
+        motion: as pointcoord solves it, or the part that could be solved; None if nothing could.
         explained: of each of its comparisons, what would explain that it disagrees.
     """
 
     examined: Examined
     scene: Scene | None
+    motion: Motion | None = None
     explained: tuple[Sequence[Explanation], ...] = ()
 
     @property

@@ -3,20 +3,26 @@
 import csv
 import json
 import sys
+from base64 import b64encode
 from dataclasses import replace
+from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 
-from pointcoord import Scene
+from pointcoord import Scene, simulate
 from validate.cli import main
 from validate.comparison.examined import Examined, examine
 from validate.html.page import page
+from validate.html.plot import MOST_POINTS, fewer
 from validate.html.run import Run, Told
 from validate.html.sections import sections
 from validate.output.document import Head, schema_text
+from validate.output.report import worst_rows
 
 BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
 FILES = {"json": "results.json", "csv": "comparisons.csv"}
@@ -30,6 +36,7 @@ class Read(HTMLParser):
         self.opened: list[tuple[str, dict[str, str | None]]] = []
         self.cells: list[list[str]] = []
         self.verdict = ""
+        self.scripts: list[str] = []
         self._into: str | None = None
         self.feed(text)
         self.close()
@@ -42,23 +49,28 @@ class Read(HTMLParser):
         elif tag in ("th", "td"):
             self.cells[-1].append("")
             self._into = "cell"
+        elif tag == "script":
+            self.scripts.append("")
+            self._into = "script"
         elif tag == "p" and given.get("role") == "status":
             self._into = "verdict"
 
     def handle_endtag(self, tag: str) -> None:
-        if tag in ("th", "td", "p"):
+        if tag in ("th", "td", "p", "script"):
             self._into = None
 
     def handle_data(self, data: str) -> None:
         if self._into == "cell":
             self.cells[-1][-1] += data
+        elif self._into == "script":
+            self.scripts[-1] += data
         elif self._into == "verdict":
             self.verdict += data
 
 
 def told(name: str, scene: Scene, factor: float = 1.0) -> Told:
     examined = examine(name, scene, (("pointcoord", "absolute"),), False, factor)
-    return Told(examined, scene, tuple(() for _ in examined.outcomes))
+    return Told(examined, scene, simulate(scene), tuple(() for _ in examined.outcomes))
 
 
 def run_of(*scenes: Told) -> Run:
@@ -87,7 +99,8 @@ def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
     read = Read((tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
     assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
     assert [row[0] for row in read.cells if name in row[0]]
-    assert not {"img", "script"} & {tag for tag, _ in read.opened}
+    assert "img" not in {tag for tag, _ in read.opened}
+    assert len(read.scripts) == 2  # plotly and our own
     assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
@@ -140,6 +153,9 @@ def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
     assert len(policies) == 1
     assert policies[0].startswith("default-src 'none';")
     assert "http" not in policies[0]
+    hashes = [b64encode(sha256(script.encode()).digest()).decode() for script in read.scripts]
+    assert policies[0].endswith("script-src " + " ".join(f"'sha256-{one}'" for one in hashes))
+    assert "unsafe-eval" not in policies[0]
     for tag, given in read.opened:
         assert tag not in ("link", "iframe", "object", "embed", "base")
         assert "src" not in given
@@ -192,3 +208,46 @@ def test_without_its_packages_the_extra_is_named(
     assert main(["report", str(tmp_path / "out"), "steer"]) == 2
     assert "pip install 'pointcoord[report]'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def plots(read: Read) -> list[tuple[str, dict[str, Any]]]:
+    """Of each plot what a screen reader says, and what plotly draws."""
+    return [
+        (given["aria-label"] or "", json.loads(given["data-plot"] or ""))
+        for _, given in read.opened
+        if "data-plot" in given
+    ]
+
+
+def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told) -> None:
+    run = run_of(bounce)
+    shown = [(words, one) for words, one in plots(Read(page(run, FILES))) if "of its tolerance" in words]
+    worst = worst_rows(bounce.examined.outcomes[0])
+    assert len(shown) == len(worst) > 5
+    for row, (_, one) in zip(worst, shown, strict=True):
+        held, gap = (np.array(trace["y"], dtype=float) for trace in one["data"])
+        assert np.nanmax(gap / held) == pytest.approx(row.share, rel=2e-3, abs=1e-300)
+        assert one["layout"]["yaxis"]["type"] == "log"
+        assert row.unit in one["layout"]["yaxis"]["title"]["text"]
+
+
+def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Told) -> None:
+    shown = [(w, one) for w, one in plots(Read(page(run_of(bounce), FILES))) if w.startswith("wheel travel")]
+    assert len(shown) >= 2
+    for _, one in shown:
+        line, dots = one["data"]
+        assert set(zip(dots["x"], dots["y"], strict=True)) <= set(zip(line["x"], line["y"], strict=True))
+        assert max(line["y"]) - min(line["y"]) > 10.0
+
+
+def test_of_very_many_instants_the_worst_is_drawn() -> None:
+    weight = np.zeros(100_000)
+    weight[[123, 77_777]] = 1.0, 2.0
+    places = fewer(weight)
+    assert len(places) <= MOST_POINTS
+    assert {0, 123, 77_777, 99_999} <= set(places)
+
+
+def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(tmp_path: Path) -> None:
+    assert main(["report", "-q", str(tmp_path)]) == 0
+    assert (tmp_path / "index.html").stat().st_size < 8e6
