@@ -11,6 +11,7 @@ from typing import Any
 
 from validate.extras import MissingPackage
 from validate.html.run import Run
+from validate.html.section import PLOTLY
 from validate.html.sections import sections
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -58,9 +59,8 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     # Our own text and plotly's, in which no user has a say: all that goes into the page as it is.
     as_it_is = jinja2.utils.markupsafe.Markup
     made = [(section, blocks) for section in sections() if (blocks := section.blocks(run))]
-    scripts: list[str] = []
-    if any(block.scripted for _, blocks in made for block in blocks):
-        scripts = [_package("plotly.offline").get_plotlyjs(), _own("page.js")]
+    needed = dict.fromkeys(name for _, blocks in made for block in blocks for name in block.scripts)
+    scripts = [_plotly() if name == PLOTLY else _own(name) for name in needed]
     text = environment.get_template("page.html").render(
         run=run,
         parts=made,
@@ -71,6 +71,10 @@ def page(run: Run, files: Mapping[str, str]) -> str:
         files=files,
     )
     return str(text)
+
+
+def _plotly() -> str:
+    return str(_package("plotly.offline").get_plotlyjs())
 
 
 def _own(name: str) -> str:

@@ -14,6 +14,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.html.section import PLOTLY
+
 Array = NDArray[np.float64]
 
 # Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
@@ -46,7 +48,7 @@ class Plots:
     """Panels side by side, as many as the page is wide."""
 
     template: ClassVar[str] = "plots.html"
-    scripted: ClassVar[bool] = True
+    scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js")
     caption: str
     panels: tuple[Panel, ...]
 

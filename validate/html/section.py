@@ -12,17 +12,20 @@ from typing import ClassVar, Protocol
 
 from validate.html.run import Run
 
+# The script that the package plotly brings.
+PLOTLY = "plotly"
+
 
 class Block(Protocol):
     """A piece of a page.
 
     Attributes:
         template: file in `templates/` that draws it, as `block`.
-        scripted: whether it is drawn by plotly.
+        scripts: what it needs to run, in this order: files in `templates/`, or PLOTLY.
     """
 
     template: ClassVar[str]
-    scripted: ClassVar[bool]
+    scripts: ClassVar[tuple[str, ...]]
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,7 @@ class Paragraph:
     """Text, and what kind of verdict it tells, if any."""
 
     template: ClassVar[str] = "paragraph.html"
-    scripted: ClassVar[bool] = False
+    scripts: ClassVar[tuple[str, ...]] = ()
     text: str
     verdict: str = ""
 
@@ -53,7 +56,7 @@ class Grid:
     """A table; the first cell of a row is its name."""
 
     template: ClassVar[str] = "grid.html"
-    scripted: ClassVar[bool] = False
+    scripts: ClassVar[tuple[str, ...]] = ()
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]

@@ -100,7 +100,7 @@ def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
     assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
     assert [row[0] for row in read.cells if name in row[0]]
     assert "img" not in {tag for tag, _ in read.opened}
-    assert len(read.scripts) == 2  # plotly and our own
+    assert len(read.scripts) == 3  # plotly and two of our own
     assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
@@ -251,3 +251,24 @@ def test_of_very_many_instants_the_worst_is_drawn() -> None:
 def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(tmp_path: Path) -> None:
     assert main(["report", "-q", str(tmp_path)]) == 0
     assert (tmp_path / "index.html").stat().st_size < 8e6
+
+
+def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Told) -> None:
+    read = Read(page(run_of(bounce), FILES))
+    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    first, second = bounce.examined.outcomes[0].solutions
+    for solution, model in zip((first, second), shown["models"], strict=True):
+        assert model["name"] == solution.formulation
+        for name, places in solution.position.items():
+            i = shown["points"].index(name)
+            got = np.array([frame[i] for frame in model["frames"]])
+            at = [int(np.argmin(np.abs(solution.times - time))) for time in shown["times"]]
+            assert np.abs(got - places[at]).max() < 0.006
+    drawn = dict(zip(shown["points"], shown["drawn"], strict=True))
+    scene = bounce.scene
+    assert scene is not None
+    for name, place in scene.mechanism.points.items():
+        assert drawn[name] == pytest.approx(list(place), abs=0.006)
+    controls = [given for tag, given in read.opened if tag in ("button", "input")]
+    assert len(controls) == 2
+    assert all(given.get("aria-label") for given in controls)
