@@ -17,6 +17,7 @@ from validate.html.run import Run, Told
 from validate.output.console import Console
 from validate.output.document import Head
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
+from validate.paper.tables import compare_with_paper
 
 DESCRIPTION = """\
 Compare scenes as `pointcoord validate` does, and write a report of it into a folder: index.html,
@@ -65,7 +66,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             if one.examined.complaint:
                 console.complain(one.examined.complaint)
             told.append(one)
-    whole = Run(head, tuple(told))
+    paper = () if options.scenes else compare_with_paper()
+    whole = Run(head, tuple(told), paper=paper)
     page = write_report(options.folder, whole)[-1]
     console.written = [f"{page} holds the report"]
     console.say(f"{whole.sentence}\n{page}")

@@ -13,6 +13,7 @@ from validate.diagnosis import Explanation
 from validate.exit_status import ExitStatus, combined
 from validate.output import report
 from validate.output.document import Head
+from validate.paper.tables import PaperRow
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,17 @@ class Told:
 
 @dataclass(frozen=True)
 class Run:
-    """All that a report is made of."""
+    """All that a report is made of.
+
+    Attributes:
+        told: its scenes. factor: how many times the derived tolerance differences are held to.
+        paper: the paper's printed tables beside ours, where they were asked for.
+    """
 
     head: Head
     told: tuple[Told, ...]
     factor: float = 1.0
+    paper: tuple[PaperRow, ...] = ()
 
     @property
     def status(self) -> ExitStatus:
@@ -79,7 +86,7 @@ class Run:
         results = {
             "scenes": [report.examined_data(one.examined, one.explained) for one in self.told],
             "printed_formulas": [report.finding_data(finding) for finding in self.findings],
-            "printed_tables": None,
+            "printed_tables": report.paper_data(self.paper) if self.paper else None,
             "tolerance_factor": self.factor,
             "not_run": [],
             "baseline": None,

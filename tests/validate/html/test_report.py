@@ -23,6 +23,7 @@ from validate.html.run import Run, Told
 from validate.html.sections import sections
 from validate.output.document import Head, schema_text
 from validate.output.report import worst_rows
+from validate.paper.tables import TABLE_2, TABLE_3
 
 BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
 FILES = {"json": "results.json", "csv": "comparisons.csv"}
@@ -117,7 +118,7 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
         assert float(line["difference"]) == row["difference"]
     read = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
     assert read.verdict == "2 of 2 scenes agree."
-    shown = [row for row in read.cells if row and row[0].startswith(("steer", "double-wishbone"))]
+    shown = [row for row in read.cells if row[0].endswith(" and absolute")]
     assert len(shown) == 4
     for row in shown:
         assert all(cell.startswith(("agrees", "not asked for")) for cell in row[1:])
@@ -248,9 +249,40 @@ def test_of_very_many_instants_the_worst_is_drawn() -> None:
     assert {0, 123, 77_777, 99_999} <= set(places)
 
 
-def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(tmp_path: Path) -> None:
-    assert main(["report", "-q", str(tmp_path)]) == 0
-    assert (tmp_path / "index.html").stat().st_size < 8e6
+@pytest.fixture(scope="module")
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of all built-in scenes."""
+    folder = tmp_path_factory.mktemp("report")
+    assert main(["report", "-q", str(folder)]) == 0
+    return folder
+
+
+def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(built_in: Path) -> None:
+    assert 4e6 < (built_in / "index.html").stat().st_size < 8e6
+
+
+def test_every_printed_row_of_the_paper_is_on_the_page_beside_ours(built_in: Path) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    shown = [one for words, one in plots(read) if words == "wheel centre, z, over time"]
+    assert len(shown) == 2
+    for one, table in zip(shown, (TABLE_2, TABLE_3), strict=True):
+        printed, computed = one["data"]
+        assert list(zip(printed["x"], printed["y"], strict=True)) == [
+            (row.time, row.wheel_centre[2]) for row in table
+        ]
+        assert len(computed["y"]) == len(table)
+        assert computed["y"] != printed["y"]
+
+
+def test_the_errata_are_those_of_the_data_each_with_its_number(built_in: Path) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    wrong = json.loads((built_in / "results.json").read_text())["printed_formulas"]
+    assert wrong
+    for finding in wrong:
+        line = [row for row in read.cells if row[0] == finding["scene"] and row[-1] == finding["erratum"]]
+        size, unit = finding["worst"]["difference"], finding["worst"]["unit"]
+        number = "not a number" if size is None else f"{size:.1e} {unit}"
+        assert any(row[2].startswith(number) for row in line), finding
 
 
 def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Told) -> None:
