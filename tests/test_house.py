@@ -58,6 +58,7 @@ ROOMS = {
         "cost",
         "curves",
         "hardpoint_files",
+        "html",
         "commands",
         "door",
         "studies",

@@ -31,6 +31,7 @@ COMMANDS = {
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",
+    "report": "report",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

@@ -38,6 +38,7 @@ from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
+from validate.html.folder import require_folder
 from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
@@ -461,6 +462,14 @@ RECIPES: dict[str, Recipe] = {
         lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
         ("x.csv: cannot be written", "there is no folder"),
         {"target": lambda name: name.endswith("x.csv"), "problem": bool},
+    ),
+    "validate.html.folder.NotOurs": Recipe(
+        lambda folder, _: (
+            (folder / "index.html").write_text("<p>mine</p>"),
+            require_folder(str(folder)),
+        ),
+        ("index.html: is no report of this program", "give another folder"),
+        {"target": lambda name: name.endswith("index.html"), "problem": bool},
     ),
     "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),

@@ -252,12 +252,7 @@ def _compared(
     one, two = sides
     unit = QUANTITIES[quantity].unit
     mine, other = (_stacked([side.numbers[part] for part in parts]) for side in sides)
-    gap = np.abs(mine - other)
-    if unit == "rad":
-        # Whole turns apart is the same angle.
-        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
-    # A NaN is a disagreement, and the worst one.
-    gap[~np.isfinite(gap)] = np.inf
+    gap = gaps_between(mine, other, unit)
     nothing = np.zeros_like(one.numbers[parts[0]])
     held = [_stacked([side.claims.get(part, nothing) for part in parts]) for side in sides]
     # The smaller of both, so that a wrong number does not widen its own tolerance.
@@ -298,6 +293,17 @@ def _compared(
             rests_on=sides[larger].formulation,
             part=float(factor * held[larger][place] / (allowed[place] + SMALLEST)),
         )
+
+
+def gaps_between(mine: Array, other: Array, unit: str) -> Array:
+    """How far two arrays of numbers are apart, number by number; infinity where one is none."""
+    gap = np.abs(mine - other)
+    if unit == "rad":
+        # Whole turns apart is the same angle.
+        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
+    # A NaN is a disagreement, and the worst one.
+    gap[~np.isfinite(gap)] = np.inf
+    return np.asarray(gap)
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:

@@ -1,0 +1,306 @@
+"""`pointcoord report`: one page that says what the data beside it say, and takes all text as text."""
+
+import csv
+import json
+import sys
+from base64 import b64encode
+from dataclasses import replace
+from hashlib import sha256
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+from pointcoord import Scene, simulate
+from validate.cli import main
+from validate.comparison.examined import Examined, examine
+from validate.html.page import page
+from validate.html.plot import MOST_POINTS, fewer
+from validate.html.run import Run, Told
+from validate.html.sections import sections
+from validate.output.document import Head, schema_text
+from validate.output.report import worst_rows
+from validate.paper.tables import TABLE_2, TABLE_3
+
+BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
+FILES = {"json": "results.json", "csv": "comparisons.csv"}
+
+
+class Read(HTMLParser):
+    """The elements of a page with their attributes, its tables as text, and all that it loads."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.opened: list[tuple[str, dict[str, str | None]]] = []
+        self.cells: list[list[str]] = []
+        self.verdict = ""
+        self.scripts: list[str] = []
+        self._into: str | None = None
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.opened.append((tag, given))
+        if tag == "tr":
+            self.cells.append([])
+        elif tag in ("th", "td"):
+            self.cells[-1].append("")
+            self._into = "cell"
+        elif tag == "script":
+            self.scripts.append("")
+            self._into = "script"
+        elif tag == "p" and given.get("role") == "status":
+            self._into = "verdict"
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in ("th", "td", "p", "script"):
+            self._into = None
+
+    def handle_data(self, data: str) -> None:
+        if self._into == "cell":
+            self.cells[-1][-1] += data
+        elif self._into == "script":
+            self.scripts[-1] += data
+        elif self._into == "verdict":
+            self.verdict += data
+
+
+def told(name: str, scene: Scene, factor: float = 1.0) -> Told:
+    examined = examine(name, scene, (("pointcoord", "absolute"),), False, factor)
+    return Told(examined, scene, simulate(scene), tuple(() for _ in examined.outcomes))
+
+
+def run_of(*scenes: Told) -> Run:
+    return Run(Head.of("validate", ("pointcoord", "report", "out")), scenes)
+
+
+@pytest.fixture(scope="module")
+def bounce() -> Told:
+    return told("bounce", Scene.load("bounce"))
+
+
+def spoiled(one: Told) -> Told:
+    """The same with one comparison that disagrees."""
+    outcome = one.examined.outcomes[0]
+    rows = (replace(outcome.rows[0], share=7.0, verdict="disagrees"), *outcome.rows[1:])
+    return replace(one, examined=replace(one.examined, outcomes=(replace(outcome, rows=rows),)))
+
+
+def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
+    name = "<script>alert('x')&lt;.toml"
+    file = tmp_path / name
+    text = BOUNCE.read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("title")]
+    file.write_text("\n".join(["title = '</title></script><img src=x onerror=alert(1)>'", *lines]))
+    assert main(["report", str(tmp_path / "out"), str(file)]) == 0
+    read = Read((tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
+    assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
+    assert [row[0] for row in read.cells if name in row[0]]
+    assert "img" not in {tag for tag, _ in read.opened}
+    assert len(read.scripts) == 3  # plotly and two of our own
+    assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+
+
+def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> None:
+    assert main(["report", "-q", str(tmp_path), "steer", "double-wishbone"]) == 0
+    document = json.loads((tmp_path / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    rows = [row for scene in document["scenes"] for one in scene["comparisons"] for row in one["rows"]]
+    with (tmp_path / "comparisons.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert len(lines) == len(rows) > 100
+    for line, row in zip(lines, rows, strict=True):
+        assert (line["scene"], line["name"], line["verdict"]) == (row["scene"], row["name"], row["verdict"])
+        assert float(line["difference"]) == row["difference"]
+    read = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
+    assert read.verdict == "2 of 2 scenes agree."
+    shown = [row for row in read.cells if row[0].endswith(" and absolute")]
+    assert len(shown) == 4
+    for row in shown:
+        assert all(cell.startswith(("agrees", "not asked for")) for cell in row[1:])
+
+
+def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Told) -> None:
+    run = run_of(spoiled(bounce), replace(bounce, examined=replace(bounce.examined, name="other")))
+    read = Read(page(run, FILES))
+    assert read.verdict == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
+    coloured = [given for tag, given in read.opened if tag == "td" and given.get("class") == "disagrees"]
+    assert len(coloured) == 1
+    assert sum(cell.startswith("disagrees") for row in read.cells for cell in row) == 1
+    assert run.document["verdict"] == "disagree"
+
+
+def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
+    run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
+    read = Read(page(run, FILES))
+    assert read.verdict == "0 of 1 scene agrees; not tested: no such."
+    assert run.status == 2
+
+
+def test_a_wider_tolerance_is_said_in_the_verdict(bounce: Told) -> None:
+    assert "2.0 times" in replace(run_of(bounce), factor=2.0).sentence
+    assert "times" not in run_of(bounce).sentence
+
+
+def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
+    read = Read(page(run_of(bounce), FILES))
+    policies = [
+        given["content"] or "" for tag, given in read.opened if given.get("http-equiv", "") and tag == "meta"
+    ]
+    assert len(policies) == 1
+    assert policies[0].startswith("default-src 'none';")
+    assert "http" not in policies[0]
+    hashes = [b64encode(sha256(script.encode()).digest()).decode() for script in read.scripts]
+    assert policies[0].endswith("script-src " + " ".join(f"'sha256-{one}'" for one in hashes))
+    assert "unsafe-eval" not in policies[0]
+    for tag, given in read.opened:
+        assert tag not in ("link", "iframe", "object", "embed", "base")
+        assert "src" not in given
+        assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES.values()
+
+
+def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Told) -> None:
+    read = Read(page(run_of(bounce), FILES))
+    ids = [given["id"] for _, given in read.opened if "id" in given]
+    assert len(set(ids)) == len(ids)
+    assert {section.name for section in sections() if section.blocks(run_of(bounce))} <= set(ids)
+    assert len({section.place for section in sections()}) == len(sections())
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([""], "names no folder"),
+        (["FILE", "steer"], "is a file; allowed: a folder"),
+        (["FOREIGN", "steer"], "is no report of this program"),
+        (["NEW", "-", "-"], "more than once"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_a_line_and_nothing_is_touched(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "FILE").write_text("mine")
+    (tmp_path / "FOREIGN").mkdir()
+    (tmp_path / "FOREIGN" / "index.html").write_text("<p>mine</p>")
+    first = str(tmp_path / words[0]) if words[0] else ""
+    assert main(["report", first, *words[1:]]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert (tmp_path / "FILE").read_text() == "mine"
+    assert [file.name for file in (tmp_path / "FOREIGN").iterdir()] == ["index.html"]
+    assert not (tmp_path / "NEW").exists()
+
+
+def test_a_report_is_written_again_over_its_own(tmp_path: Path) -> None:
+    assert main(["report", "-q", str(tmp_path), "steer"]) == 0
+    assert main(["report", "-q", str(tmp_path), "bounce"]) == 0
+    assert "steer" not in (tmp_path / "comparisons.csv").read_text()
+
+
+def test_without_its_packages_the_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    assert main(["report", str(tmp_path / "out"), "steer"]) == 2
+    assert "pip install 'pointcoord[report]'" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def plots(read: Read) -> list[tuple[str, dict[str, Any]]]:
+    """Of each plot what a screen reader says, and what plotly draws."""
+    return [
+        (given["aria-label"] or "", json.loads(given["data-plot"] or ""))
+        for _, given in read.opened
+        if "data-plot" in given
+    ]
+
+
+def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told) -> None:
+    run = run_of(bounce)
+    shown = [(words, one) for words, one in plots(Read(page(run, FILES))) if "of its tolerance" in words]
+    worst = worst_rows(bounce.examined.outcomes[0])
+    assert len(shown) == len(worst) > 5
+    for row, (_, one) in zip(worst, shown, strict=True):
+        held, gap = (np.array(trace["y"], dtype=float) for trace in one["data"])
+        assert np.nanmax(gap / held) == pytest.approx(row.share, rel=2e-3, abs=1e-300)
+        assert one["layout"]["yaxis"]["type"] == "log"
+        assert row.unit in one["layout"]["yaxis"]["title"]["text"]
+
+
+def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Told) -> None:
+    shown = [(w, one) for w, one in plots(Read(page(run_of(bounce), FILES))) if w.startswith("wheel travel")]
+    assert len(shown) >= 2
+    for _, one in shown:
+        line, dots = one["data"]
+        assert set(zip(dots["x"], dots["y"], strict=True)) <= set(zip(line["x"], line["y"], strict=True))
+        assert max(line["y"]) - min(line["y"]) > 10.0
+
+
+def test_of_very_many_instants_the_worst_is_drawn() -> None:
+    weight = np.zeros(100_000)
+    weight[[123, 77_777]] = 1.0, 2.0
+    places = fewer(weight)
+    assert len(places) <= MOST_POINTS
+    assert {0, 123, 77_777, 99_999} <= set(places)
+
+
+@pytest.fixture(scope="module")
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of all built-in scenes."""
+    folder = tmp_path_factory.mktemp("report")
+    assert main(["report", "-q", str(folder)]) == 0
+    return folder
+
+
+def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(built_in: Path) -> None:
+    assert 4e6 < (built_in / "index.html").stat().st_size < 8e6
+
+
+def test_every_printed_row_of_the_paper_is_on_the_page_beside_ours(built_in: Path) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    shown = [one for words, one in plots(read) if words == "wheel centre, z, over time"]
+    assert len(shown) == 2
+    for one, table in zip(shown, (TABLE_2, TABLE_3), strict=True):
+        printed, computed = one["data"]
+        assert list(zip(printed["x"], printed["y"], strict=True)) == [
+            (row.time, row.wheel_centre[2]) for row in table
+        ]
+        assert len(computed["y"]) == len(table)
+        assert computed["y"] != printed["y"]
+
+
+def test_the_errata_are_those_of_the_data_each_with_its_number(built_in: Path) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    wrong = json.loads((built_in / "results.json").read_text())["printed_formulas"]
+    assert wrong
+    for finding in wrong:
+        line = [row for row in read.cells if row[0] == finding["scene"] and row[-1] == finding["erratum"]]
+        size, unit = finding["worst"]["difference"], finding["worst"]["unit"]
+        number = "not a number" if size is None else f"{size:.1e} {unit}"
+        assert any(row[2].startswith(number) for row in line), finding
+
+
+def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Told) -> None:
+    read = Read(page(run_of(bounce), FILES))
+    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    first, second = bounce.examined.outcomes[0].solutions
+    for solution, model in zip((first, second), shown["models"], strict=True):
+        assert model["name"] == solution.formulation
+        for name, places in solution.position.items():
+            i = shown["points"].index(name)
+            got = np.array([frame[i] for frame in model["frames"]])
+            at = [int(np.argmin(np.abs(solution.times - time))) for time in shown["times"]]
+            assert np.abs(got - places[at]).max() < 0.006
+    drawn = dict(zip(shown["points"], shown["drawn"], strict=True))
+    scene = bounce.scene
+    assert scene is not None
+    for name, place in scene.mechanism.points.items():
+        assert drawn[name] == pytest.approx(list(place), abs=0.006)
+    controls = [given for tag, given in read.opened if tag in ("button", "input")]
+    assert len(controls) == 2
+    assert all(given.get("aria-label") for given in controls)

@@ -1,0 +1,92 @@
+"""The folder of a report: the page, and its data as JSON and CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import BinaryIO
+
+from validate.comparison.compare import Comparison
+from validate.html.page import GENERATOR, page
+from validate.html.run import Run
+from validate.output.document import json_text
+from validate.output.files import OutputError, require_writable, unwritable, write_whole
+
+PAGE = "index.html"
+FILES = {"json": "results.json", "csv": "comparisons.csv"}
+# The mark of our pages is near their beginning.
+BEGINNING = 4096
+
+
+class NotOurs(OutputError):
+    """The folder holds a page that is no report, or is no folder."""
+
+
+def require_folder(folder: str) -> None:
+    """Make the folder if it is not there; refuse one that cannot take a report, before anything is solved.
+
+    Raises:
+        NotOurs: it is a file, or holds a page that this program did not make.
+        OutputError: it cannot be made or written.
+    """
+    place = Path(folder)
+    try:
+        if place.exists() and not place.is_dir():
+            raise NotOurs(folder, "is a file; allowed: a folder, which is made if it is not there")
+        place.mkdir(parents=True, exist_ok=True)
+        old = place / PAGE
+        if old.is_file():
+            with old.open("rb") as stream:
+                ours = f'content="{GENERATOR}"'.encode() in stream.read(BEGINNING)
+            if not ours:
+                raise NotOurs(str(old), "is no report of this program; give another folder, or move it away")
+    except OSError as error:
+        raise unwritable(folder, error) from None
+    except ValueError as error:
+        # A path with a zero byte in it.
+        raise NotOurs(folder, f"names no folder ({error})") from None
+    for name in (*FILES.values(), PAGE):
+        require_writable(os.path.join(folder, name))
+
+
+def write_report(folder: str, run: Run) -> tuple[str, ...]:
+    """Write the page and its data; the page is last, so that where it is, its data are.
+
+    Returns:
+        The files that were written.
+    Raises:
+        MissingPackage: a package of the extra is not there.
+        OutputError: one cannot be written.
+    """
+    contents = {FILES["json"]: json_text(run.document), FILES["csv"]: csv_text(run), PAGE: page(run, FILES)}
+    for name, text in contents.items():
+        write_whole(os.path.join(folder, name), _writer(text))
+    return tuple(os.path.join(folder, name) for name in contents)
+
+
+def _writer(text: str) -> Callable[[BinaryIO], None]:
+    def write(stream: BinaryIO) -> None:
+        # A file's name may hold bytes that are no text.
+        stream.write(text.encode("utf-8", "backslashreplace"))
+
+    return write
+
+
+def csv_text(run: Run) -> str:
+    """Every comparison of a run, a line each; numbers give their bits back, a missing one is empty."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, [field.name for field in fields(Comparison)])
+    writer.writeheader()
+    writer.writerows(_lines(run))
+    return stream.getvalue()
+
+
+def _lines(run: Run) -> Iterator[dict[str, object]]:
+    for one in run.told:
+        for outcome in one.examined.outcomes:
+            for row in outcome.rows:
+                yield {name: "" if value != value else value for name, value in asdict(row).items()}

@@ -1,0 +1,74 @@
+"""Plots of a page: what plotly draws, as plain data.
+
+Texts in it come from our own registries only: plotly reads some HTML in its labels, and a scene's own words
+stand around a plot and not in it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.html.section import PLOTLY
+
+Array = NDArray[np.float64]
+
+# Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
+OURS, OTHER = "#2f86c9", "#d9641c"
+# Points of a curve, at most: a page stays small however many instants a scene has.
+MOST_POINTS = 600
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes.
+
+    Attributes:
+        words: what is drawn, for people who see the page and for those who hear it.
+        traces, layout: as plotly has them.
+    """
+
+    words: str
+    traces: tuple[Mapping[str, Any], ...]
+    layout: Mapping[str, Any]
+
+    @property
+    def json(self) -> str:
+        """The panel for the script of the page."""
+        return json.dumps({"data": self.traces, "layout": self.layout}, allow_nan=False)
+
+
+@dataclass(frozen=True)
+class Plots:
+    """Panels side by side, as many as the page is wide."""
+
+    template: ClassVar[str] = "plots.html"
+    scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js")
+    caption: str
+    panels: tuple[Panel, ...]
+
+
+def axis(title: str, logarithmic: bool = False) -> Mapping[str, Any]:
+    """An axis of a panel."""
+    words: dict[str, Any] = {"title": {"text": title}, "automargin": True}
+    return words | ({"type": "log", "exponentformat": "power", "nticks": 6} if logarithmic else {})
+
+
+def numbers(array: Array, digits: int) -> list[float | None]:
+    """Numbers in as many digits as a drawing needs; None where there is none."""
+    return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in array.tolist()]
+
+
+def fewer(weight: Array) -> Sequence[int]:
+    """Places of at most MOST_POINTS numbers, (N,): of each stretch that which weighs most, and the ends."""
+    count = len(weight)
+    if count <= MOST_POINTS:
+        return range(count)
+    stretches = np.array_split(np.arange(count), MOST_POINTS - 2)
+    peaks = {int(stretch[np.argmax(weight[stretch])]) for stretch in stretches}
+    return sorted(peaks | {0, count - 1})

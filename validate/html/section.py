@@ -1,0 +1,78 @@
+"""A section of a report as data: what it is called, where it stands, and what it is made of.
+
+A section is a file in `sections/` with one `SECTION`; a new one is a new file, and nothing else knows it. It
+makes blocks of a run; a block is plain data and knows the template that draws it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+from validate.html.run import Run
+
+# The script that the package plotly brings.
+PLOTLY = "plotly"
+
+
+class Block(Protocol):
+    """A piece of a page.
+
+    Attributes:
+        template: file in `templates/` that draws it, as `block`.
+        scripts: what it needs to run, in this order: files in `templates/`, or PLOTLY.
+    """
+
+    template: ClassVar[str]
+    scripts: ClassVar[tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Text, and what kind of verdict it tells, if any."""
+
+    template: ClassVar[str] = "paragraph.html"
+    scripts: ClassVar[tuple[str, ...]] = ()
+    text: str
+    verdict: str = ""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What a table says at one place: a word or a number, and small print below it.
+
+    Attributes:
+        verdict: the word of a verdict that gives the cell its colour; the text says it too.
+    """
+
+    text: str
+    detail: str = ""
+    verdict: str = ""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table; the first cell of a row is its name."""
+
+    template: ClassVar[str] = "grid.html"
+    scripts: ClassVar[tuple[str, ...]] = ()
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page with a heading.
+
+    Attributes:
+        name: anchor on the page. title: heading.
+        place: sections stand in the order of these numbers.
+        blocks: what it is made of; a section that has nothing to show of a run makes none and is left out.
+    """
+
+    name: str
+    title: str
+    place: int
+    blocks: Callable[[Run], Sequence[Block]]

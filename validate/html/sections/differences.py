@@ -1,0 +1,61 @@
+"""Differences over time against what they are held to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.over_time import over_time
+from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers
+from validate.html.run import Run, Told
+from validate.html.section import Block, Section
+from validate.output.report import about, worst_rows
+
+Array = NDArray[np.float64]
+
+
+def _blocks(run: Run) -> Sequence[Block]:
+    return [block for one in run.told for block in _of_scene(one)]
+
+
+def _of_scene(one: Told) -> Iterator[Block]:
+    if one.scene is None:
+        return
+    for outcome in one.examined.outcomes:
+        rows = worst_rows(outcome)
+        panels = tuple(
+            panel for row in rows if (panel := _panel(outcome, row, one.scene.instants)) is not None
+        )
+        first, second = (solution.formulation for solution in outcome.solutions)
+        if panels:
+            yield Plots(f"{outcome.scene}: {first} and {second}", panels)
+
+
+def _panel(outcome: Outcome, row: Comparison, instants: Array) -> Panel | None:
+    found = over_time(outcome, row, instants)
+    if found is None:
+        return None
+    at = fewer(found.share)
+    # A logarithm has no place for a difference of nothing.
+    difference = np.where(found.difference > 0.0, found.difference, np.nan)
+    times = numbers(found.times[at], 9)
+    traces = (
+        {"x": times, "y": numbers(found.tolerance[at], 4), "name": "held to", "line": {"color": OTHER}},
+        {
+            "x": times,
+            "y": numbers(difference[at], 4),
+            "name": "difference",
+            "mode": "lines+markers",
+            "marker": {"size": 4},
+            "line": {"color": OURS, "width": 1},
+        },
+    )
+    told = about(row.quantity, row.name)
+    layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{row.unit}]", logarithmic=True)}
+    return Panel(f"{told}: {row.verdict}, at most {row.share:.1e} of its tolerance", traces, layout)
+
+
+SECTION = Section("differences", "Differences over time", 40, _blocks)

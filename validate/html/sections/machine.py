@@ -1,0 +1,37 @@
+"""Where the numbers come from: command, versions, machine, settings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from validate.html.run import Run
+from validate.html.section import Block, Cell, Grid, Section
+from validate.output.report import held_to
+from validate.plain_text import shown
+
+
+def _blocks(run: Run) -> Sequence[Block]:
+    document = run.document
+    told = {
+        "command": document["command_line"],
+        "program": " ".join(document["program"].values()),
+        "started": document["started"],
+        "exit status": f"{document['exit_status']}, {document['verdict']}",
+        "differences": held_to(run.factor),
+        **dict(_flat(document["machine"])),
+    }
+    rows = tuple((Cell(name), Cell(shown(value))) for name, value in told.items())
+    return [Grid("What this page was made by.", ("what", "value"), rows)]
+
+
+def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Names and values of plain data; a value that is a mapping stands for its own."""
+    for name, value in data.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value)
+        else:
+            yield name, "not there" if value is None else str(value)
+
+
+SECTION = Section("machine", "Machine, versions, settings", 900, _blocks)
