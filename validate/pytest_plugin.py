@@ -99,7 +99,7 @@ def plain_scene() -> Callable[[Scene | str], dict[str, Any]]:
 
 @pytest.fixture(scope="session")
 def assert_agrees() -> Callable[..., Outcome]:
-    """`validate.assert_agrees`; a test whose scene the stated accuracy says nothing of is skipped for it."""
+    """`validate.assert_agrees`; where some numbers are not tested and none disagrees, the test is skipped."""
     from validate.testing import assertion
 
     def agrees(states: Mapping[str, Any], scene: Scene | str, **options: Any) -> Outcome:

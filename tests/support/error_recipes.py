@@ -437,8 +437,8 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
-        ("an accuracy of 1000 mm says nothing", "state a finer accuracy"),
-        {"accuracy": 1e3, "scene": BOUNCE.title},
+        ("not tested in", "camber", "an accuracy of 1000 mm says nothing", "state a finer accuracy"),
+        {"accuracy": 1e3, "scene": BOUNCE.title, "numbers": ("camber",)},
     ),
     "validate.formulations.registry.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}

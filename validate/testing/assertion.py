@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pointcoord import Scene
@@ -18,18 +18,20 @@ MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there ar
 
 
 class NotTested(AssertionError):
-    """Nothing disagrees and nothing agrees: at the stated accuracy no number that is given can be tested.
+    """Nothing disagrees, but the stated accuracy says nothing of some of the numbers that are given.
 
     Attributes:
-        scene: its name. accuracy: as it was stated, mm.
+        scene: its name. accuracy: as it was stated, mm. numbers: what is not tested, in words.
     """
 
-    def __init__(self, scene: str, accuracy: float) -> None:
+    def __init__(self, scene: str, accuracy: float, numbers: Sequence[str], agree: int) -> None:
         self.scene = scene
         self.accuracy = accuracy
+        self.numbers = tuple(numbers)
         super().__init__(
-            f"an accuracy of {accuracy:g} mm says nothing of any number in {scene!r}, which is too near a "
-            "singular pose for it; state a finer accuracy, or leave this scene out"
+            f"not tested in {scene!r}: {', '.join(numbers)}; an accuracy of {accuracy:g} mm says nothing of "
+            f"them, for the scene is too near a singular pose for it ({agree} others agree); state a finer "
+            "accuracy, or leave this scene out"
         )
 
 
@@ -52,7 +54,7 @@ def assert_agrees(
     Raises:
         AssertionError: a number disagrees, or nothing that is asked for is given. The message says which
             quantity of what, the difference, the tolerance and the instant, and what would explain it.
-        NotTested: this accuracy says nothing of this scene.
+        NotTested: this accuracy says nothing of some of them, and nothing disagrees.
         NoSolver: `accuracy` is no length above 0.
         FormulationError: the states are no mapping, or the other formulation refuses the scene.
         SceneError: there is no such scene, or it is wrong.
@@ -72,11 +74,13 @@ def assert_agrees(
         outcome = compare(taken, one, against, name)
     if outcome.disagreements:
         raise AssertionError(_disagreement(taken, outcome, exact))
-    if outcome.passed:
-        return outcome
-    if any(row.verdict == "not tested" for row in outcome.rows):
-        raise NotTested(outcome.scene, exact)
-    raise AssertionError(_nothing(outcome))
+    untested = [about(row.quantity, row.name) for row in outcome.rows if row.verdict == "not tested"]
+    agree = sum(row.verdict == "agrees" for row in outcome.rows)
+    if untested:
+        raise NotTested(outcome.scene, exact, untested, agree)
+    if not agree:
+        raise AssertionError(_nothing(outcome))
+    return outcome
 
 
 def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:

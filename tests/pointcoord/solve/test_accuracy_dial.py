@@ -24,7 +24,7 @@ from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve import taylor
 from pointcoord.solve.assembly import Pose, assemble
 from validate.cars.random_scenes import random_scene
-from validate.strategies import scenes
+from validate.cars.strategies import scenes
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

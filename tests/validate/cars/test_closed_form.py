@@ -14,7 +14,7 @@ from validate.cars.closed_form import ClosedForm
 from validate.cars.input_limits import Linkage
 from validate.cars.near_singular import car_with_ends
 from validate.cars.registry import VARIANTS, Variant, suspension_of
-from validate.strategies import cars
+from validate.cars.strategies import cars
 
 EPS = float(np.finfo(float).eps)
 STRUTS = tuple(v for v in VARIANTS if v.suspension == "macpherson")

@@ -7,11 +7,11 @@ from hypothesis import assume, given, note, settings
 from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene, built_in_scenes, simulate
 from validate.cars.car import moved, turned
 from validate.cars.scene_content import scene_content
+from validate.cars.strategies import scenes
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
 from validate.hard.cars import PAPER_CAR
 from validate.paper.scenes import DEFAULT_SCENES
-from validate.strategies import scenes
 
 # Rows that an effect makes beside those of every point.
 WHAT_IT_GIVES = {

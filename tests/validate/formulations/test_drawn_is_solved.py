@@ -20,11 +20,11 @@ from validate.cars.car import Car, any_rotation, as_tuple, moved, other_side, sc
 from validate.cars.input_limits import Linkage
 from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
 from validate.cars.scene_content import car_of, scene_content
+from validate.cars.strategies import cars
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, PAPER_CAR
 from validate.reference import NoReferenceError
-from validate.strategies import cars
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, SceneError, built_in_scenes
 from validate.adjudication.reference_solution import reference_solution, told_by
 from validate.cars.scene_content import scene_content
+from validate.cars.strategies import scenes
 from validate.comparison.compare import compare, compare_solutions
 from validate.extras import MissingPackage
 from validate.formulations.outside_programs import OutsideProgram
@@ -21,7 +22,6 @@ from validate.hard.cars import BESIDE_CAR, PAPER_CAR
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.linkage import PeerError
 from validate.peers.motion import Poses, Rates
-from validate.strategies import scenes
 
 Array = NDArray[np.float64]
 QUANTITIES = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration", "wheel")

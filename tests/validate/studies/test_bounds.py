@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from validate.cars.input_limits import Linkage
 from validate.cars.near_singular import approach, near_pose
 from validate.cars.registry import VARIANTS
+from validate.cars.strategies import cars
 from validate.reference import InfeasibleError, solve_reference
-from validate.strategies import cars
 from validate.studies.bounds import (
     BoundStudy,
     Check,

@@ -65,7 +65,8 @@ def test_a_run_that_does_not_use_the_plugin_imports_nothing_for_it(
         "import sys\n"
         "def test_plain(request):\n"
         "    assert request.config.pluginmanager.hasplugin('pointcoord')\n"
-        "    ours = {n for n in sys.modules if n.partition('.')[0] in ('pointcoord', 'absolute', 'validate')}\n"
+        "    packages = 'pointcoord', 'absolute', 'validate'\n"
+        "    ours = {n for n in sys.modules if n.partition('.')[0] in packages}\n"
         "    assert ours == {'validate', 'validate.running', 'validate.extras', 'validate.pytest_plugin'}\n"
         "    assert not {'numpy', 'flint', 'mpmath'} & set(sys.modules)\n",
         encoding="utf-8",
