@@ -2,24 +2,58 @@
 
 from validate import compare
 outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
+
+Names are imported when they are first used: pytest imports this package at every start where it is installed,
+for its plugin.
 """
 
-from validate.comparison.compare import Comparison, Outcome, compare
-from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from validate.running import check_what_is_run
-from validate.solvers.check import check
+
+if TYPE_CHECKING:
+    from validate.comparison.compare import Comparison, Outcome, compare
+    from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
+    from validate.solvers.check import check
+    from validate.testing.assertion import NotTested, assert_agrees
 
 __all__ = [
     "Accuracy",
     "Comparison",
     "Formulation",
     "FormulationError",
+    "NotTested",
     "Outcome",
     "Solution",
+    "assert_agrees",
     "check",
     "compare",
 ]
 
 DISTRIBUTION = "pointcoord"  # tells this package from others of its name
+
+# Where names are that are no part of the protocol of formulations.
+_MODULES = {
+    "Comparison": "comparison.compare",
+    "NotTested": "testing.assertion",
+    "Outcome": "comparison.compare",
+    "assert_agrees": "testing.assertion",
+    "check": "solvers.check",
+    "compare": "comparison.compare",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_MODULES.get(name, 'formulations.protocol')}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
 
 check_what_is_run()

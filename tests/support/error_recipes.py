@@ -21,7 +21,7 @@ from absolute.mechanism import Mechanism
 from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.suspensions.macpherson import COLLINEAR
-from validate import cli, compare
+from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
@@ -435,6 +435,11 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
+    ),
+    "validate.testing.assertion.NotTested": Recipe(
+        lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
+        ("not tested in", "camber", "an accuracy of 1000 mm says nothing", "state a finer accuracy"),
+        {"accuracy": 1e3, "scene": BOUNCE.title, "numbers": ("camber",)},
     ),
     "validate.formulations.registry.UnknownFormulation": Recipe(
         lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, "), {"name": "adams"}

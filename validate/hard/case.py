@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 # right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
 # some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
@@ -82,6 +82,8 @@ class Case:
         behaviour: one sentence that says what is expected.
         examine: tries one value.
         unit: of error and bound.
+        content: of the scene at a value, of a case whose trial is one scene; for whoever has another solver
+            to try on it.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Case:
     behaviour: str
     examine: Callable[[float], Trial]
     unit: str = "mm"
+    content: Callable[[float], Mapping[str, Any]] | None = None
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:

@@ -74,7 +74,7 @@ def scene_case(
     def examine(value: float) -> Trial:
         return try_scene(value, scene(value), tuple(expected), measure)
 
-    return Case(name, group, why, parameter, tuple(values), expected, behaviour, examine)
+    return Case(name, group, why, parameter, tuple(values), expected, behaviour, examine, content=scene)
 
 
 def try_scene(

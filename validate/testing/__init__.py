@@ -1,0 +1,1 @@
+"""What tests of other people's solvers are written with."""
