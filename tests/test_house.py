@@ -52,6 +52,7 @@ ROOMS = {
         "cars",
         "adjudication",
         "measured",
+        "fitting",
         "output",
         "ci",
         "hard",

@@ -31,6 +31,7 @@ COMMANDS = {
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",
+    "fit": "fit",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 
