@@ -140,6 +140,7 @@ def fit_hardpoints(
     bounds: float = BOUNDS,
     prior: float = PRIOR,
     accuracy: float = 0.0,
+    solves: int = MOST_SOLVES,
 ) -> Fit:
     """Fit a scene's hardpoints to a file.
 
@@ -148,6 +149,7 @@ def fit_hardpoints(
         bounds: that corrections keep, mm.
         prior: how far off hardpoints are thought to be, a standard deviation, mm.
         accuracy: how far off the file's numbers may be beside their digits, each in its own unit.
+        solves: how many corrections are tried before it stops without having converged.
     Raises:
         UnknownName: no point or axis is called so.
         FitError: bounds or prior no number above 0, or fewer numbers than none.
@@ -180,7 +182,7 @@ def fit_hardpoints(
         return np.concatenate([known, np.eye(len(zero)) / prior])
 
     solved = least_squares(
-        left, zero, slopes, bounds=(-bounds, bounds), xtol=1e-8, ftol=ENOUGH, gtol=1e-12, max_nfev=MOST_SOLVES
+        left, zero, slopes, bounds=(-bounds, bounds), xtol=1e-8, ftol=ENOUGH, gtol=1e-12, max_nfev=solves
     )
     amounts = np.asarray(solved.x)
     matrix = curves.slopes(amounts, used) / spread[:, None]
