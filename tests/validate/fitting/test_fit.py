@@ -162,3 +162,18 @@ def test_the_program_writes_the_corrected_scene_and_says_what_is_wrong(
     assert main([*found[:-1], "upper_ball_joint.q"]) == 2
     assert main(["fit", str(misread), "--data", str(data)]) == 2
     assert all(line.count("allowed") <= 1 for line in capsys.readouterr().err.splitlines())
+
+
+def test_slopes_are_how_the_motion_of_moved_cars_changes() -> None:
+    """A difference over 0.5 mm to either side: its truncation is some (0.5 / 100)^2 / 6 of the slope."""
+    data = measured(wheel_table(CAR, 4), CAR)
+    slopes = Curves(CAR, data, FREE).slopes(np.zeros(2), np.ones(18, dtype=bool))
+    for i, name in enumerate(FREE):
+        more, less = (
+            measured(wheel_table(designs_of(CAR, offsets={name: move}).design(0), 13), CAR)
+            for move in (0.5, -0.5)
+        )
+        change = np.concatenate(
+            [a.values - b.values for a, b in zip(more.numbers, less.numbers, strict=True)]
+        )
+        assert np.abs(slopes[:, i] - change).max() < 1e-3 * np.abs(change).max()
