@@ -53,6 +53,7 @@ ROOMS = {
         "strategies",
         "adjudication",
         "measured",
+        "fitting",
         "output",
         "ci",
         "hard",

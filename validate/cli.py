@@ -32,6 +32,7 @@ COMMANDS = {
     "cost": "cost",
     "import": "hardpoints",
     "report": "report",
+    "fit": "fit",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

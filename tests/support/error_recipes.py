@@ -33,6 +33,7 @@ from validate.cost.way import Setting
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
 from validate.curves.numbers import found, numbers_of
+from validate.fitting.fit import free_coordinates
 from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
@@ -301,6 +302,11 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: columns_of_text("time,camber\n0,1.2\n1,l.3\n", "mine.csv"),
         ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
         {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
+    ),
+    "validate.fitting.errors.FitError": Recipe(
+        lambda *_: free_coordinates(BOUNCE, ["strut_top", "strut_top.z"]),
+        ("--free", "strut_top.z is there twice", "allowed: each coordinate once"),
+        {"place": "--free", "problem": bool, "allowed": bool},
     ),
     "validate.ci.baseline.BaselineError": Recipe(
         lambda folder, _: read_baseline(str(folder / "none.npz")),

@@ -143,14 +143,14 @@ def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held]
             around.append((poses.at(ends[0]), poses.at(ends[1])))
     found, unknown = [], []
     for s in measured.numbers:
-        mine, bound = _ours(s, here, scene)
+        mine, bound = ours_of(s, here, scene)
         if mine is None or bound is None:
             unknown.append(s)
         swing = np.zeros(len(values[0]))
         for pair in around:
             change = [np.zeros_like(swing)]
             for side in pair:
-                there = _ours(s, side, scene)[0]
+                there = ours_of(s, side, scene)[0]
                 if there is not None and mine is not None:
                     change.append(np.nan_to_num(_turned(np.abs(there - mine), s)))
             swing = swing + np.max(change, axis=0)
@@ -176,7 +176,7 @@ def _turned(gap: Array, series: Series) -> Array:
     return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
 
 
-def _ours(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
     """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
     meaning = series.meaning
     part = found.numbers.get(meaning.quantity, {})

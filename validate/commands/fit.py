@@ -1,0 +1,132 @@
+"""`pointcoord fit`: the hardpoints that best explain measured curves, and what these leave open."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import BinaryIO
+
+from validate.commands.usage import (
+    STANDARD_INPUT,
+    UsageError,
+    add_quiet,
+    add_scene,
+    load_scene,
+    name_of,
+    require_target,
+    told_as,
+)
+from validate.exit_status import ExitStatus
+from validate.fitting.corrected import corrected_text
+from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints
+from validate.fitting.words import text_of, warnings_of_fit
+from validate.measured.mapping import read_results
+from validate.output.console import Console
+from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.plain_text import shown
+
+ENDINGS = (".toml",)
+
+DESCRIPTION = """\
+Find the corrections of hardpoints that best explain a file of results, by least squares, each
+number weighed by the digits that it is written with. Says what is left, how well each correction
+is known, and which combinations of coordinates the data cannot see. Where there are such, the
+answer is one of many: the one that moves the hardpoints least."""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser("fit", help="fit hardpoints to measured curves", description=DESCRIPTION)
+    add_scene(parser)
+    parser.add_argument(
+        "--data",
+        metavar="FILE",
+        required=True,
+        help="a file of results (CSV, whitespace table, Parquet), as for validate --data",
+    )
+    parser.add_argument("--map", metavar="FILE.toml", help="what the columns of --data are")
+    parser.add_argument(
+        "--free",
+        metavar="POINT.AXIS",
+        nargs="+",
+        default=[],
+        help="coordinates to correct, such as lower_ball_joint.z, or points for all three; none: every point",
+    )
+    parser.add_argument(
+        "--bounds",
+        metavar="MM",
+        type=float,
+        default=BOUNDS,
+        help=f"how far a coordinate may move at most ({BOUNDS:g} if not given)",
+    )
+    parser.add_argument(
+        "--prior",
+        metavar="MM",
+        type=float,
+        default=PRIOR,
+        help="how far off a coordinate is thought to be, a standard deviation: the smaller, the less "
+        f"hardpoints move ({PRIOR:g} if not given, which settles only what the data leave open)",
+    )
+    parser.add_argument(
+        "--accuracy",
+        metavar="A",
+        type=float,
+        default=0.0,
+        help="how far off the numbers of --data may be beside their digits, each in its column's unit",
+    )
+    parser.add_argument("-o", "--output", metavar="SCENE.toml", help="the corrected scene; - for the output")
+    add_quiet(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Fit a scene's hardpoints to a file.
+
+    Returns:
+        NO_VERDICT if least squares did not end.
+    Raises:
+        UsageError, UnknownEnding: the options do not go together, or the target has no name for a scene.
+        ResultsError, FitError, UnknownName: the file, its map or an option is wrong.
+        SceneError: the scene is wrong; PointcoordError: it cannot be solved.
+        OutputError: the scene cannot be written.
+    """
+    if STANDARD_INPUT in (options.data, options.map):
+        raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    for option, least in (("bounds", "above 0"), ("prior", "above 0"), ("accuracy", "from 0 up")):
+        value = getattr(options, option)
+        if not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and option == "accuracy"))):
+            raise UsageError(f"--{option} is {value:g}; allowed: a finite number {least}")
+    files = tuple(file for file in (options.scene, options.data, options.map) if file is not None)
+    require_target(options.output, "-o", files)
+    to_output = options.output == "-"
+    console.quiet, console.mute = options.quiet, to_output
+    if to_output:
+        console.require("use -o FILE")
+    elif options.output is not None:
+        require_known_ending(options.output, ENDINGS)
+        require_writable(options.output)
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    with told_as(name):
+        measured = read_results(options.data, options.map, scene)
+        fit = fit_hardpoints(scene, measured, options.free, options.bounds, options.prior, options.accuracy)
+    console.say(text_of(fit, name, measured.source))
+    for note in (*measured.notes, *fit.notes):
+        console.note(f"{name}: {note}")
+    for warning in warnings_of_fit(fit):
+        console.warn(f"{name}: {warning}")
+    if options.output is not None:
+        text = corrected_text(fit, name, measured.source)
+        if to_output:
+            console.write(text)
+            console.flush()
+        else:
+            write_whole(options.output, lambda stream: _put(stream, text))
+            console.written = [f"{options.output} holds the corrected scene"]
+            console.say(
+                f"{shown(options.output)} is written; try: pointcoord validate {shown(options.output)}"
+            )
+    return ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT
+
+
+def _put(stream: BinaryIO, text: str) -> None:
+    stream.write(text.encode())

@@ -1,0 +1,1 @@
+"""Hardpoints that explain measured curves, and what the curves cannot tell of them."""

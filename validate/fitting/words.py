@@ -1,0 +1,134 @@
+"""A fit in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.fitting.fit import Combination, Fit, Fitted
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+# Parts of a combination that are said, of its largest one.
+SAID = 0.05
+# Singular values below this part of the largest are rounding of the slopes.
+NOTHING = 1e-6
+
+
+def text_of(fit: Fit, name: str, source: str) -> str:
+    """Everything that is to be said of a fit."""
+    lines = [f"{name}: hardpoints fitted to {source}"]
+    for unit in dict.fromkeys(column.unit for column in fit.columns):
+        before, after, count = fit.rms(unit)
+        lines.append(f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)")
+    lines += [f"    {_column(column)}" for column in fit.columns]
+    lines.append(
+        f"  what is left is {fit.factor:.3g} times what the digits explain"
+        if fit.factor > 1.0
+        else "  what is left is no more than the digits explain"
+    )
+    lines += ["", f"  correction, mm, within +-{fit.bounds:g}, and its standard deviation"]
+    width = max(len(one) for one in fit.corrections)
+    for one, amount in fit.corrections.items():
+        deviation = fit.deviations[one]
+        open_ = "   not known from these data" if deviation >= fit.bounds else ""
+        bound = "   on its bound" if one in fit.on_bounds else ""
+        lines.append(f"    {one.ljust(width)} {amount + 0.0:+10.4f} +- {deviation:.2g}{open_}{bound}")
+    lines += [
+        "",
+        "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm",
+    ]
+    lines += [f"    {one.singular:10.3g}  {_known(one)}" for one in fit.combinations]
+    if fit.unique:
+        lines += [
+            "",
+            "  The data settle every combination of these coordinates: unique near here.",
+        ]
+        return "\n".join(lines)
+    count = len(fit.unseen)
+    lines += [
+        "",
+        f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
+        "coordinates.",
+        f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it; any of "
+        "them may be added:",
+    ]
+    lines += [f"    {words}" for words in unseen_words(fit)]
+    return "\n".join(lines)
+
+
+def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
+    """What must not be overlooked."""
+    found = []
+    if not fit.converged:
+        found.append("least squares had not ended at a minimum when it was stopped; take fewer coordinates")
+    if fit.on_bounds:
+        found.append(
+            f"{', '.join(fit.on_bounds)} would go beyond the bounds of {fit.bounds:g} mm: less might be left"
+        )
+    if not fit.unique:
+        found.append(
+            f"the answer is not unique: {len(fit.unseen)} combinations of coordinates are "
+            "not seen by the data"
+        )
+    return tuple(found)
+
+
+def unseen_words(fit: Fit) -> list[str]:
+    """Which combinations the data cannot see; those that change nothing at all as simply as can be."""
+    largest = max(one.singular for one in fit.combinations)
+    nothing = [one for one in fit.unseen if one.singular <= NOTHING * largest]
+    weak = [one for one in fit.unseen if one not in nothing]
+    said = [f"{combination(parts)}: changes nothing" for parts in simplest(nothing)]
+    said += [f"{combination(one.parts)}: known to {one.deviation:.2g} mm only" for one in weak]
+    return said
+
+
+def combination(parts: Mapping[str, float]) -> str:
+    """A combination as a sum, largest part first; parts that are small beside it are left out."""
+    largest = max(abs(part) for part in parts.values())
+    told = sorted(parts.items(), key=lambda one: -abs(one[1]))
+    some = [(name, part / largest) for name, part in told if abs(part) >= SAID * largest]
+    if len(some) == 1:
+        return some[0][0]
+    sign = math.copysign(1.0, some[0][1])
+    words = " ".join(f"{'-' if sign * part < 0.0 else '+'} {abs(part):.2f} {name}" for name, part in some)
+    return words.removeprefix("+ ")
+
+
+def simplest(found: Sequence[Combination]) -> list[dict[str, float]]:
+    """The same space of combinations by ones of few coordinates: each has one of its own (full pivoting)."""
+    if not found:
+        return []
+    names = list(found[0].parts)
+    rows = np.array([[one.parts[name] for name in names] for one in found])
+    left = list(range(len(rows)))
+    while left:
+        sizes = np.abs(rows[left])
+        row, column = np.unravel_index(int(sizes.argmax()), sizes.shape)
+        pivot = left.pop(int(row))
+        rows[pivot] /= rows[pivot, column]
+        for other in range(len(rows)):
+            if other != pivot:
+                rows[other] -= rows[other, column] * rows[pivot]
+    return [dict(zip(names, row.tolist(), strict=True)) for row in rows]
+
+
+def _of(unit: str, number: float) -> str:
+    if unit.startswith("rad"):
+        return f"{math.degrees(number):.4g} deg{unit.removeprefix('rad')}"
+    return f"{number:.4g} {unit}"
+
+
+def _column(column: Fitted) -> str:
+    parts = (_of(column.unit, part) for part in (column.before, column.after, column.digits))
+    before, after, digits = parts
+    return f"{shown(column.column)}: {before} before, {after} after; known to {digits}"
+
+
+def _known(one: Combination) -> str:
+    return f"{one.deviation:.3g}" if one.seen else "not seen"
