@@ -62,9 +62,9 @@ def test_a_claim_is_what_the_worst_corner_of_a_lines_box_turns_it_by(scale: floa
 
 
 def test_of_an_exact_line_the_claim_is_its_roundings() -> None:
-    # The products' roundings move 600 along the run by 3 eps 600 at most, and 800 along the rise by 3 eps 800:
-    # across the line that is (800 600 + 600 800) 3 eps / 1000 of a length of 1000. The arc tangent rounds by
-    # 2 eps of itself.
+    # The products' roundings move 600 along the run by 3 eps 600 at most, and 800 along the rise by
+    # 3 eps 800: across the line that is (800 600 + 600 800) 3 eps / 1000 of a length of 1000. The arc tangent
+    # rounds by 2 eps of itself.
     claim = float(ANGLE.error(by_hand([600.0, 800.0, 0.0], np.zeros(3)))[0])
     expected = 2.0 * 480_000.0 * 3.0 / 1e6 + 2.0 * np.arctan2(800.0, 600.0)
     assert claim / EPS == pytest.approx(expected, rel=1e-9)
