@@ -7,20 +7,27 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from absolute.description import Corner
+from absolute.description import Corner, Vector
+from absolute.effects.effect import Effect
 from absolute.effects.projected_angle import projected_angle
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
-RISE, RUN = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
-ANGLE = projected_angle(
-    name="angle",
-    gives="",
-    sign="",
-    line=lambda corner: corner.wheel_axis,
-    rise=lambda corner: tuple(RISE),
-    run=lambda corner: tuple(RUN),
-)
+
+
+def angle_between(run: Vector, rise: Vector) -> Effect:
+    return projected_angle(
+        name="angle",
+        gives="",
+        sign="",
+        line=lambda corner: corner.wheel_axis,
+        rise=lambda corner: rise,
+        run=lambda corner: run,
+    )
+
+
+ANGLE = angle_between((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+TURNED = angle_between((0.6, 0.8, 0.0), (-0.8, 0.6, 0.0))
 
 
 @dataclass(frozen=True)
@@ -44,16 +51,17 @@ def by_hand(along: object, off: object) -> ByHand:
     return ByHand(corner, np.atleast_2d(np.asarray(along, float)), np.atleast_2d(np.asarray(off, float)))
 
 
+@pytest.mark.parametrize("effect", [ANGLE, TURNED])
 @pytest.mark.parametrize("scale", [2.0**-12, 1.0, 2.0**12])
-def test_a_claim_is_what_the_worst_corner_of_a_lines_box_turns_it_by(scale: float) -> None:
+def test_a_claim_is_what_the_worst_corner_of_a_lines_box_turns_it_by(effect: Effect, scale: float) -> None:
     random = np.random.default_rng(1)
     along = random.normal(size=(40, 3))
     off = 1e-6 * random.uniform(size=(40, 3))
-    claim = ANGLE.error(by_hand(scale * along, scale * off))
-    angles = ANGLE.value(by_hand(scale * along, scale * off))
+    claim = effect.error(by_hand(scale * along, scale * off))
+    angles = effect.value(by_hand(scale * along, scale * off))
     worst = np.zeros(40)
     for signs in itertools.product((-1.0, 1.0), repeat=3):
-        moved = ANGLE.value(by_hand(scale * (along + signs * off), scale * off))
+        moved = effect.value(by_hand(scale * (along + signs * off), scale * off))
         worst = np.maximum(worst, np.abs(np.remainder(moved - angles + np.pi, 2.0 * np.pi) - np.pi))
     # Of second order is what the claim gives away: the line may be shorter by its error.
     short = 1.0 - 2.0 * np.sum(off, axis=1) / np.hypot(along[:, 0], along[:, 1])

@@ -317,7 +317,7 @@ def _measured(plan: Plan, part: Part, plugin: type[Measuring]) -> dict[str, Any]
     files = {module: str(source_of(plan.root, module)) for module in part.modules}
     coverage = Coverage(data_file=None, include=list(files.values()), config_file=False)
     coverage.start()
-    measuring = plugin(coverage.switch_context)
+    measuring = plugin(coverage.switch_context, SHARED)
     coverage.switch_context(SHARED)
     started = time.process_time()
     by = _pytest(plan, part.tests, measuring)

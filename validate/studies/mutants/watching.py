@@ -8,8 +8,6 @@ from collections.abc import Callable, Generator, Sequence
 
 import pytest
 
-from validate.studies.mutants.trial import SHARED
-
 
 class Watching:
     """Remembers the first failure; searches for examples end with the first that fails."""
@@ -49,11 +47,11 @@ class Trial(Watching):
 
 
 class Measuring(Watching):
-    """Measures the processor time of each test, and tells which one runs now."""
+    """Measures the processor time of each test, and tells which one runs now, or that it is for several."""
 
-    def __init__(self, runs: Callable[[str], object]) -> None:
-        self.runs, self.seconds = runs, dict[str, float]()
-        self.now = SHARED
+    def __init__(self, runs: Callable[[str], object], shared: str) -> None:
+        self.runs, self.shared, self.seconds = runs, shared, dict[str, float]()
+        self.now = shared
 
     def _turn_to(self, name: str) -> str:
         before, self.now = self.now, name
@@ -76,7 +74,7 @@ class Measuring(Watching):
         """What is made for more than one test is everybody's."""
         if fixturedef.scope == "function":
             return (yield)
-        before = self._turn_to(SHARED)
+        before = self._turn_to(self.shared)
         try:
             return (yield)
         finally:
