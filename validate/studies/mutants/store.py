@@ -57,8 +57,9 @@ class Store:
         return self._baselines.get(self._digest((*part.modules, *self._files(part))))
 
     def keep_baseline(self, part: Part, baseline: Baseline) -> None:
-        """Write it down."""
+        """Remember it for the next module of the part, and write it down."""
         held_to = self._digest((*part.modules, *self._files(part)))
+        self._baselines[held_to] = baseline
         self._append({"held_to": held_to, "baseline": baseline.document()})
 
     def verdict(self, part: Part, change: Change) -> Verdict | None:
