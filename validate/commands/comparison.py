@@ -221,46 +221,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return run_data(options, console)
     if options.map is not None:
         raise UsageError("--map is about a file of results; give it with --data FILE")
+    all_of_ours = not options.scenes and options.scenes_dir is None
     names = _names(options)
     _require_solver_options(options)
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     files = _files(options, names, console)
-    with _solver(options) as own:
-        return _compared(options, names, pairs, files, own, console)
-
-
-@contextmanager
-def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
-    """The solver of one's own by its name, as long as the run needs it; none if there is none.
-
-    Raises:
-        NoSolver: it cannot be found, or its accuracy is none.
-    """
-    if options.solver is None:
-        yield {}
-        return
-    name = shown(options.solver)
-    accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
-    if options.in_process:
-        yield {name: PlainSolver(name, solver_at(options.solver, options.traceback), accuracy)}
-        return
-    with Apart(options.solver, options.traceback, options.solver_timeout or LIMIT) as solver:
-        solver.found()
-        yield {name: PlainSolver(name, solver, accuracy)}
-
-
-def _compared(
-    options: argparse.Namespace,
-    names: Sequence[str],
-    pairs: tuple[tuple[str, str], ...],
-    files: Files,
-    own: Mapping[str, PlainSolver],
-    console: Console,
-) -> ExitStatus:
-    """Compare the scenes, whose names, pairs and files are found; see `run`."""
-    for name in dict.fromkeys(name for pair in pairs for name in pair if name not in own):
+    for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
     shown_names = [name_of(name) for name in names]
@@ -270,8 +238,8 @@ def _compared(
     files.require_writable()
     journal = Journal(options.json, Head.of("validate", options.command), console)
     results = _Results(record, baseline)
-    all_of_ours = not options.scenes and options.scenes_dir is None
     with (
+        _solver(options) as own,
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
@@ -302,6 +270,26 @@ def _compared(
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
     return ending.status
+
+
+@contextmanager
+def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
+    """The solver of one's own by its name, as long as the run needs it; none if there is none.
+
+    Raises:
+        NoSolver: it cannot be found, or its accuracy is none.
+    """
+    if options.solver is None:
+        yield {}
+        return
+    name = shown(options.solver)
+    accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
+    if options.in_process:
+        yield {name: PlainSolver(name, solver_at(options.solver, options.traceback), accuracy)}
+        return
+    with Apart(options.solver, options.traceback, options.solver_timeout or LIMIT) as solver:
+        solver.found()
+        yield {name: PlainSolver(name, solver, accuracy)}
 
 
 def _require_solver_options(options: argparse.Namespace) -> None:
