@@ -21,6 +21,7 @@ from validate.commands.usage import (
     STANDARD_INPUT,
     UsageError,
     add_quiet,
+    add_timings,
     load_scene,
     name_of,
     require_target,
@@ -143,6 +144,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
     )
+    add_timings(parser)
     add_quiet(parser)
     parser.set_defaults(run=run)
 
@@ -236,7 +238,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if baseline is not None:
         record.gone = baseline.gone(shown_names)
     files.require_writable()
-    journal = Journal(options.json, Head.of("validate", options.command), console)
+    journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
     results = _Results(record, baseline)
     with (
         _solver(options) as own,

@@ -61,7 +61,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
     kind = "hard-list" if options.list else "hard"
-    journal = Journal(options.json, Head.of(kind, options.command), console)
+    journal = Journal(options.json, Head.of(kind, options.command, timed=True), console)
     if options.list:
         console.say(hard_report.listing(cases))
         journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")

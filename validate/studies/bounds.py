@@ -452,7 +452,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.json not in (None, "-"):
         require_writable(options.json)
-    head = Head.of("bounds", ("python", "-m", "validate.studies.bounds", *sys.argv[1:]))
+    head = Head.of("bounds", ("python", "-m", "validate.studies.bounds", *sys.argv[1:]), timed=True)
     done = study(options.poses, options.seed, options.motions)
     status = ExitStatus.DISAGREE if done.broken else ExitStatus.AGREE
     if options.json:
