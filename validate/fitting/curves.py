@@ -7,8 +7,8 @@ a row of the file changes by
     dq/dp + sum over the inputs x of dq/dx dx/dp.
 
 An input that the file gives is the same in every design; one that it does not give is as drawn, and the
-drawing changes. The input that reaches a travel h is another one in every design: h(x, p) - h(x_0, p) is held,
-with x_0 the drawing's own input, so that
+drawing changes. The input that reaches a travel h is another one in every design: what is held is
+h(x, p) - h(x_0, p), with x_0 the drawing's own input, so that
 
     dx/dp = -(dh/dp - dh_0/dp - sum dh_0/dx_0 dx_0/dp + sum over the other inputs dh/dx dx/dp) / (dh/dx).
 """

@@ -18,15 +18,16 @@ end on no bound, the others held there; where f was estimated, what holds in 95 
 t(freedom) times as wide as a standard deviation.
 
 Least squares are scipy's (dogleg in boxes, which end on bounds exactly: Voglis and Lagaris, WSEAS Conference
-on Applied Mathematics, 2004); the prior gives the Jacobian its full rank, which the method asks for. A design that cannot be solved, or leaves a row without a pose, is a step too far, and a shorter one is tried.
-The search has ended at a minimum if the linear problem there, within the bounds, would leave no more than
+on Applied Mathematics, 2004); the prior gives the Jacobian its full rank, which the method asks for. A design
+that cannot be solved, or leaves a row without a pose, is a step too far, and a shorter one is tried. The
+search has ended at a minimum if the linear problem there, within the bounds, would leave no more than
 SETTLED f^2 less: then no combination is farther from its minimum than a tenth of its own deviation.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
 MOST_SOLVES = 60
+NAMED = 3  # rows that are left out, one by one
 KEPT = 3  # solved designs that are remembered
 AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
 
@@ -104,7 +106,7 @@ class Fit:
         bounds, prior: mm.
         converged: whether least squares ended at a minimum.
         solves: how many designs were tried. failures: of these that could not be solved, why, each once.
-        notes: rows that were left out.
+        notes: what was taken without being told, and rows that were left out.
     """
 
     scene: Scene
@@ -138,6 +140,11 @@ class Fit:
         """Coordinates whose correction would go farther if it could."""
         return tuple(n for n, amount in self.corrections.items() if _on_bound(amount, self.bounds))
 
+    def interval(self, coordinate: str) -> tuple[float, float]:
+        """Where the correction lies in 95 of 100 files, mm."""
+        half = self.widening * self.deviations[coordinate]
+        return self.corrections[coordinate] - half, self.corrections[coordinate] + half
+
     def rms(self, unit: str) -> tuple[float, float, int]:
         """Before and after, over all columns of a unit, and how many numbers these are."""
         some = [column for column in self.columns if column.unit == unit]
@@ -157,6 +164,7 @@ def fit_hardpoints(
     prior: float = PRIOR,
     accuracy: float = 0.0,
     solves: int = MOST_SOLVES,
+    told: Callable[[str, int], None] = lambda words, count: None,
 ) -> Fit:
     """Fit a scene's hardpoints to a file.
 
@@ -166,6 +174,7 @@ def fit_hardpoints(
         prior: how far off hardpoints are thought to be, a standard deviation, mm.
         accuracy: how far off the file's numbers may be beside their digits, each in its own unit.
         solves: how many corrections are tried before it stops without having converged.
+        told: is called with words and how many designs were tried.
     Raises:
         UnknownName: no point or axis is called so.
         FitError: bounds or prior no number above 0, or fewer numbers than none.
@@ -184,7 +193,7 @@ def fit_hardpoints(
         raise FitError(measured.source, f"no row can be used ({why})", "rows that the scene's car can have")
     spread = _spread(curves, accuracy)[used]
     turns = np.concatenate([np.full(len(s.values), s.meaning.unit == "rad") for s in measured.numbers])[used]
-    search = _Search(curves, used, {zero.tobytes(): start})
+    search = _Search(curves, used, {zero.tobytes(): start}, told)
 
     def gap(numbers: Array) -> Array:
         """Ours less theirs; whole turns apart is the same angle."""
@@ -247,18 +256,34 @@ def fit_hardpoints(
         bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
         int(solved.nfev),
         tuple(search.failures),
-        tuple(
-            f"{measured.rows[row]} is left out: {reason}"
-            for row, reason in sorted(start.found.reasons.items())
-        ),
+        _notes(curves, start),
     )
+
+
+def _notes(curves: Curves, start: Solved) -> tuple[str, ...]:
+    """Inputs that the file does not give, and rows that are left out."""
+    solved = "" if start.map is None else start.map.solved
+    drawn = [
+        f"{name} is as drawn in every design: the file does not give it"
+        for name in curves.as_drawn
+        if name != solved
+    ]
+    lost = [
+        f"{curves.measured.rows[row]} is left out: {reason}"
+        for row, reason in sorted(start.found.reasons.items())
+    ]
+    more = [f"{len(lost) - NAMED} more rows are left out"] if len(lost) > NAMED else []
+    return (*drawn, *lost[:NAMED], *more)
 
 
 class _Search:
     """Designs that least squares ask for, each solved once: its numbers are wanted first, then its slopes."""
 
-    def __init__(self, curves: Curves, used: Bools, solved: dict[bytes, Solved]) -> None:
-        self.curves, self.used = curves, used
+    def __init__(
+        self, curves: Curves, used: Bools, solved: dict[bytes, Solved], told: Callable[[str, int], None]
+    ) -> None:
+        self.curves, self.used, self.told = curves, used, told
+        self.tried = 0
         self.failures: dict[str, None] = {}
         self._solved = solved
 
@@ -283,6 +308,8 @@ class _Search:
     def _design(self, amounts: Array) -> Solved:
         key = amounts.tobytes()
         if key not in self._solved:
+            self.tried += 1
+            self.told(f"{self.tried} tried", self.tried)
             solved = self.curves.solved(amounts)
             # A rejected step is followed by a shorter one, and slopes are those of the last that was taken.
             self._solved = dict([*self._solved.items()][-KEPT:]) | {key: solved}
