@@ -10,6 +10,7 @@ as a rounding of the travel.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from typing import Protocol
 
 import numpy as np
@@ -54,12 +55,14 @@ class Found:
         numbers, bounds: by quantity and name, (N, 3) or (N,); NaN where there is no pose.
         reached: at which rows there is a pose, (N,).
         reasons: by row, why there is none.
+        inputs: at each row, (N,), as far as they are known; none over time.
     """
 
     numbers: Numbers
     bounds: Numbers
     reached: Bools
     reasons: Mapping[int, str]
+    inputs: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Poses(Protocol):
@@ -303,7 +306,7 @@ class OverMap:
             quantity: {name: _spread(np.asarray(array), covered) for name, array in part.items()}
             for quantity, part in poses.bounds.items()
         }
-        return Found(numbers, bounds, covered, reasons)
+        return Found(numbers, bounds, covered, reasons, inputs)
 
     def _why(self, inputs: Mapping[str, float]) -> str:
         try:

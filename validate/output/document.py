@@ -74,7 +74,7 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, bounds, cost or sweep.
+        kind: which command's results follow: validate, hard, hard-list, bounds, cost, sweep or fit.
         command: the command line, word by word.
         started: UTC.
     """
