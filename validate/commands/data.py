@@ -36,6 +36,8 @@ OF_SCENES = (
     "--baseline",
     "--solver",
     "--traceback",
+    "--solver-timeout",
+    "--in-process",
 )
 
 

@@ -47,6 +47,8 @@ class Kind(ABC):
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
         last: whether it is tried only on what nothing else explains, because it says little.
+        reach: how many instants to either side a number that it would give depends on; None: on all of them,
+            as where something is fitted. Kinds of a reach are looked for at some instants first.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Kind(ABC):
     opens = False
     closes = False
     last = False
+    reach: int | None = None
 
     @abstractmethod
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:

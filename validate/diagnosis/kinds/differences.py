@@ -63,7 +63,7 @@ RULES: Mapping[str, Rule] = {
 class Differences(Kind):
     """Of the numbers of one or two orders below, as given; of ours where they are not given."""
 
-    name = "differences"
+    name, reach = "differences", 2
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Each rule, of all rates that disagree."""
@@ -107,7 +107,8 @@ class Differences(Kind):
         numbers, instants = evidence.given[source], evidence.times
         value, step = rule(numbers, instants), float(np.diff(instants).min())
         # What is subtracted is rounded once in the numbers, and so are the instants.
-        late = float(np.abs(instants).max()) / step * float(np.abs(value).max(initial=0.0))
+        latest = float(np.abs(evidence.scene.instants).max())
+        late = latest / step * float(np.abs(value).max(initial=0.0))
         rounding = 16.0 * EPS * (float(np.abs(numbers).max()) / step**times + late)
         return value, evidence.rounded(row) + rounding
 
