@@ -44,12 +44,17 @@ class Panel:
 
 @dataclass(frozen=True)
 class Plots:
-    """Panels side by side, as many as the page is wide."""
+    """Panels side by side, as many as the page is wide.
+
+    Attributes:
+        at_once: whether they are seen before anybody opens them, however many others stand beside them.
+    """
 
     template: ClassVar[str] = "plots.html"
     scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js")
     caption: str
     panels: tuple[Panel, ...]
+    at_once: bool = False
 
 
 def axis(title: str, logarithmic: bool = False) -> Mapping[str, Any]:

@@ -32,7 +32,8 @@ def _of_scene(one: Told, points: int) -> Iterator[Block]:
         )
         first, second = (solution.formulation for solution in outcome.solutions)
         if panels:
-            yield Plots(f"{outcome.scene}: {first} and {second}", panels)
+            apart = any(row.verdict == "disagrees" for row in rows)
+            yield Plots(f"{outcome.scene}: {first} and {second}", panels, at_once=apart)
 
 
 def _panel(outcome: Outcome, row: Comparison, instants: Array, points: int) -> Panel | None:

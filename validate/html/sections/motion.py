@@ -27,12 +27,13 @@ class Spatial:
     """A drawing in space that moves.
 
     Attributes:
-        caption: what it is of. json: what is drawn, for the script of the page.
+        scene: whose it is. caption: what its lines are. json: what is drawn, for the script of the page.
         count: of its instants.
     """
 
     template: ClassVar[str] = "spatial.html"
     scripts: ClassVar[tuple[str, ...]] = ("spatial.js",)
+    scene: str
     caption: str
     json: str
     count: int
@@ -68,6 +69,7 @@ def _of_scene(one: Told) -> Iterator[Block]:
     data: dict[str, Any] = {
         "times": [float(f"{time:.6g}") for time in one.motion.times[at]],
         "points": points,
+        "chassis": [number[name] for name in topology.chassis if name in number],
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
         "axes": [right.tolist(), np.cross(right, up).tolist(), up.tolist()],
         "drawn": _rounded(np.stack([known[name] for name in points])),
@@ -79,7 +81,7 @@ def _of_scene(one: Told) -> Iterator[Block]:
             for solution, places in zip(solutions, moving, strict=True)
         ],
     }
-    yield Spatial(_caption(one, solutions), json.dumps(data, allow_nan=False), len(at))
+    yield Spatial(one.examined.name, _caption(one, solutions), json.dumps(data, allow_nan=False), len(at))
 
 
 def _places(scene: Scene, motion: Motion, solution: Solution) -> dict[str, Array]:
@@ -101,7 +103,7 @@ def _caption(one: Told, solutions: Sequence[Solution]) -> str:
     told = ", ".join(f"{s.formulation} in {line}" for s, line in zip(solutions, lines, strict=False))
     moved = one.examined.closing
     closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm" if moved else ""
-    return f"{one.examined.name}: {told}; dashed: the drawing{closing}"
+    return f"{told}; dashed: the drawing{closing}"
 
 
 SECTION = Section("motion", "The suspension in motion", 30, _blocks)

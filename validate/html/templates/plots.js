@@ -1,33 +1,108 @@
 "use strict";
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
+  // A finger that moves over a plot moves the page.
+  const finger = matchMedia("(pointer: coarse)");
+  const PRINTED = 320, LETTER = 6.2;
+  const places = document.querySelectorAll("[data-plot]");
   const drawn = new Set();
+  let printing = false;
 
   function colour(name) {
     return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  }
+
+  // Text in lines of at most so many letters.
+  function folded(text, letters) {
+    const lines = [""];
+    for (const word of text.split(" ")) {
+      const last = lines[lines.length - 1];
+      if (last && last.length + word.length >= letters) lines.push(word);
+      else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+    }
+    return lines.join("<br>");
+  }
+
+  function numbers(data, letter) {
+    return data.flatMap((trace) => trace[letter] ?? []).filter((value) => typeof value === "number");
+  }
+
+  // Whole decades, not more than there is room for; below one and a half plotly finds better ones. It writes
+  // powers larger by a quarter than other numbers.
+  function decades(values) {
+    const above = values.filter((value) => value > 0);
+    const count = Math.log10(Math.max(...above) / Math.min(...above));
+    return count > 1.5 ? { dtick: Math.ceil(count / 6), tickfont: { size: 9 } } : {};
   }
 
   function draw(place) {
     drawn.add(place);
     const { data, layout } = JSON.parse(place.dataset.plot);
     const ink = colour("--ink"), line = colour("--line");
-    for (const name of ["xaxis", "yaxis"])
-      Object.assign(layout[name], { gridcolor: line, zerolinecolor: line, linecolor: line });
+    const width = printing ? PRINTED : place.clientWidth;
+    for (const name of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
+      const axis = layout[name], across = name[0] === "x";
+      Object.assign(axis, { gridcolor: line, zerolinecolor: line, linecolor: line, fixedrange: finger.matches });
+      if (axis.type === "log") Object.assign(axis, decades(numbers(data, name[0])));
+      if (axis.title) {
+        const room = across ? width - 80 : place.clientHeight - 60;
+        Object.assign(axis.title, { text: folded(axis.title.text, room / LETTER), standoff: 8, font: { size: 11 } });
+      }
+    }
     Object.assign(layout, {
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { color: ink, size: 11 }, margin: { l: 50, r: 10, t: 10, b: 40 },
-      legend: { orientation: "h", y: 1.15 },
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width: printing ? PRINTED : undefined,
+      font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
+      margin: { l: 50, r: 10, t: 10, b: 40 },
+      legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+      hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });
-    Plotly.react(place, data, layout, { responsive: true, displaylogo: false, displayModeBar: false });
+    Plotly.react(place, data, layout, { responsive: !printing, displaylogo: false, displayModeBar: false });
+  }
+
+  // What a plot shows, for those who do not see it.
+  function told(value) {
+    return String(Number(value.toPrecision(3)));
+  }
+
+  function describe(place) {
+    const { data, layout } = JSON.parse(place.dataset.plot);
+    const words = data.flatMap((trace) => {
+      const values = numbers([trace], "y");
+      if (!values.length) return [];
+      const [low, high] = [Math.min(...values), Math.max(...values)].map(told);
+      return [`${trace.name ?? "curve"} from ${low} to ${high}`];
+    });
+    const axes = ["xaxis", "yaxis"].map((name) => layout[name]?.title?.text).filter(Boolean).join(" and ");
+    place.setAttribute("aria-label", `${place.getAttribute("aria-label")}. Axes: ${axes}. ${words.join("; ")}.`);
   }
 
   // A plot is drawn when it is near the window, so that a long page is there at once.
-  const places = document.querySelectorAll("[data-plot]");
   const watch = new IntersectionObserver((seen) => {
     for (const one of seen)
       if (one.isIntersecting && !drawn.has(one.target)) draw(one.target);
   }, { rootMargin: "400px" });
-  places.forEach((place) => watch.observe(place));
+  places.forEach((place) => {
+    describe(place);
+    watch.observe(place);
+  });
   dark.addEventListener("change", () => drawn.forEach(draw));
-  addEventListener("beforeprint", () => places.forEach((place) => drawn.has(place) || draw(place)));
+
+  // Paper shows all of it, in ink on white.
+  let closed = [];
+  addEventListener("beforeprint", () => {
+    closed = [...document.querySelectorAll("details:not([open])")];
+    closed.forEach((one) => { one.open = true; });
+    document.documentElement.classList.add("printed");
+    printing = true;
+    places.forEach(draw);
+  });
+  addEventListener("afterprint", () => {
+    closed.forEach((one) => { one.open = false; });
+    document.documentElement.classList.remove("printed");
+    printing = false;
+    drawn.forEach((place) => {
+      if (place.clientWidth) draw(place);
+      else drawn.delete(place);
+    });
+  });
 })();
