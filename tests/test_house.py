@@ -54,6 +54,7 @@ ROOMS = {
         "adjudication",
         "measured",
         "fitting",
+        "published",
         "output",
         "ci",
         "hard",

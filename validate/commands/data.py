@@ -34,6 +34,7 @@ OF_SCENES = (
     "--summary",
     "--save-baseline",
     "--baseline",
+    "--report",
     "--solver",
     "--traceback",
     "--solver-timeout",

@@ -14,7 +14,7 @@ from pointcoord import Motion, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.formulations.protocol import Solution
 from validate.html.run import Run, Told
-from validate.html.section import Block, Section
+from validate.html.section import Block, Section, which
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,8 @@ class Spatial:
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.told for block in _of_scene(one)]
+    blocks = [block for one in run.drawn for block in _of_scene(one)]
+    return [*which(run), *blocks] if blocks else []
 
 
 def _of_scene(one: Told) -> Iterator[Block]:

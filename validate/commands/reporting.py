@@ -1,0 +1,75 @@
+"""`--report DIR`: the page of a run, in a folder with its data."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from validate.commands.usage import UsageError
+from validate.html.folder import NotOurs, require_folder, write_report
+from validate.html.page import require_templates
+from validate.html.run import Run
+from validate.output.console import Console
+from validate.plain_text import shown
+
+
+def add_report(parser: argparse.ArgumentParser) -> None:
+    """The option of a command whose results make a page."""
+    parser.add_argument(
+        "--report",
+        metavar="DIR",
+        help="write a page of HTML that needs no network, with its data, into a folder",
+    )
+
+
+def _nothing(run: Run) -> Run:
+    return run
+
+
+@dataclass(frozen=True)
+class Page:
+    """Where a page goes, and what it holds beside the run that it is of.
+
+    Attributes:
+        with_more: adds to a run what else is computed for its page.
+    """
+
+    folder: str
+    with_more: Callable[[Run], Run] = _nothing
+
+    def require(self) -> None:
+        """Find out that there can be no page, before anything is solved.
+
+        Raises:
+            MissingPackage: a page needs the extra `report`.
+            UsageError: the folder has no name, or cannot be a report's.
+            OutputError: it cannot be written.
+        """
+        if not self.folder.strip():
+            raise UsageError(
+                f"{self.folder!r} names no folder; give the path of one, which is made if needed"
+            )
+        require_templates()
+        try:
+            require_folder(self.folder)
+        except NotOurs as error:
+            raise UsageError(str(error)) from None
+
+    def write(self, run: Run, console: Console) -> Run:
+        """Write the page of a run.
+
+        Returns:
+            The run with what the page holds beside it.
+        Raises:
+            OutputError: it cannot be written.
+        """
+        whole = self.with_more(run)
+        page = write_report(self.folder, whole)[-1]
+        console.written.append(f"{shown(page)} holds the report")
+        return whole
+
+
+def page_of(options: argparse.Namespace) -> Page | None:
+    """The page that `--report` asks for."""
+    return None if options.report is None else Page(options.report)
