@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from pointcoord import Scene, SceneError
@@ -32,8 +32,6 @@ from validate.diagnosis import Explanation, explain_outcome
 from validate.exit_status import ExitStatus
 from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, WORDS, formulation
-from validate.html.folder import PAGE
-from validate.html.run import Run, Telling
 from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal, program_version
@@ -263,7 +261,7 @@ def compare_scenes(
     files.require_writable()
     if page is not None:
         page.require()
-    telling = None if page is None else Telling(len(names))
+    telling = None if page is None else page.telling(len(names))
     head = Head.of("validate", options.command)
     journal = Journal(options.json, head, console)
     results = _Results(record, baseline)
@@ -301,12 +299,11 @@ def compare_scenes(
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
         if page is not None and telling is not None:
-            it = Run(head, tuple(telling.told), record.factor, tuple(results.paper), record=record)
-            whole = page.write(replace(it, baseline=results.data()["baseline"]), console)
+            whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute
-                console.say(f"{whole.sentence}\n{shown(os.path.join(page.folder, PAGE))}")
+                console.say(f"{whole.sentence}\n{page.place}")
     return ending.status
 
 

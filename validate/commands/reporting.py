@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from validate.commands.usage import UsageError
-from validate.html.folder import NotOurs, require_folder, write_report
-from validate.html.page import require_templates
-from validate.html.run import Run
 from validate.output.console import Console
 from validate.plain_text import shown
+
+# What a page is made of is imported where one is made: most runs make none.
+if TYPE_CHECKING:
+    from validate.html.run import Run, Telling
 
 
 def add_report(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +41,19 @@ class Page:
     folder: str
     with_more: Callable[[Run], Run] = _nothing
 
+    @property
+    def place(self) -> str:
+        """The page itself, for people."""
+        from validate.html.folder import PAGE
+
+        return shown(os.path.join(self.folder, PAGE))
+
+    def telling(self, count: int) -> Telling:
+        """What takes in so many scenes for the page."""
+        from validate.html.run import Telling
+
+        return Telling(count)
+
     def require(self) -> None:
         """Find out that there can be no page, before anything is solved.
 
@@ -46,6 +62,9 @@ class Page:
             UsageError: the folder has no name, or cannot be a report's.
             OutputError: it cannot be written.
         """
+        from validate.html.folder import NotOurs, require_folder
+        from validate.html.page import require_templates
+
         if not self.folder.strip():
             raise UsageError(
                 f"{self.folder!r} names no folder; give the path of one, which is made if needed"
@@ -64,9 +83,11 @@ class Page:
         Raises:
             OutputError: it cannot be written.
         """
+        from validate.html.folder import write_report
+
         whole = self.with_more(run)
-        page = write_report(self.folder, whole)[-1]
-        console.written.append(f"{shown(page)} holds the report")
+        write_report(self.folder, whole)
+        console.written.append(f"{self.place} holds the report")
         return whole
 
 

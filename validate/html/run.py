@@ -79,6 +79,14 @@ class Telling:
             one = replace(one, examined=without_numbers(examined))
         self.told.append(one)
 
+    def run(
+        self, head: Head, record: Record, paper: Sequence[PaperRow], baseline: Mapping[str, Any] | None
+    ) -> Run:
+        """The run that the scenes are of."""
+        return Run(
+            head, tuple(self.told), record.factor, paper=tuple(paper), record=record, baseline=baseline
+        )
+
     def _is_drawn(self, examined: Examined) -> bool:
         if self.count <= FIRST + FURTHER or len(self.told) < FIRST:
             return True
