@@ -442,6 +442,11 @@ RECIPES: dict[str, Recipe] = {
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
     ),
+    "validate.testing.states.WrongStates": Recipe(
+        lambda *_: assert_agrees({"camber": np.zeros(3)}, BOUNCE),
+        ("the states: camber has the shape (3,); needed: (131,), one number for each instant",),
+        {"what": "camber"},
+    ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
         ("not tested in", "camber", "an accuracy of 1000 mm says nothing", "state a finer accuracy"),
