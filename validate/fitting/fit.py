@@ -262,7 +262,7 @@ def fit_hardpoints(
 
 def _notes(curves: Curves, start: Solved) -> tuple[str, ...]:
     """Inputs that the file does not give, and rows that are left out."""
-    solved = "" if start.map is None else start.map.solved
+    solved = curves.solved_input
     drawn = [
         f"{name} is as drawn in every design: the file does not give it"
         for name in curves.as_drawn
