@@ -22,6 +22,7 @@ from validate.commands.usage import (
     STANDARD_INPUT,
     UsageError,
     add_quiet,
+    add_timings,
     load_scene,
     name_of,
     require_target,
@@ -151,6 +152,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
     )
+    add_timings(parser)
     add_quiet(parser)
 
 
@@ -262,7 +264,7 @@ def compare_scenes(
     if page is not None:
         page.require()
     telling = None if page is None else page.telling(len(names))
-    head = Head.of("validate", options.command)
+    head = Head.of("validate", options.command, options.timings)
     journal = Journal(options.json, head, console)
     results = _Results(record, baseline)
     with (

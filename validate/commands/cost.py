@@ -144,7 +144,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         _require_folder(options.report)
     if options.csv not in (None, "-"):
         require_writable(options.csv)
-    journal = Journal(options.json, Head.of("cost", options.command), console)
+    journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)

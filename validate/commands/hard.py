@@ -61,7 +61,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError("--report is about cases that are tried; leave it out with --list")
     if page is not None:
         page.require()
-    head = Head.of("hard-list" if options.list else "hard", options.command)
+    head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))

@@ -87,6 +87,7 @@ class Evidence:
         allowed: how far a given number may be from the one that it is held to, likewise.
         wrong: the rows that disagree.
         only: keys of the faults that are to be looked at; None: all.
+        in_our_units: whether the held numbers are; after another fault they may be in no unit that is known.
     """
 
     scene: Scene
@@ -97,6 +98,7 @@ class Evidence:
     wrong: tuple[Row, ...]
     solved: Solved
     only: frozenset[Hashable] | None = None
+    in_our_units: bool = True
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -143,6 +145,10 @@ class Evidence:
             self.scene, self.times[some], given, held, allowed, self.wrong, self.solved, self.only
         )
 
+    def unit_of(self, row: Row) -> str:
+        """The unit of a row's held numbers, in words."""
+        return length_or_angle(row) if self.in_our_units else "in its own unit"
+
     def wants(self, key: Hashable) -> bool:
         """Whether a fault is to be looked at."""
         return self.only is None or key in self.only
@@ -180,7 +186,7 @@ class Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
-        return Evidence(self.scene, self.times, self.given, held, allowed, wrong, self.solved, self.only)
+        return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def left(self, row: Row, value: Array, allowed: Array) -> float:
         """The largest difference of given numbers from others, in parts of what is allowed."""

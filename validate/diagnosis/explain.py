@@ -40,6 +40,8 @@ WORTH = 20.0
 ENOUGH = 1e3
 # More instants than this are looked at in part first.
 MANY = 300
+UNIT = "unit"
+AND = ", and "  # between two faults
 SPARED = 10.0
 AHEAD = 64  # instants at the beginning, for kinds that look at neighbours
 # Instants that pairs of faults are tried at before all are looked at.
@@ -128,7 +130,7 @@ def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
 
 
 def _quick() -> list[Kind]:
-    return [kind for kind in kinds() if not kind.solves and not kind.last]
+    return [kind for kind in kinds() if not kind.solves and not kind.last and not kind.follows]
 
 
 def _elsewhere(evidence: Evidence) -> bool:
@@ -271,11 +273,10 @@ def _seconds(
     for one in begun.values():
         if firsts is not None and one.key not in firsts:
             continue
-        after = replace(
-            evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows)), only=None
-        )
+        wrong = tuple(row for row in evidence.wrong if row in one.rows)
+        after = replace(evidence.after(one.rows, wrong), only=None, in_our_units=first.name != UNIT)
         for kind in closing:
-            if kind.name == first.name:
+            if kind.name == first.name or (kind.follows and first.name not in kind.follows):
                 continue
             for two in kind.hypotheses(after):
                 key = (one.key, (kind.name, two.key))
@@ -284,7 +285,7 @@ def _seconds(
                 both = Hypothesis(
                     kind=f"{first.name} and {kind.name}",
                     key=key,
-                    words=f"{one.words}, and {two.words}",
+                    words=f"{one.words}{AND}{two.words}",
                     rows={**(found[key].hypothesis.rows if key in found else {}), **two.rows},
                     fitted=one.fitted + two.fitted,
                     cost=one.cost + two.cost + 1.0,
@@ -318,7 +319,8 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         better = any(
             set(one.rows) <= set(other.rows)
             and (
-                other.whole != one.whole
+                _same(one, other)
+                or other.whole != one.whole
                 or other.hypothesis.cost < one.hypothesis.cost
                 or len(other.rows) > len(one.rows)
                 or (not one.whole and other.lowered > 2.0 * one.lowered)
@@ -330,6 +332,12 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         }:
             kept.append(one)
             yield one
+
+
+def _same(one: _Found, other: _Found) -> bool:
+    """Whether two faults are two others in the other order."""
+    first, second = (set(found.hypothesis.words.split(AND)) for found in (one, other))
+    return first == second
 
 
 def _told(evidence: Evidence, found: _Found) -> Explanation:
