@@ -383,7 +383,7 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
         # Most runs write no page.
         from validate.html.run import Run
 
-        Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
+        Page(options.report).write(Run(Head.of("cost", options.command, timed=True), cost=report), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
