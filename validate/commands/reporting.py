@@ -36,10 +36,12 @@ class Page:
 
     Attributes:
         with_more: adds to a run what else is computed for its page.
+        option: that names the folder, with a space behind it.
     """
 
     folder: str
     with_more: Callable[[Run], Run] = _nothing
+    option: str = "--report "
 
     @property
     def place(self) -> str:
