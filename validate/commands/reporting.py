@@ -69,7 +69,7 @@ class Page:
 
         if not self.folder.strip():
             raise UsageError(
-                f"{self.folder!r} names no folder; give the path of one, which is made if needed"
+                f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
             )
         require_templates()
         try:

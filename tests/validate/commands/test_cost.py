@@ -295,7 +295,7 @@ def test_a_folder_that_cannot_be_had_is_refused_before_anything_is_measured(
     (tmp_path / "file").write_text("mine")
     assert main(["cost", "--rows", str(tmp_path / "new.jsonl"), "--report", str(tmp_path / "file")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "cannot be written" in line
+    assert "is a file; allowed: a folder" in line
     assert not (tmp_path / "new.jsonl").exists()
     assert (tmp_path / "file").read_text() == "mine"
 
