@@ -64,7 +64,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError("--data is about a file of results, of which there is no page; give it to validate")
     hard = None if options.hard is None else read_hard_cases(options.hard)
     cost = None if options.cost is None else _kept_cost(options)
-    page = Page(options.folder, partial(_with_more, options, hard, cost, console))
+    page = Page(options.folder, partial(_with_more, options, hard, cost, console), option="")
     return compare_scenes(options, console, page, brief=True)
 
 

@@ -36,10 +36,12 @@ class Page:
 
     Attributes:
         with_more: adds to a run what else is computed for its page.
+        option: that names the folder, with a space behind it.
     """
 
     folder: str
     with_more: Callable[[Run], Run] = _nothing
+    option: str = "--report "
 
     @property
     def place(self) -> str:
@@ -67,7 +69,7 @@ class Page:
 
         if not self.folder.strip():
             raise UsageError(
-                f"{self.folder!r} names no folder; give the path of one, which is made if needed"
+                f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
             )
         require_templates()
         try:

@@ -23,9 +23,11 @@ from validate.published.tables import Published
 
 # Scenes that are drawn, and not only told in tables: the first ones, and so many more that do not agree.
 FIRST, FURTHER = 8, 8
-# Points of one curve, in all scenes together that are drawn; see `points`.
-POINTS = 2400
+# Points of one curve, in all scenes together that are drawn (see `points`), and instants of a drawing in
+# space.
+POINTS = 1600
 FEWEST, MOST = 100, 600
+FRAMES, FEWER_FRAMES = 121, 61
 # Scenes that a sentence names of each verdict.
 NAMED = 10
 
@@ -187,6 +189,11 @@ class Run:
     def points(self) -> int:
         """Points of a curve, at most: a page stays small however many scenes and instants there are."""
         return min(max(POINTS // max(len(self.drawn), 1), FEWEST), MOST)
+
+    @property
+    def frames(self) -> int:
+        """Instants of a drawing in space, at most."""
+        return FRAMES if len(self.drawn) <= FIRST else FEWER_FRAMES
 
     @property
     def findings(self) -> tuple[Finding, ...]:

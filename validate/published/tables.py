@@ -26,13 +26,14 @@ class Table:
 
     Attributes:
         name: of its files in this folder. title: for people. scene: the built-in car that it is about.
-        source: where it was printed.
+        source: where it was printed. note: what must be known to read it.
     """
 
     name: str
     title: str
     scene: str
     source: str
+    note: str = ""
 
     @property
     def files(self) -> tuple[Path, Path]:
@@ -42,7 +43,14 @@ class Table:
 
 TABLES = (
     Table("lotus-bump", "Lotus: angles over bump", "double-wishbone", SHARK),
-    Table("lotus-steering", "Lotus: angles over rack travel", "double-wishbone", SHARK),
+    Table(
+        "lotus-steering",
+        "Lotus: angles over rack travel",
+        "double-wishbone",
+        SHARK,
+        "its rack moves the other way than ours, and travels are shown with our sign; the tyre's contact "
+        "point keeps its height",
+    ),
 )
 
 

@@ -303,3 +303,40 @@ def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bo
     for name, place in scene.mechanism.points.items():
         assert drawn[name] == pytest.approx(list(place), abs=0.006)
     assert {shown["points"][i] for i in shown["chassis"]} == set(scene.mechanism.topology.chassis)
+
+
+def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it_names(
+    built_in: Path,
+) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    there = [given["id"] for tag, given in read.opened if tag == "section"]
+    told = ["verdict", "agreement", "motion", "differences", "curves", "figures", "paper", "errata"]
+    assert there == [*told, "cost", "hard", "published", "left-out", "machine"]
+    assert there == [section.name for section in sections()]
+    links = [given["href"] or "" for tag, given in read.opened if tag == "a"]
+    files = {link for link in links if not link.startswith("#")}
+    assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
+    document = json.loads((built_in / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    jsonschema.validate(json.loads((built_in / "hard.json").read_text()), json.loads(schema_text()))
+    assert document["exit_status"] == 0
+    assert read.verdict.startswith("6 of 6 scenes agree; ")
+    assert read.verdict.endswith("all as expected.")
+    # A line for each printed number: 11 rows of 4 angles, 21 of 2.
+    with (built_in / "published.csv").open(newline="") as stream:
+        assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2
+
+
+def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Told) -> None:
+    closing = bounce.examined.closing
+    assert closing is not None
+    read = Read(page(run_of(bounce), FILES))
+    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    drawn, closed = (dict(zip(shown["points"], shown[key], strict=True)) for key in ("drawn", "closed"))
+    rows = [row for row in read.cells if row[0] == "bounce"]
+    assert closing["largest"] == pytest.approx(16.8, abs=0.05)  # of Table 1
+    for name, movement in closing["movements"].items():
+        moved = np.linalg.norm(np.subtract(closed[name], drawn[name]))
+        assert moved == pytest.approx(movement, abs=0.02)
+        told = f"{movement:.3g}" if movement > 1e-6 else "0"
+        assert any(told in row for row in rows)

@@ -13,8 +13,8 @@ CAPTION = (
     "For each quantity the number that comes closest to its tolerance, or exceeds it the most: its largest "
     "difference as a share of what it is held to. It agrees up to 1."
 )
-# Rows of scenes that agree, at most: a page stays small.
-ROWS = 1000
+# A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
+MOST_THAT_AGREE, MOST = 1000, 1500
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -28,23 +28,27 @@ def _blocks(run: Run) -> Sequence[Block]:
     )
     short = len(run.told) > FIRST + FURTHER
     rows: list[tuple[Cell, ...]] = []
-    left_out = 0
+    left_out: dict[str, int] = {}
     for one in run.told:
-        if len(rows) >= ROWS and one.verdict == "agrees":
-            left_out += 1
+        if len(rows) >= (MOST_THAT_AGREE if one.verdict == "agrees" else MOST):
+            left_out[one.verdict] = left_out.get(one.verdict, 0) + 1
         else:
             rows += list(_rows(one, quantities, short))
     if run.record is not None:
         words = f"not run: {run.record.stopped}"
         blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
-        rows += [(Cell(name), Cell("not tested", words, "not tested"), *blank) for name in run.record.not_run]
+        rows += [
+            (Cell(name), Cell("not tested", words, "not tested"), *blank)
+            for name in run.record.not_run[:MOST]
+        ]
     if not rows:
         return []
     caption = CAPTION
     if short:
         caption += " Of a further pair of formulations a row is shown where it does not agree."
     if left_out:
-        caption += f" {left_out} more scenes agree; comparisons.csv has them all."
+        more = ", ".join(f"{count} {verdict}" for verdict, count in left_out.items())
+        caption += f" Not in this table: {more}; the data beside this page have them all."
     return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows))]
 
 

@@ -19,8 +19,8 @@ from validate.html.section import Block, Cell, Grid, Section, which
 
 Array = NDArray[np.float64]
 
-# Instants of the drawing that moves, at most, and digits behind the point of its places, mm.
-FRAMES, DIGITS = 121, 2
+# Digits behind the point of places, mm.
+DIGITS = 2
 # mm; a drawing that closes comes back to less.
 ROUNDING = 1e-6
 CLOSING = (
@@ -47,11 +47,11 @@ class Spatial:
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    blocks = [block for one in run.drawn for block in _of_scene(one)]
+    blocks = [block for one in run.drawn for block in _of_scene(one, run.frames)]
     return [*which(run), *blocks, *_closing(run)]
 
 
-def _of_scene(one: Told) -> Iterator[Block]:
+def _of_scene(one: Told, frames: int) -> Iterator[Block]:
     if one.scene is None or one.motion is None or not one.examined.outcomes:
         return
     solutions = [
@@ -63,7 +63,7 @@ def _of_scene(one: Told) -> Iterator[Block]:
         return
     topology = one.scene.mechanism.topology
     count = len(one.motion.times)
-    at = np.arange(0, count, -(-count // FRAMES))
+    at = np.arange(0, count, -(-count // frames))
     moving = [_places(one.scene, one.motion, solution) for solution in solutions]
     points = [name for name in topology.points if all(name in places for places in moving)]
     number = {name: i for i, name in enumerate(points)}

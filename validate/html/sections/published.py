@@ -25,8 +25,8 @@ def _blocks(run: Run) -> Sequence[Block]:
 def _of_table(one: Published) -> Iterator[Block]:
     outcome = one.found.outcome
     told = f"{one.table.title}, beside the built-in scene {one.table.scene}. Source: {one.table.source}."
-    notes = f" Note: {'; '.join(outcome.notes)}." if outcome.notes else ""
-    yield Paragraph(told + notes)
+    notes = [note for note in (one.table.note, *outcome.notes) if note]
+    yield Paragraph(told + (f" Note: {'; '.join(notes)}." if notes else ""))
     rows = [row for row in outcome.rows if row.verdict != "not given"]
     yield Plots(
         f"{one.table.title}: crosses as printed, line as computed", tuple(_panel(one, r) for r in rows)

@@ -3,9 +3,10 @@
   const dark = matchMedia("(prefers-color-scheme: dark)");
   // A finger that moves over a plot moves the page.
   const finger = matchMedia("(pointer: coarse)");
-  const PRINTED = 320, LETTER = 6.2;
+  const PRINTED = { width: 320, height: 200 }, LETTER = 6.2;
   const places = document.querySelectorAll("[data-plot]");
-  const drawn = new Set();
+  // Those near the window, and for what each was drawn last.
+  const near = new Set(), drawn = new Map();
   let printing = false;
 
   function colour(name) {
@@ -36,27 +37,26 @@
   }
 
   function draw(place) {
-    drawn.add(place);
     const { data, layout } = JSON.parse(place.dataset.plot);
     const ink = colour("--ink"), line = colour("--line");
-    const width = printing ? PRINTED : place.clientWidth;
+    const { width, height } = printing ? PRINTED : { width: place.clientWidth, height: place.clientHeight };
     for (const name of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
       const axis = layout[name], across = name[0] === "x";
       Object.assign(axis, { gridcolor: line, zerolinecolor: line, linecolor: line, fixedrange: finger.matches });
       if (axis.type === "log") Object.assign(axis, decades(numbers(data, name[0])));
       if (axis.title) {
-        const room = across ? width - 80 : place.clientHeight - 60;
+        const room = across ? width - 80 : height - 60;
         Object.assign(axis.title, { text: folded(axis.title.text, room / LETTER), standoff: 8, font: { size: 11 } });
       }
     }
     Object.assign(layout, {
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width: printing ? PRINTED : undefined,
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width, height,
       font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
       margin: { l: 50, r: 10, t: 10, b: 40 },
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
       hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });
-    Plotly.react(place, data, layout, { responsive: !printing, displaylogo: false, displayModeBar: false });
+    Plotly.react(place, data, layout, { displaylogo: false, displayModeBar: false });
   }
 
   // What a plot shows, for those who do not see it.
@@ -76,16 +76,29 @@
     place.setAttribute("aria-label", `${place.getAttribute("aria-label")}. Axes: ${axes}. ${words.join("; ")}.`);
   }
 
-  // A plot is drawn when it is near the window, so that a long page is there at once.
+  // A plot is drawn when it is near the window, so that a long page is there at once, and again when it comes
+  // near as it is no more: in another width, by another light.
+  function refresh(place) {
+    const how = `${place.clientWidth} ${dark.matches} ${printing}`;
+    if (!place.clientWidth || !(printing || near.has(place)) || drawn.get(place) === how) return;
+    drawn.set(place, how);
+    draw(place);
+  }
+
   const watch = new IntersectionObserver((seen) => {
-    for (const one of seen)
-      if (one.isIntersecting && !drawn.has(one.target)) draw(one.target);
+    for (const one of seen) {
+      if (one.isIntersecting) near.add(one.target);
+      else near.delete(one.target);
+      refresh(one.target);
+    }
   }, { rootMargin: "400px" });
+  const measure = new ResizeObserver((changed) => changed.forEach((one) => refresh(one.target)));
   places.forEach((place) => {
     describe(place);
     watch.observe(place);
+    measure.observe(place);
   });
-  dark.addEventListener("change", () => drawn.forEach(draw));
+  dark.addEventListener("change", () => near.forEach(refresh));
 
   // Paper shows all of it, in ink on white.
   let closed = [];
@@ -94,15 +107,12 @@
     closed.forEach((one) => { one.open = true; });
     document.documentElement.classList.add("printed");
     printing = true;
-    places.forEach(draw);
+    places.forEach(refresh);
   });
   addEventListener("afterprint", () => {
     closed.forEach((one) => { one.open = false; });
     document.documentElement.classList.remove("printed");
     printing = false;
-    drawn.forEach((place) => {
-      if (place.clientWidth) draw(place);
-      else drawn.delete(place);
-    });
+    near.forEach(refresh);
   });
 })();

@@ -6,8 +6,14 @@
   // Turn about the car's upward axis, from where the eye is behind the car, then tilt toward the eye.
   const VIEWS = { Oblique: [0.6, 0.35], Rear: [0, 0], Right: [Math.PI / 2, 0], Top: [0, Math.PI / 2] };
   const WIDE = 480, NEAR = 24, ROW = 14, PAD = 40, TRIAD = 26;
+  // Where a name may stand: on the outer side of its point or the inner, and how many rows below it.
+  const STANDS = [0, -0.8, 0.8, -1.6, 1.6, -2.4, 2.4].flatMap((down) => [[1, down], [-1, down]]);
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+  // Boxes: left, right, top, bottom.
+  const around = ([x, y], half) => [x - half, x + half, y - half, y + half];
+  const meet = (a, b) => a[0] < b[1] && b[0] < a[1] && a[2] < b[3] && b[2] < a[3];
 
   function add(parent, tag, attributes, text) {
     const one = parent.appendChild(document.createElementNS(SVG, tag));
@@ -48,6 +54,7 @@
       return shape;
     });
     const names = motion.points.map((name) => add(svg, "text", {}, name));
+    const wide = [], stands = [];
     const triad = add(svg, "g", { class: "triad" });
     const arms = ["right", "rear", "up"].map((name) => [add(triad, "line", {}), add(triad, "text", {}, name)]);
 
@@ -71,12 +78,14 @@
       view.setAttribute("aria-label", `${name} view of ${scene}`);
       view.addEventListener("click", () => {
         [turn, tilt] = angles;
+        stands.length = 0;
         draw();
       });
     }
     for (const one of [...sets.slice(1), sets[0]])
       choice(one.name, true, (shown) => { one.group.style.display = shown ? "" : "none"; }, one.strokes);
     const named = choice("names", figure.clientWidth >= WIDE, () => draw());
+    named.parentElement.className = "names";
 
     // The middle of all points of all instants, and how far out the farthest lies: a ball that is in the window
     // from every side.
@@ -97,22 +106,33 @@
       return flat(place.map((value, i) => value - middle[i])).map((value) => scale * value);
     }
 
+    // A name stands where it covers no joint and no other name, if it can no line either, and stays there as
+    // long as that is so.
     function drawNames(at) {
-      const shown = at.map((_, i) => named.checked || i === near);
-      const taken = [];
-      // From the top down; a name that would cover another moves below it.
-      for (const i of at.map((_, i) => i).sort((a, b) => at[a][1] - at[b][1])) {
-        names[i].style.display = shown[i] ? "" : "none";
-        if (!shown[i]) continue;
-        const width = names[i].getComputedTextLength(), left = at[i][0] < 0 && !(i === near && !named.checked);
-        let x = left ? at[i][0] - 9 - width : at[i][0] + 9;
-        x = Math.min(Math.max(x, 3 - size[0] / 2), size[0] / 2 - width - 3);
-        let y = at[i][1] + 4;
-        for (const [from, to, row] of taken)
-          if (x < to && from < x + width && Math.abs(row - y) < ROW) y = row + ROW;
-        taken.push([x, x + width, y]);
-        set(names[i], { x, y });
-      }
+      const taken = at.map((place) => around(place, 4));
+      const lines = motion.lines.flatMap(([a, b]) => {
+        const steps = Math.ceil(Math.hypot(at[b][0] - at[a][0], at[b][1] - at[a][1]) / ROW);
+        return Array.from({ length: steps }, (_, k) =>
+          around([0, 1].map((i) => at[a][i] + (at[b][i] - at[a][i]) * (k + 0.5) / steps), 3));
+      });
+      names.forEach((name, i) => {
+        const shown = named.checked || i === near;
+        name.style.display = shown ? "" : "none";
+        if (!shown) return;
+        wide[i] ??= name.getComputedTextLength();
+        const out = at[i][0] < 0 ? -1 : 1;
+        const tried = [...(stands[i] ? [stands[i]] : []), ...STANDS.map(([side, down]) => [out * side, down])];
+        const boxes = tried.map(([side, down]) => {
+          const left = Math.min(Math.max(at[i][0] + (side > 0 ? 8 : -8 - wide[i]), 3 - size[0] / 2),
+            size[0] / 2 - wide[i] - 3);
+          return [left, left + wide[i], at[i][1] + ROW * (down - 0.5), at[i][1] + ROW * (down + 0.5), side, down];
+        });
+        const free = boxes.filter((box) => !taken.some((other, j) => j !== i && meet(box, other)));
+        const best = free.find((box) => !lines.some((other) => meet(box, other))) ?? free[0] ?? boxes[0];
+        stands[i] = best.slice(4);
+        taken.push(best);
+        set(name, { x: best[0], y: best[3] - 3 });
+      });
     }
 
     function draw() {
@@ -198,11 +218,11 @@
       const { width, height } = svg.getBoundingClientRect();
       if (!width || document.documentElement.classList.contains("printed")) return;
       size = [width, height];
+      stands.length = 0;
       scale = (Math.min(width, height) - PAD) / 2 / radius;
       svg.setAttribute("viewBox", `${-width / 2} ${-height / 2} ${width} ${height}`);
       draw();
     }).observe(svg);
-    draw();
   }
 
   document.querySelectorAll("[data-motion]").forEach(start);
