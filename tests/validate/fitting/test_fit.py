@@ -269,7 +269,7 @@ def test_what_angles_cannot_see_is_what_moves_no_angle_in_closed_form() -> None:
     """What leaves all angles over the lower arm's angle as they are, with the rack at rest: twelve moves.
 
     The car as a whole (3) and its scale (1), both points of the spin axis (3) and one along it (1), the
-    pivots along their axes but for the one that the angle counts from (3), and a drawing at another angle (1).
+    pivots along their axes but for the one that the angle counts from (3), and drawing at another angle (1).
     """
     content = CAR.model_dump(exclude_none=True) | {"effects": ("wheel_angles", "toe", "caster")}
     car = Scene.from_mapping(content, "angles")
