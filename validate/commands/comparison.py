@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
 from validate.ci.moves import baseline_data, since_text
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
+from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -64,6 +66,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="solve scenes by two formulations and compare them",
         description=DESCRIPTION,
     )
+    add_options(parser)
+    add_report(parser)
+    parser.set_defaults(run=run)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What is compared, how, and where results go beside a report."""
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
     parser.add_argument(
         "--first",
@@ -144,7 +153,6 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     add_timings(parser)
     add_quiet(parser)
-    parser.set_defaults(run=run)
 
 
 def _factor(word: str) -> float:
@@ -179,7 +187,7 @@ class _Results:
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
     paper: Sequence[PaperRow] = ()
 
-    def add(self, examined: Examined, since: Since | None, explanations: Explained = ()) -> None:
+    def add(self, examined: Examined, since: Since | None, explanations: Explained) -> None:
         self.record.add(examined, since)
         self.scenes.append(report.examined_data(examined, explanations))
         self.uncompared += not examined.outcomes
@@ -219,6 +227,21 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         from validate.commands.data import run as run_data
 
         return run_data(options, console)
+    return compare_scenes(options, console, page_of(options))
+
+
+def compare_scenes(
+    options: argparse.Namespace, console: Console, page: Page | None, brief: bool = False
+) -> ExitStatus:
+    """Compare scenes, with all that the options ask for.
+
+    Args:
+        page: is made of the run, if there is one.
+        brief: whether nothing is said but the verdict in a sentence, and where the page is.
+    Raises:
+        UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, OutputError: see
+            `run`.
+    """
     if options.map is not None:
         raise UsageError("--map is about a file of results; give it with --data FILE")
     all_of_ours = not options.scenes and options.scenes_dir is None
@@ -228,6 +251,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     files = result_files(options, names, console)
+    mute, console.mute = console.mute, console.mute or brief
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
@@ -236,7 +260,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if baseline is not None:
         record.gone = baseline.gone(shown_names)
     files.require_writable()
-    journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
+    if page is not None:
+        page.require()
+    telling = None if page is None else page.telling(len(names))
+    head = Head.of("validate", options.command, options.timings)
+    journal = Journal(options.json, head, console)
     results = _Results(record, baseline)
     with (
         _solver(options) as own,
@@ -261,6 +289,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             else:
                 examined, explained = scene, []
             results.add(examined, since, explained)
+            if telling is not None:
+                telling.add(examined, scene if isinstance(scene, Scene) else None, explained)
             journal.keep(results.data, _finished(results, names))
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
@@ -269,6 +299,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
+        if page is not None and telling is not None:
+            whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
+            ending.status = whole.status
+            if brief:
+                console.mute = mute
+                console.say(f"{whole.sentence}\n{page.place}")
     return ending.status
 
 

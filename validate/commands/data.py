@@ -32,6 +32,7 @@ OF_SCENES = (
     "--fail-fast",
     "--save-baseline",
     "--baseline",
+    "--report",
     "--solver",
     "--traceback",
     "--solver-timeout",
