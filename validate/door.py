@@ -19,6 +19,7 @@ from validate.hardpoint_files.contents import HardpointFileError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 from validate.solvers.plain import NoSolver
+from validate.studies.errors import ClusterLost, NoCluster, RecordsError
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
@@ -29,6 +30,8 @@ MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exi
         ExitStatus.WRONG_INPUT,
     ),
     ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
+    ((RecordsError, NoCluster), ExitStatus.WRONG_INPUT),
+    (ClusterLost, ExitStatus.NOT_FINISHED),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )

@@ -52,7 +52,9 @@ from validate.reference.exact import bits
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
 from validate.solvers.check import check
-from validate.studies.chunk_store import Store
+from validate.studies import scheduler
+from validate.studies.maker import Maker
+from validate.studies.records import look
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
@@ -61,6 +63,13 @@ HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0
 IN_LINE = np.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
 # The arm's axis is level and the arm stands upright: the ball joint is on top of its circle.
 TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, -300, 0)}
+
+
+class Late:
+    """What a cluster works out that is gone."""
+
+    def result(self, timeout: float) -> None:
+        raise TimeoutError
 
 
 class Recipe(NamedTuple):
@@ -410,8 +419,18 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
-    "validate.studies.chunk_store.StoreError": Recipe(
-        lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
+    "validate.studies.errors.RecordsError": Recipe(
+        lambda folder, _: look(folder),
+        ("--records ", "holds no records of a study", "run the study first"),
+        {"problem": bool},
+    ),
+    "validate.studies.errors.NoCluster": Recipe(
+        lambda *_: scheduler.require_same(scheduler.Worker("tcp://far:1", 2, Maker.here())),
+        ("the worker tcp://far:1 takes 2 tasks at once", "start it with --nthreads 1"),
+    ),
+    "validate.studies.errors.ClusterLost": Recipe(
+        lambda *_: scheduler.result_of(Late(), "the scheduler there"),
+        ("the scheduler there", "does not answer"),
     ),
     "validate.cost.store.StoreError": Recipe(
         lambda folder, _: RowStore(folder, Header.here()), ("cannot be read", "directory", "another file")
@@ -442,6 +461,11 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
+    ),
+    "validate.testing.states.WrongStates": Recipe(
+        lambda *_: assert_agrees({"camber": np.zeros(3)}, BOUNCE),
+        ("the states: camber has the shape (3,); needed: (131,), one number for each instant",),
+        {"what": "camber"},
     ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),

@@ -144,7 +144,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         _require_folder(options.report)
     if options.csv not in (None, "-"):
         require_writable(options.csv)
-    journal = Journal(options.json, Head.of("cost", options.command), console)
+    journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)
@@ -383,7 +383,7 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
         # Most runs write no page.
         from validate.html.run import Run
 
-        Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
+        Page(options.report).write(Run(Head.of("cost", options.command, timed=True), cost=report), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status

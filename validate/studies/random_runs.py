@@ -1,30 +1,21 @@
-"""Random scenes by the hundred thousand through both models.
-
-    python -m validate.studies.random_runs --store FILE
-    python -m validate.studies.random_runs --store FILE --ours pointcoord-map --count 60
+"""Random scenes by the hundred thousand through both models: `pointcoord study random`.
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
 in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
 to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
-
-The store goes on where it ended, whatever ended it. It belongs to one state of the models: after a change to
-them, or for another of pointcoord's methods, give another file.
 """
 
 from __future__ import annotations
 
-import argparse
-import multiprocessing
-import os
-import sys
-import time
+import json
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any, ClassVar
 
 from pointcoord import SceneError
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from validate.adjudication.verdicts import (
     NEITHER_WRONG,
     NO_OBSTACLE,
@@ -41,9 +32,11 @@ from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
-from validate.output.report import table
-from validate.studies.chunk_store import CHUNK, OURS, Chunk, Record, Store, StoreError
+from validate.output.terminal import Part, Table
+from validate.studies.study import Findings, Kind, Number, Row, counted
 
+PART = "scenes"
+OURS = "pointcoord"
 OTHER = "absolute"
 METHODS = (OURS, "pointcoord-map", "pointcoord-newton")
 ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
@@ -58,7 +51,15 @@ FAULTY = (
     "answer wrong",
 )
 
-
+# What a share of a tolerance is told of: each quantity, and each number of the whole car.
+SHARED = tuple(
+    dict.fromkeys(
+        name
+        for effect in (*ALWAYS, *EFFECTS.values())
+        for quantity, names in effect.gives_numbers.items()
+        for name in (names or () if QUANTITIES[quantity].of == "car" else (quantity,))
+    )
+)
 # How outcomes begin, in the order in which they are shown.
 HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
 
@@ -160,153 +161,142 @@ def _shares(outcome: Outcome) -> dict[str, float]:
     largest: dict[str, float] = {}
     for row in outcome.rows:
         if row.part < ALONE:
-            what = row.name if row.quantity == "wheel" else row.quantity
+            what = row.name if QUANTITIES[row.quantity].of == "car" else row.quantity
             largest[what] = max(largest.get(what, 0.0), row.share)
     return largest
 
 
-def run_chunk(number: int, store: Store, known: frozenset[int]) -> Chunk:
-    """Do the scenes of one chunk and record it; findings of the scenes in `known` are there already."""
-    began = time.perf_counter()
-    outcomes: Counter[str] = Counter()
-    shares: dict[str, tuple[float, int]] = {}
-    found = []
-    for index in range(number * CHUNK, (number + 1) * CHUNK):
-        car = random_scene(index)
-        result = examine(car, store.ours)
-        outcomes[f"{car.variant.words}/{car.kind}/{result.outcome}"] += 1
-        for quantity, share in result.shares.items():
-            shares[quantity] = max(shares.get(quantity, (share, index)), (share, index))
-        if result.kept:
-            found.append(index)
-            if index not in known:
-                data = car.scene.model_dump(mode="json", exclude_none=True)
-                line = {
-                    "suspension": car.variant.words,
-                    "kind": car.kind,
-                    "outcome": result.outcome,
-                    "reason": result.reason,
-                    "content": data,
-                }
-                store.finding(index, line)
-    chunk = Chunk(number, dict(outcomes), shares, tuple(found), time.perf_counter() - began)
-    store.chunk(chunk)
-    return chunk
+@dataclass(frozen=True)
+class RandomStudy:
+    """Random scenes of the numbers from 0 up through two models.
 
+    A row of its records is a scene. Its columns: suspension, kind of scene, outcome, and where there is more
+    to say reason and scene, as JSON; `share_...`, the largest part of its tolerance that each quantity used
+    up, where both models agree.
 
-def _work(numbers: Sequence[int], path: Path, known: frozenset[int], parent: int, ours: str) -> None:
-    for number in numbers:
-        run_chunk(number, Store(path, SEED, ours), known)
-        # A worker whose parent was killed would go on unseen, beside the run that is started next.
-        if os.getppid() != parent:
-            return
-
-
-def run(count: int, path: Path, workers: int = 1, ours: str = OURS) -> int:
-    """Do what is missing of the first `count` scenes, print the table, return the exit status.
-
-    Args:
-        ours: by which of pointcoord's methods; a store holds the scenes of one.
-    Raises:
-        StoreError: the store cannot be used, or a worker died.
+    Attributes:
+        count: of scenes.
+        first: by which of pointcoord's methods.
     """
-    store = Store(path, SEED, ours)
-    record = store.read()
-    wanted = range(-(-count // CHUNK))
-    missing = [n for n in wanted if n not in record.chunks]
-    known = frozenset(record.findings)
-    if workers == 1:
-        for number in missing:
-            run_chunk(number, store, known)
-    else:
-        context = multiprocessing.get_context("spawn")
-        crew = [
-            context.Process(
-                target=_work, args=(missing[i::workers], path, known, os.getpid(), ours), daemon=True
-            )
-            for i in range(workers)
+
+    count: int
+    first: str = OURS
+
+    name = "random"
+    noun = "scene"
+    chunk = 8
+    columns: ClassVar[Mapping[str, Kind]] = {
+        **dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene"), "string"),
+        **{f"share_{quantity}": "float64" for quantity in SHARED},
+    }
+
+    @property
+    def settings(self) -> Mapping[str, str | int]:
+        """The recipe of the scenes, and the method."""
+        return {"seed": SEED, "first": self.first}
+
+    @property
+    def numbers(self) -> Sequence[Number]:
+        """One for each scene."""
+        return [Number(PART, number) for number in range(self.count)]
+
+    def examine(self, number: Number) -> list[Row]:
+        """Solve the scene by both models."""
+        car = random_scene(number.number)
+        result = examine(car, self.first)
+        content = car.scene.model_dump(mode="json", exclude_none=True) if result.kept else None
+        return [
+            {
+                "suspension": car.variant.words,
+                "kind": car.kind,
+                "outcome": result.outcome,
+                "reason": result.reason or None,
+                "scene": None if content is None else json.dumps(content),
+                **{f"share_{quantity}": result.shares.get(quantity) for quantity in SHARED},
+            }
         ]
-        for process in crew:
-            process.start()
-        for process in crew:
-            process.join()
-        if any(process.exitcode for process in crew):
-            raise StoreError(f"{path}: a worker died; start again, and it goes on from what is recorded")
-    record = store.read()
-    print(table_text(record), flush=True)
-    return 1 if any(word in o for o in record.outcomes() for word in FAULTY) else 0
+
+    def findings(self, rows: Sequence[Row]) -> Findings:
+        """Every outcome counted, and the largest share of each tolerance."""
+        faulty = any(word in row["outcome"] for row in rows for word in FAULTY)
+        return Findings(_parts(rows), self._data(rows), ExitStatus.DISAGREE if faulty else ExitStatus.AGREE)
+
+    def _data(self, rows: Sequence[Row]) -> dict[str, Any]:
+        return {
+            **self.settings,
+            "scenes": len(rows),
+            "outcomes": [
+                {"suspension": suspension, "kind": kind, "outcome": outcome, "scenes": count}
+                for (suspension, kind, outcome), count in sorted(_counts(rows).items())
+            ],
+            "largest_shares": [
+                {"quantity": quantity, "share": share, "scene": number}
+                for quantity, (share, number) in _shares_of(rows).items()
+            ],
+            "written_down": [
+                {name: row[name] for name in ("number", "suspension", "kind", "outcome", "reason")}
+                | {"scene": json.loads(row["scene"])}
+                for row in rows
+                if row["scene"] is not None
+            ],
+        }
 
 
-def table_text(record: Record) -> str:
+def _counts(rows: Sequence[Row]) -> Counter[tuple[str, str, str]]:
+    """How often each suspension, kind of scene and outcome was seen."""
+    return Counter((row["suspension"], row["kind"], row["outcome"]) for row in rows)
+
+
+def _shares_of(rows: Sequence[Row]) -> dict[str, tuple[float, int]]:
+    """Per quantity, the largest share of its tolerance and the scene that used it."""
+    found = {}
+    for quantity in SHARED:
+        name = f"share_{quantity}"
+        given = [(row[name], row["number"]) for row in rows if row[name] is not None]
+        if given:
+            found[quantity] = max(given)
+    return found
+
+
+def _parts(rows: Sequence[Row]) -> tuple[Part, ...]:
     """Every outcome by suspension and by kind of scene, and the largest share of each tolerance."""
-    total = record.outcomes()
-    blocks = [_summary(total)]
-    blocks += [f"{variant.words}:\n{_outcomes(total, variant.words)}" for variant in VARIANTS]
-    shares = record.shares()
-    if shares:
-        lines = [(q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items()]
-        blocks.append(
-            "Where both agreed:\n" + table(("quantity", "largest share of tolerance", "scene"), lines)
-        )
-    seconds = sum(chunk.seconds for chunk in record.chunks.values())
-    blocks.append(
-        f"{len(record.chunks)} chunks of {CHUNK} scenes, {len(record.findings)} scenes written down, "
-        f"{record.torn} torn lines ignored, {seconds:.0f} s."
-    )
-    return "\n\n".join(blocks)
+    total = _counts(rows)
+    parts: list[Part] = [_summary(total)]
+    for variant in VARIANTS:
+        parts += ["", f"{variant.words}:", _outcomes(total, variant.words)]
+    if shares := _shares_of(rows):
+        lines = ((q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items())
+        head = ("quantity", "largest share of tolerance", "scene")
+        parts += ["", "Where both agreed:", Table(head, tuple(lines))]
+    written = sum(row["scene"] is not None for row in rows)
+    seconds = sum(row["seconds"] for row in rows)
+    parts += ["", f"{counted(len(rows), 'scene')}, {written:,} of them written down, {seconds:.0f} s."]
+    return tuple(parts)
 
 
-def _summary(total: Counter[str]) -> str:
+def _summary(total: Counter[tuple[str, str, str]]) -> Table:
     """A row for each suspension and closure."""
     rows = []
     for variant in VARIANTS:
-        here = {key: n for key, n in total.items() if key.startswith(f"{variant.words}/")}
-        begun = [sum(n for key, n in here.items() if key.split("/", 2)[2].startswith(h)) for h in HEADS]
-        faulty = sum(n for key, n in here.items() if any(word in key for word in FAULTY))
+        here = {outcome: 0 for _, _, outcome in total}
+        for (suspension, _, outcome), count in total.items():
+            here[outcome] += count * (suspension == variant.words)
+        begun = [sum(n for outcome, n in here.items() if outcome.startswith(h)) for h in HEADS]
+        faulty = sum(n for outcome, n in here.items() if any(word in outcome for word in FAULTY))
         rows.append((variant.words, *map(str, (sum(here.values()), *begun, faulty))))
-    return table(("suspension", "scenes", *HEADS, "of these wrong"), rows)
+    return Table(("suspension", "scenes", *HEADS, "of these wrong"), tuple(rows))
 
 
-def _outcomes(total: Counter[str], suspension: str) -> str:
-    here = [key for key in total if key.startswith(f"{suspension}/")]
-    outcomes = sorted({key.split("/", 2)[2] for key in here}, key=_order)
+def _outcomes(total: Counter[tuple[str, str, str]], suspension: str) -> Table:
+    outcomes = sorted({outcome for where, _, outcome in total if where == suspension}, key=_order)
     rows = []
     for outcome in outcomes:
-        counts = [total[f"{suspension}/{kind}/{outcome}"] for kind in KINDS]
+        counts = [total[suspension, kind, outcome] for kind in KINDS]
         rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
-    tried = [sum(total[key] for key in here if key.startswith(f"{suspension}/{kind}/")) for kind in KINDS]
+    tried = [sum(total[suspension, kind, outcome] for outcome in outcomes) for kind in KINDS]
     rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
-    return table(("outcome", "all", *KINDS), rows)
+    return Table(("outcome", "all", *KINDS), tuple(rows))
 
 
 def _order(outcome: str) -> tuple[int, str]:
     return next((i for i, head in enumerate(HEADS) if outcome.startswith(head)), len(HEADS)), outcome
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run from the command line."""
-    parser = argparse.ArgumentParser(prog="python -m validate.studies.random_runs", description=__doc__)
-    parser.add_argument(
-        "--count", type=int, default=100_000, help=f"scenes, rounded up to {CHUNK}s; 0: the table only"
-    )
-    parser.add_argument("--store", type=Path, required=True, help="file of JSON lines; goes on where it ends")
-    parser.add_argument("--ours", choices=METHODS, default=OURS, help="by which of pointcoord's methods")
-    parser.add_argument("--workers", type=int, default=1, help="processes")
-    options = parser.parse_args(arguments)
-    if options.count < 0 or options.workers < 1:
-        parser.error(f"--count {options.count} --workers {options.workers}: allowed: from 0, from 1")
-    try:
-        return run(options.count, options.store, options.workers, options.ours)
-    except StoreError as error:
-        print(f"validate.studies.random_runs: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print(
-            f"validate.studies.random_runs: stopped; start again with --store {options.store} to go on",
-            file=sys.stderr,
-        )
-        return ExitStatus.INTERRUPTED
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -19,7 +19,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     told = {
         "command": document["command_line"],
         "program": " ".join(document["program"].values()),
-        "started": document["started"],
+        **({} if document["started"] is None else {"started": document["started"]}),
         "exit status": f"{document['exit_status']}, {document['verdict']}",
         **dict(_settings(run)),
         **dict(_flat(document["machine"])),

@@ -54,9 +54,12 @@
       font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
       margin: { l: 50, r: 10, t: 10, b: 40 },
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+      dragmode: finger.matches ? false : "zoom",
       hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });
     Plotly.react(place, data, layout, { displaylogo: false, displayModeBar: false });
+    // A place outside the page in which plotly measures letters.
+    document.getElementById("js-plotly-tester")?.setAttribute("aria-hidden", "true");
   }
 
   // What a plot shows, for those who do not see it.

@@ -41,12 +41,13 @@
     const sets = motion.models.map((model, i) => ({
       name: model.name, strokes: ways[i] ?? ["thread"], places: (frame) => model.frames[frame],
     }));
+    if (motion.closed) sets.unshift({ name: "the drawing, closed", strokes: ["closed"], places: () => motion.closed });
     sets.unshift({ name: "the drawing", strokes: ["drawn"], places: () => motion.drawn });
     for (const one of sets) {
       one.group = add(svg, "g", {});
       one.lines = one.strokes.map((stroke) => motion.lines.map(() => add(one.group, "line", { class: stroke })));
     }
-    const places = sets[Math.min(1, sets.length - 1)].places;
+    const places = (frame) => motion.models[0].frames[frame];
     const joints = motion.points.map((name, i) => {
       const chassis = motion.chassis.includes(i);
       const shape = chassis ? add(svg, "rect", { width: 8, height: 8 }) : add(svg, "circle", { r: 3.5 });
@@ -82,7 +83,8 @@
         draw();
       });
     }
-    for (const one of [...sets.slice(1), sets[0]])
+    const still = sets.length - motion.models.length;
+    for (const one of [...sets.slice(still), ...sets.slice(0, still)])
       choice(one.name, true, (shown) => { one.group.style.display = shown ? "" : "none"; }, one.strokes);
     const named = choice("names", figure.clientWidth >= WIDE, () => draw());
     named.parentElement.className = "names";

@@ -1,0 +1,53 @@
+"""A study run: what is not recorded is worked out by a cluster, and recorded as it comes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from validate.studies.records import Records
+from validate.studies.scheduler import Cluster
+from validate.studies.study import Number, Row, Study
+
+WRITTEN = 2.0  # seconds of what is worked out that one file holds: all that the end of this process can cost
+MOST_TASKS = 5000  # of a run: a scheduler needs a millisecond for each
+
+
+def run(
+    study: Study,
+    numbers: Sequence[Number],
+    records: Records,
+    cluster: Cluster,
+    told: Callable[[int], None] = lambda done: None,
+) -> None:
+    """Work out numbers of a study and record them; whatever ends it, what was done before is recorded.
+
+    Args:
+        told: how many of the numbers are recorded, whenever there are more.
+    Raises:
+        NoCluster, ClusterLost: the cluster cannot go on.
+        OutputError: the records cannot be written.
+    """
+    size = max(study.chunk, -(-len(numbers) // MOST_TASKS))
+    tasks = [numbers[i : i + size] for i in range(0, len(numbers), size)]
+    held: list[Row] = []
+    done = recorded = 0
+    last = time.monotonic()
+
+    def record() -> None:
+        nonlocal recorded, last
+        if held:
+            records.append(held)
+            held.clear()
+            recorded, last = done, time.monotonic()
+            told(recorded)
+
+    try:
+        for one in cluster.done(study, tasks):
+            if one is not None:
+                held += one.rows
+                done += len(one.numbers)
+            if time.monotonic() - last >= WRITTEN:
+                record()
+    finally:
+        record()
