@@ -65,7 +65,7 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
         "coordinates.",
         f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it; any of "
-        "them may be added:",
+        "them may be added, to first order:",
     ]
     lines += [f"    {words}" for words in unseen_words(fit)]
     return "\n".join(lines)
