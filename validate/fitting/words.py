@@ -92,10 +92,14 @@ def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
         )
     if not fit.unique:
         found.append(
-            f"the answer is not unique: {len(fit.unseen)} combinations of coordinates are "
-            "not seen by the data"
+            f"the answer is not unique: the data do not see {counted(len(fit.unseen))} of coordinates"
         )
     return tuple(found)
+
+
+def counted(number: int) -> str:
+    """So many combinations."""
+    return f"{number} combination{'' if number == 1 else 's'}"
 
 
 def unseen_words(fit: Fit) -> list[str]:
