@@ -428,7 +428,7 @@ RECIPES: dict[str, Recipe] = {
         ("the worker tcp://far:1 takes 2 tasks at once", "start it with --nthreads 1"),
     ),
     "validate.studies.errors.ClusterLost": Recipe(
-        lambda *_: scheduler.result_of(Late(), "the scheduler there"),
+        lambda *_: scheduler.result_of(Late(), "the scheduler there", lambda: False),
         ("the scheduler there", "does not answer"),
     ),
     "validate.cost.store.StoreError": Recipe(

@@ -33,7 +33,7 @@ class HardStudy:
 
     name = "hard"
     noun = "scene"
-    chunk = 2
+    chunk = 1
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys((*TEXTS, "facts"), "string"),
         **dict.fromkeys(("value", *SIZES), "float64"),
