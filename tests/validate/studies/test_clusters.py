@@ -152,7 +152,7 @@ def _opened(cluster: Any) -> Any:
 
 
 def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
-    killed = scheduler.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3, None)
+    killed = scheduler.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3)
 
     class Fatal:
         key = "random-1a-7"
