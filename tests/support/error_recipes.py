@@ -40,6 +40,7 @@ from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.html.folder import require_folder
+from validate.html.hard_cases import read_hard_cases
 from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
@@ -461,6 +462,11 @@ RECIPES: dict[str, Recipe] = {
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
     ),
+    "validate.testing.states.WrongStates": Recipe(
+        lambda *_: assert_agrees({"camber": np.zeros(3)}, BOUNCE),
+        ("the states: camber has the shape (3,); needed: (131,), one number for each instant",),
+        {"what": "camber"},
+    ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
         ("not tested in", "camber", "an accuracy of 1000 mm says nothing", "state a finer accuracy"),
@@ -500,6 +506,14 @@ RECIPES: dict[str, Recipe] = {
         ),
         ("index.html: is no report of this program", "give another folder"),
         {"target": lambda name: name.endswith("index.html"), "problem": bool},
+    ),
+    "validate.html.hard_cases.HardFileError": Recipe(
+        lambda folder, _: (
+            (folder / "hard.json").write_text('{"kind": "validate"}'),
+            read_hard_cases(str(folder / "hard.json")),
+        ),
+        ("hard.json: holds no hard cases", "allowed: a file that `pointcoord hard --json FILE` wrote"),
+        {"file": lambda name: name.endswith("hard.json"), "problem": bool},
     ),
     "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),

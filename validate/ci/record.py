@@ -42,7 +42,7 @@ class Record:
 
     def add(self, examined: Examined, since: Since | None) -> None:
         """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=None))
+        self.examined.append(replace(without_numbers(examined), printed=None))
         if since is not None:
             self.since.append(since)
 
@@ -64,6 +64,12 @@ class Record:
         if self.baseline is not None and not any(one.compared for one in self.since):
             found.append(ExitStatus.NO_VERDICT)
         return combined(found)
+
+
+def without_numbers(examined: Examined) -> Examined:
+    """What came of a scene, and no more the numbers that it came from."""
+    printed = None if examined.printed is None else _told(examined.printed)
+    return replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=printed)
 
 
 def _told(outcome: Outcome) -> Outcome:

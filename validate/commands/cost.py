@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
 from pointcoord import UnknownName
+from validate.commands.reporting import Page
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -31,7 +32,7 @@ from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.files import OutputError, require_writable, unwritable, write_whole
+from validate.output.files import OutputError, require_writable, write_whole
 
 if TYPE_CHECKING:
     from validate.cost.scenes import StudyScene
@@ -98,7 +99,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--report",
         metavar="FOLDER",
-        help="write pictures (SVG, PNG), the full tables as Markdown and CSV, and the rows as JSON",
+        help="write a page of HTML that needs no network, pictures (SVG, PNG), the full tables as Markdown "
+        "and CSV, and the rows as JSON into a folder",
     )
     add_quiet(parser)
     parser.set_defaults(run=run)
@@ -138,11 +140,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.say(_listing())
         return ExitStatus.AGREE
     parts = _parts(options)
-    if options.report:
+    if options.report is not None:
         _require_folder(options.report)
     if options.csv not in (None, "-"):
         require_writable(options.csv)
-    journal = Journal(options.json, Head.of("cost", options.command), console)
+    journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)
@@ -201,8 +203,6 @@ def _check_options(options: argparse.Namespace) -> None:
     if options.rows == STANDARD_INPUT or not options.rows.strip():
         raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
     require_target(options.rows, "--rows", scenes)
-    if options.report is not None and not options.report.strip():
-        raise UsageError(f"--report {options.report!r} names no folder")
     if scenes.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
 
@@ -380,6 +380,10 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     if options.report:
         for name, content in report.files():
             _put(os.path.join(options.report, name), content)
+        # Most runs write no page.
+        from validate.html.run import Run
+
+        Page(options.report).write(Run(Head.of("cost", options.command, timed=True), cost=report), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
@@ -400,15 +404,13 @@ def _require_folder(folder: str) -> None:
     """Make the folder, and see that it takes files and that there is a painter, before anything is measured.
 
     Raises:
-        MissingPackage: matplotlib is not there.
+        UsageError: it has no name, or holds another's page.
+        MissingPackage: matplotlib, or what a page needs, is not there.
         OutputError: the folder cannot be had.
     """
     try:
         importlib.import_module("matplotlib")
     except ImportError as error:
         raise MissingPackage("--report", error, "plot") from None
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise unwritable(folder, error) from None
+    Page(folder).require()
     require_writable(os.path.join(folder, "report.md"))

@@ -34,8 +34,11 @@ OF_SCENES = (
     "--summary",
     "--save-baseline",
     "--baseline",
+    "--report",
     "--solver",
     "--traceback",
+    "--solver-timeout",
+    "--in-process",
 )
 
 
@@ -56,7 +59,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.quiet, console.mute = options.quiet, options.json == "-"
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
-    journal = Journal(options.json, Head.of("validate", options.command), console)
+    journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
     done: list[dict[str, Any]] = []
     results = {
         "scenes": done,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from validate.commands.reporting import add_report, page_of
 from validate.commands.usage import UsageError, add_quiet, require_target
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
@@ -29,6 +30,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
     )
     parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
+    add_report(parser)
     add_quiet(parser)
     parser.set_defaults(run=run)
 
@@ -54,8 +56,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.quiet, console.mute = options.quiet, options.json == "-"
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
-    kind = "hard-list" if options.list else "hard"
-    journal = Journal(options.json, Head.of(kind, options.command), console)
+    page = page_of(options)
+    if page is not None and options.list:
+        raise UsageError("--report is about cases that are tried; leave it out with --list")
+    if page is not None:
+        page.require()
+    head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
+    journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))
         journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
@@ -85,4 +92,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.show(hard_report.summary_parts(results))
         if not hard_run.as_expected(results):
             ending.status = ExitStatus.DISAGREE
+        if page is not None:
+            from validate.html.hard_cases import HardCases
+            from validate.html.run import Run
+
+            document = head.document(hard_report.results_data(results), ending.status, complete=True)
+            ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
     return ending.status

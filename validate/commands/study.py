@@ -110,7 +110,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
     named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
-    journal = Journal(options.json, Head.of(options.study, options.command), console)
+    journal = Journal(options.json, Head.of(options.study, options.command, timed=True), console)
     for package in ("mpmath", "flint", "pinocchio"):
         _module(package)
     with _known_names():

@@ -34,6 +34,15 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
 
 
+def add_timings(parser: argparse.ArgumentParser) -> None:
+    """When a run was; without it the same run writes the same bytes."""
+    parser.add_argument(
+        "--timings",
+        action="store_true",
+        help="write into the JSON when the run began and when it was written",
+    )
+
+
 def name_of(scene: str) -> str:
     """What messages call a scene that the command line names."""
     return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)

@@ -22,7 +22,12 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
             f"# Not unique: {len(fit.unseen)} combinations of coordinates are not seen by the data."
         )
     before += [
-        f"# {one} moved by {amount:+.4f} mm, standard deviation {fit.deviations[one]:.2g} mm."
+        f"# {one} moved by {amount:+z.4f} mm, "
+        + (
+            "which is its bound."
+            if one in fit.on_bounds
+            else f"standard deviation {fit.deviations[one]:.2g} mm."
+        )
         for one, amount in fit.corrections.items()
     ]
     return "\n".join([*before, *_lines(content, ())]) + "\n"

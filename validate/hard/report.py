@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any, get_args
 
-from validate.hard.case import Answer, Case, Expected, Outcome
-from validate.hard.run import MAP, OURS, Examined, as_expected, counts, refusals
+from validate.hard.case import OURS, Answer, Case, Expected, Outcome
+from validate.hard.run import MAP, Examined, as_expected, counts, refusals
 from validate.output.terminal import Part, Table, text_of
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
 from validate.hard.case import (
+    OURS,
     REFUSED,
     RIGHT_OR_REFUSED,
     Answer,
@@ -20,7 +21,7 @@ from validate.hard.case import (
 )
 
 # Every case that pointcoord has to solve is tried by a map of the inputs too.
-OURS, MAP = "pointcoord", "pointcoord-map"
+MAP = "pointcoord-map"
 
 
 @dataclass(frozen=True)

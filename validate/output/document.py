@@ -86,19 +86,20 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, random, bounds, cost or sweep.
+        kind: which command's results follow: validate, hard, hard-list, random, bounds, cost, sweep or fit.
         command: the command line, word by word.
-        started: UTC.
+        started: UTC; None in a run whose results say nothing of times, so that the same run gives the same
+            bytes.
     """
 
     kind: str
     command: tuple[str, ...]
-    started: str
+    started: str | None = None
 
     @classmethod
-    def of(cls, kind: str, command: Sequence[str]) -> Head:
+    def of(cls, kind: str, command: Sequence[str], timed: bool = False) -> Head:
         """The head of a run that begins now."""
-        return cls(kind, tuple(command), now())
+        return cls(kind, tuple(command), now() if timed else None)
 
     def document(
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
@@ -113,7 +114,7 @@ class Head:
             "command": list(self.command),
             "command_line": shlex.join(self.command),
             "started": self.started,
-            "written": now(),
+            "written": None if self.started is None else now(),
             "machine": machine(),
             "complete": complete,
             "exit_status": None if status is None else status.value,

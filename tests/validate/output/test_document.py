@@ -61,14 +61,14 @@ def test_the_schema_is_in_the_wheel() -> None:
 
 def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixture[str]) -> None:
     before = datetime.now(UTC).replace(microsecond=0)
-    words = ["validate", "steer", "--json", "-"]
+    words = ["validate", "steer", "--timings", "--json", "-"]
     assert main(words) == 0
     data = document(capsys.readouterr().out)
     assert (data["schema_version"], data["kind"], data["complete"]) == (SCHEMA_VERSION, "validate", True)
     assert (data["exit_status"], data["verdict"]) == (0, "agree")
     assert data["program"] == {"name": "pointcoord", "version": metadata.version("pointcoord")}
     assert data["command"] == ["pointcoord", *words]
-    assert data["command_line"] == "pointcoord validate steer --json -"
+    assert data["command_line"] == "pointcoord validate steer --timings --json -"
     assert before <= datetime.fromisoformat(data["started"]) <= datetime.fromisoformat(data["written"])
     assert data["machine"]["packages"]["numpy"] == np.__version__
     assert data["machine"]["packages"]["pin"] == metadata.version("pin")

@@ -1,33 +1,121 @@
 "use strict";
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  const drawn = new Set();
+  // A finger that moves over a plot moves the page.
+  const finger = matchMedia("(pointer: coarse)");
+  const PRINTED = { width: 320, height: 200 }, LETTER = 6.2;
+  const places = document.querySelectorAll("[data-plot]");
+  // Those near the window, and for what each was drawn last.
+  const near = new Set(), drawn = new Map();
+  let printing = false;
 
   function colour(name) {
     return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   }
 
-  function draw(place) {
-    drawn.add(place);
-    const { data, layout } = JSON.parse(place.dataset.plot);
-    const ink = colour("--ink"), line = colour("--line");
-    for (const name of ["xaxis", "yaxis"])
-      Object.assign(layout[name], { gridcolor: line, zerolinecolor: line, linecolor: line });
-    Object.assign(layout, {
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { color: ink, size: 11 }, margin: { l: 50, r: 10, t: 10, b: 40 },
-      legend: { orientation: "h", y: 1.15 },
-    });
-    Plotly.react(place, data, layout, { responsive: true, displaylogo: false, displayModeBar: false });
+  // Text in lines of at most so many letters.
+  function folded(text, letters) {
+    const lines = [""];
+    for (const word of text.split(" ")) {
+      const last = lines[lines.length - 1];
+      if (last && last.length + word.length >= letters) lines.push(word);
+      else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+    }
+    return lines.join("<br>");
   }
 
-  // A plot is drawn when it is near the window, so that a long page is there at once.
-  const places = document.querySelectorAll("[data-plot]");
+  function numbers(data, letter) {
+    return data.flatMap((trace) => trace[letter] ?? []).filter((value) => typeof value === "number");
+  }
+
+  // Whole decades, not more than there is room for; below one and a half plotly finds better ones. It writes
+  // powers larger by a quarter than other numbers.
+  function decades(values) {
+    const above = values.filter((value) => value > 0);
+    const count = Math.log10(Math.max(...above) / Math.min(...above));
+    return count > 1.5 ? { dtick: Math.ceil(count / 6), tickfont: { size: 9 } } : {};
+  }
+
+  function draw(place) {
+    const { data, layout } = JSON.parse(place.dataset.plot);
+    const ink = colour("--ink"), line = colour("--line");
+    const { width, height } = printing ? PRINTED : { width: place.clientWidth, height: place.clientHeight };
+    for (const name of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
+      const axis = layout[name], across = name[0] === "x";
+      Object.assign(axis, { gridcolor: line, zerolinecolor: line, linecolor: line, fixedrange: finger.matches });
+      if (axis.type === "log") Object.assign(axis, decades(numbers(data, name[0])));
+      if (axis.title) {
+        const room = across ? width - 80 : height - 60;
+        Object.assign(axis.title, { text: folded(axis.title.text, room / LETTER), standoff: 8, font: { size: 11 } });
+      }
+    }
+    Object.assign(layout, {
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width, height,
+      font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
+      margin: { l: 50, r: 10, t: 10, b: 40 },
+      legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+      dragmode: finger.matches ? false : "zoom",
+      hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
+    });
+    Plotly.react(place, data, layout, { displaylogo: false, displayModeBar: false });
+    // A place outside the page in which plotly measures letters.
+    document.getElementById("js-plotly-tester")?.setAttribute("aria-hidden", "true");
+  }
+
+  // What a plot shows, for those who do not see it.
+  function told(value) {
+    return String(Number(value.toPrecision(3)));
+  }
+
+  function describe(place) {
+    const { data, layout } = JSON.parse(place.dataset.plot);
+    const words = data.flatMap((trace) => {
+      const values = numbers([trace], "y");
+      if (!values.length) return [];
+      const [low, high] = [Math.min(...values), Math.max(...values)].map(told);
+      return [`${trace.name ?? "curve"} from ${low} to ${high}`];
+    });
+    const axes = ["xaxis", "yaxis"].map((name) => layout[name]?.title?.text).filter(Boolean).join(" and ");
+    place.setAttribute("aria-label", `${place.getAttribute("aria-label")}. Axes: ${axes}. ${words.join("; ")}.`);
+  }
+
+  // A plot is drawn when it is near the window, so that a long page is there at once, and again when it comes
+  // near as it is no more: in another width, by another light.
+  function refresh(place) {
+    const how = `${place.clientWidth} ${dark.matches} ${printing}`;
+    if (!place.clientWidth || !(printing || near.has(place)) || drawn.get(place) === how) return;
+    drawn.set(place, how);
+    draw(place);
+  }
+
   const watch = new IntersectionObserver((seen) => {
-    for (const one of seen)
-      if (one.isIntersecting && !drawn.has(one.target)) draw(one.target);
+    for (const one of seen) {
+      if (one.isIntersecting) near.add(one.target);
+      else near.delete(one.target);
+      refresh(one.target);
+    }
   }, { rootMargin: "400px" });
-  places.forEach((place) => watch.observe(place));
-  dark.addEventListener("change", () => drawn.forEach(draw));
-  addEventListener("beforeprint", () => places.forEach((place) => drawn.has(place) || draw(place)));
+  const measure = new ResizeObserver((changed) => changed.forEach((one) => refresh(one.target)));
+  places.forEach((place) => {
+    describe(place);
+    watch.observe(place);
+    measure.observe(place);
+  });
+  dark.addEventListener("change", () => near.forEach(refresh));
+
+  // Paper shows all of it, in ink on white.
+  let closed = [];
+  addEventListener("beforeprint", () => {
+    closed = [...document.querySelectorAll("details:not([open])")];
+    closed.forEach((one) => { one.open = true; });
+    document.documentElement.classList.add("printed");
+    printing = true;
+    places.forEach(refresh);
+  });
+  addEventListener("afterprint", () => {
+    closed.forEach((one) => { one.open = false; });
+    document.documentElement.classList.remove("printed");
+    printing = false;
+    near.forEach(refresh);
+  });
 })();

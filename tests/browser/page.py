@@ -1,0 +1,620 @@
+"""The report in a browser: headless Chromium, from disk; not collected unless this file is named.
+
+    pytest tests/browser/page.py -n 0
+
+needs Chromium in the path of programs. The report of all built-in scenes is made and opened once; every test
+looks at the same page and leaves it as it found it. After each test the page must not have complained of
+anything, nor have asked for anything but itself.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from validate.cli import main
+
+Array = NDArray[np.float64]
+
+SCENES = Path(__file__).parents[2] / "pointcoord" / "scenes"
+WINDOW = {"width": 1200, "height": 900}
+PHONE = {"width": 390, "height": 844}
+# A4 without margins of 15 mm, at 96 pixels an inch.
+PAPER = {"width": 680, "height": 1009}
+# Seconds of work of the page's own process until all of it is there: time on a clock would measure what
+# else the machine does. 1.8 s were seen, and the script of plotly takes most of them.
+LOAD = 8.0
+# The guidelines for accessible content (WCAG 2.2, 1.4.3 and 1.4.11) on text and on lines.
+TEXT, LINES = 4.5, 3.0
+NAME = "<script>alert(1)<script>"
+
+
+@dataclass
+class Opened:
+    """A page, the folder of its report, and what it said or asked for that it should not.
+
+    Attributes:
+        work: seconds of the page's own process until it was loaded.
+    """
+
+    page: Page
+    folder: Path
+    work: float = 0.0
+    complaints: list[str] = field(default_factory=list)
+
+
+def chromium() -> str:
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    assert found, "there is no Chromium in the path of programs"
+    return found
+
+
+def opened(browser: Browser, folder: Path, **options: Any) -> Opened:
+    page = browser.new_context(**options).new_page()
+    page.set_default_timeout(120_000)
+    one = Opened(page, folder)
+    address = (folder / "index.html").as_uri()
+    page.on("console", lambda said: one.complaints.append(f"{said.type}: {said.text}"))
+    page.on("pageerror", lambda error: one.complaints.append(f"error: {error}"))
+    page.on("dialog", lambda dialog: (one.complaints.append(f"dialog: {dialog.message}"), dialog.dismiss()))
+
+    def asked(url: str) -> None:
+        if not url.startswith(("data:", "blob:")) and url != address:
+            one.complaints.append(f"asks for {url}")
+
+    page.on("request", lambda request: asked(request.url))
+    devices = page.context.new_cdp_session(page)
+    devices.send("Performance.enable")
+    page.goto(address)
+    metrics = devices.send("Performance.getMetrics")["metrics"]
+    one.work = next(metric["value"] for metric in metrics if metric["name"] == "ProcessTime")
+    devices.detach()
+    return one
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as program:
+        started = program.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="session")
+def session(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Opened:
+    folder = tmp_path_factory.mktemp("report")
+    assert main(["report", "-q", str(folder)]) == 0
+    return opened(browser, folder, viewport=WINDOW, color_scheme="light")
+
+
+@pytest.fixture
+def report(session: Opened) -> Iterator[Opened]:
+    """The page in a wide window, light, at its top; afterwards it has not complained."""
+    session.page.set_viewport_size(WINDOW)
+    session.page.emulate_media(media="screen", color_scheme="light", reduced_motion="no-preference")
+    session.page.evaluate("scrollTo(0, 0); document.activeElement.blur()")
+    yield session
+    assert session.complaints == []
+
+
+@pytest.fixture
+def page(report: Opened) -> Page:
+    return report.page
+
+
+def settled(page: Page, folded: int = 2) -> None:
+    """Of each section so many that open are open, all plots drawn for the window as it is."""
+    page.evaluate(
+        """async (folded) => {
+            for (const section of document.querySelectorAll("section"))
+                section.querySelectorAll("details").forEach((one, i) => { one.open = i < folded; });
+            const start = performance.now();
+            const frame = () => new Promise((go, stop) => performance.now() - start < 60_000
+                ? requestAnimationFrame(go) : stop(new Error("a plot is not drawn")));
+            for (const one of document.querySelectorAll(".spatial > svg, [data-plot]")) {
+                if (!one.checkVisibility()) continue;
+                one.scrollIntoView();
+                await frame();
+                const as_wide = () => one.dataset.plot === undefined
+                    || Number(one.querySelector(".main-svg")?.getAttribute("width")) === one.clientWidth;
+                while (!as_wide()) await frame();
+            }
+            scrollTo(0, 0);
+            await frame();
+            await frame();
+        }""",
+        folded,
+    )
+
+
+def until(page: Page, what: str) -> None:
+    """Wait for what a line of script says: playwright's own way runs text, which the policy forbids."""
+    page.evaluate(
+        f"""async () => {{
+            const start = performance.now();
+            while (!({what})) {{
+                if (performance.now() - start > 60_000) throw new Error("never");
+                await new Promise((go) => setTimeout(go, 10));
+            }}
+        }}"""
+    )
+
+
+def test_the_page_is_there_after_few_seconds_of_work(report: Opened) -> None:
+    assert 0.0 < report.work < LOAD
+
+
+def test_all_of_the_page_is_drawn_without_a_complaint_or_a_request(report: Opened) -> None:
+    for scheme in ("dark", "light"):
+        report.page.emulate_media(color_scheme=scheme)
+        settled(report.page)
+    assert report.page.locator("[data-plot] .main-svg").count() > 20
+    assert report.complaints == []
+
+
+def test_the_verdict_is_that_of_the_data_beside_the_page(report: Opened) -> None:
+    data = json.loads((report.folder / "results.json").read_text(encoding="utf-8"))
+    scenes = data["scenes"]
+    agree = [
+        scene
+        for scene in scenes
+        if all(row["verdict"] == "agrees" for one in scene["comparisons"] for row in one["rows"])
+    ]
+    assert len(agree) == len(scenes) > 1
+    assert data["verdict"] == "agree"
+    shown = report.page.locator(".verdict")
+    assert shown.count() == 1
+    assert shown.inner_text() == f"{len(agree)} of {len(scenes)} scenes agree."
+    assert report.page.title() == f"pointcoord: {shown.inner_text()}"
+    cells = report.page.locator("#agreement td").all_inner_texts()
+    asked = [cell for cell in cells if cell != "not asked for"]
+    assert all(cell.startswith("agrees") for cell in asked)
+    pairs = [{row["quantity"] for row in one["rows"]} for scene in scenes for one in scene["comparisons"]]
+    assert len(asked) >= sum(map(len, pairs)) > 10
+
+
+def test_the_files_that_the_page_names_lie_beside_it(report: Opened) -> None:
+    links = report.page.locator("footer a").evaluate_all("all => all.map((a) => a.getAttribute('href'))")
+    assert len(links) == 2
+    assert all((report.folder / link).is_file() for link in links)
+
+
+# The drawing in space.
+
+
+def joints(page: Page) -> Array:
+    """Where the joints of the first drawing are in it, (P, 2)."""
+    read = """all => all.map((one) => one.tagName === "rect"
+        ? [Number(one.getAttribute("x")) + 4, Number(one.getAttribute("y")) + 4]
+        : [Number(one.getAttribute("cx")), Number(one.getAttribute("cy"))])"""
+    return np.array(page.locator(".spatial").first.locator(".joint").evaluate_all(read), dtype=float)
+
+
+def ends(page: Page, stroke: str) -> Array:
+    """Ends of the lines of one stroke of the first drawing, (L, 4)."""
+    read = "all => all.map((one) => ['x1', 'y1', 'x2', 'y2'].map((name) => Number(one.getAttribute(name))))"
+    return np.array(page.locator(".spatial").first.locator(f"g .{stroke}").evaluate_all(read), dtype=float)
+
+
+def slider(page: Page) -> Any:
+    return page.locator(".spatial input[type=range]").first
+
+
+def slide(page: Page, value: int) -> None:
+    slider(page).evaluate(
+        "(one, value) => { one.value = value; one.dispatchEvent(new Event('input')); }", value
+    )
+
+
+def seen_from(page: Page, name: str) -> None:
+    page.locator(".spatial").first.get_by_role("button", name=f"{name} view").click()
+
+
+@pytest.mark.parametrize(
+    ("view", "across", "upward"),
+    [("Rear", 0, 2), ("Right", 1, 2), ("Top", 0, 1)],
+    ids=["rear", "right", "top"],
+)
+def test_the_slider_shows_each_instant_to_scale(page: Page, view: str, across: int, upward: int) -> None:
+    motion = json.loads(page.locator("[data-motion]").first.get_attribute("data-motion") or "")
+    axes = np.array(motion["axes"])
+    seen_from(page, view)
+    last = len(motion["times"]) - 1
+    shown, true, strokes = [], [], []
+    for frame in (0, last // 3, last):
+        slide(page, frame)
+        shown.append(joints(page))
+        strokes.append((ends(page, "tube"), ends(page, "thread")))
+        # From the right the front is to the right; of the page, down is positive.
+        turned = np.array(motion["models"][0]["frames"][frame]) @ axes.T
+        horizontal = -turned[:, across] if view == "Right" else turned[:, across]
+        vertical = turned[:, upward] if view == "Top" else -turned[:, upward]
+        true.append(np.stack([horizontal, vertical], axis=1))
+    assert np.abs(shown[0] - shown[2]).max() > 20.0
+    for (tube, thread), places in zip(strokes, shown, strict=True):
+        drawn = np.concatenate([places[list(pair)].reshape(1, 4) for pair in motion["lines"]])
+        assert np.abs(tube - drawn).max() < 0.011  # two digits behind the point
+        assert np.abs(thread - drawn).max() < 0.021  # and two models that agree, to two digits of a mm
+    flat, places = np.concatenate(true), np.concatenate(shown)
+    system = np.zeros((2 * len(flat), 3))
+    system[:, 0], system[0::2, 1], system[1::2, 2] = flat.ravel(), 1.0, 1.0
+    (scale, *_), *_ = np.linalg.lstsq(system, places.ravel(), rcond=None)
+    assert scale > 0.1
+    left = system @ np.linalg.lstsq(system, places.ravel(), rcond=None)[0] - places.ravel()
+    assert np.abs(left).max() < 0.011
+    slide(page, 0)
+    seen_from(page, "Oblique")
+
+
+def test_play_goes_through_the_instants_until_it_is_stopped(page: Page) -> None:
+    first = joints(page)
+    page.get_by_role("button", name="Play the motion").first.click()
+    until(page, "document.querySelector('.spatial input').value >= 3")
+    page.get_by_role("button", name="Stop the motion").click()
+    stopped = slider(page).input_value()
+    assert np.abs(joints(page) - first).max() > 1.0
+    page.wait_for_timeout(200)
+    assert slider(page).input_value() == stopped
+    assert page.get_by_role("button", name="Stop the motion").count() == 0
+    assert page.locator(".spatial output").first.inner_text() == slider(page).get_attribute("aria-valuetext")
+    slide(page, 0)
+
+
+def test_who_wants_little_motion_sees_few_pictures(page: Page) -> None:
+    page.emulate_media(reduced_motion="reduce")
+    count = int(slider(page).get_attribute("max") or "") + 1
+    page.get_by_role("button", name="Play the motion").first.click()
+    until(page, "document.querySelector('.spatial input').value > 0")
+    page.get_by_role("button", name="Stop the motion").click()
+    assert int(slider(page).input_value()) % ceil(count / 20) == 0
+    slide(page, 0)
+
+
+def test_a_drag_of_a_quarter_turn_shows_the_car_from_the_right(page: Page) -> None:
+    seen_from(page, "Right")
+    right = joints(page)
+    seen_from(page, "Rear")
+    rear = joints(page)
+    assert np.abs(right - rear).max() > 20.0
+    svg = page.locator(".spatial > svg").first
+    svg.scroll_into_view_if_needed()
+    box = svg.bounding_box()
+    assert box is not None
+    x, y = box["x"] + 100, box["y"] + 100
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 100, y, steps=3)
+    page.mouse.move(x + 157, y, steps=3)
+    page.mouse.up()
+    # A pixel turns by 0.01 rad; a quarter turn is 0.08 pixels more than 157.
+    assert np.abs(joints(page) - right).max() < 0.0009 * box["width"]
+    page.mouse.move(x, y, steps=3)
+    assert np.abs(joints(page) - right).max() < 0.0009 * box["width"]
+    seen_from(page, "Oblique")
+
+
+def test_the_arrow_keys_turn_the_drawing_and_turn_it_back(page: Page) -> None:
+    seen_from(page, "Oblique")
+    first = joints(page)
+    svg = page.locator(".spatial > svg").first
+    svg.focus()
+    for key, opposite in (("ArrowRight", "ArrowLeft"), ("ArrowUp", "ArrowDown")):
+        for _ in range(3):
+            page.keyboard.press(key)
+        assert np.abs(joints(page) - first).max() > 5.0
+        for _ in range(3):
+            page.keyboard.press(opposite)
+        assert np.abs(joints(page) - first).max() < 0.011
+
+
+def test_the_arrow_keys_move_the_slider_by_an_instant_and_say_its_time(page: Page) -> None:
+    motion = json.loads(page.locator("[data-motion]").first.get_attribute("data-motion") or "")
+    slider(page).focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    assert slider(page).input_value() == "2"
+    assert slider(page).get_attribute("aria-valuetext") == f"{motion['times'][2]:g} s"
+    page.keyboard.press("Home")
+    assert slider(page).input_value() == "0"
+
+
+def test_each_model_can_be_taken_away(page: Page) -> None:
+    figure = page.locator(".spatial").first
+    for name, stroke in (("pointcoord", "tube"), ("absolute", "thread"), ("the drawing", "drawn")):
+        box = figure.get_by_role("checkbox", name=name)
+        lines = figure.locator(f"svg[role=application] .{stroke}").first
+        assert lines.is_visible()
+        box.uncheck()
+        assert not lines.is_visible()
+        box.check()
+        assert lines.is_visible()
+
+
+def test_names_of_points_cover_neither_each_other_nor_the_joints(page: Page) -> None:
+    settled(page)
+    covered = page.evaluate(
+        """() => [...document.querySelectorAll(".spatial > svg")].flatMap((svg) => {
+            const meet = (a, b) =>
+                a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+            // The letters reach less high and deep than their line.
+            const inner = ({ left, right, top, bottom }) =>
+                ({ left, right, top: top + 3, bottom: bottom - 3 });
+            const boxes = (kind) => [...svg.querySelectorAll(kind)]
+                .map((one) => one.getBoundingClientRect());
+            const names = boxes(":scope > text").map(inner), joints = boxes(".joint");
+            return names.flatMap((one, i) =>
+                [...names.slice(0, i), ...joints].filter((two) => meet(one, two)));
+        })"""
+    )
+    assert covered == []
+
+
+def test_a_point_is_named_where_the_pointer_is(page: Page) -> None:
+    figure = page.locator(".spatial").first
+    figure.locator(".names input").uncheck()
+    shown = figure.locator("svg > text:visible")
+    assert shown.count() == 0
+    joint = figure.locator(".joint.chassis").first
+    joint.hover(force=True)
+    assert shown.count() == 1
+    motion = json.loads(figure.get_attribute("data-motion") or "")
+    assert shown.first.text_content() in [motion["points"][i] for i in motion["chassis"]]
+    page.mouse.move(2, 2)
+    assert shown.count() == 0
+    figure.locator(".names input").check()
+
+
+# Names, keys, headings.
+
+
+def accessible(page: Page) -> list[tuple[str, str]]:
+    """Role and name of all that a screen reader is told of."""
+    devices = page.context.new_cdp_session(page)
+    nodes = devices.send("Accessibility.getFullAXTree")["nodes"]
+    devices.detach()
+    return [
+        (node["role"]["value"], node.get("name", {}).get("value", ""))
+        for node in nodes
+        if not node["ignored"] and "role" in node
+    ]
+
+
+def test_everything_that_can_be_used_and_every_picture_has_a_name(page: Page) -> None:
+    settled(page)
+    told = accessible(page)
+    used = {"button", "link", "checkbox", "slider", "application", "image", "img", "region", "table"}
+    nameless = [role for role, name in told if role in used and not name.strip()]
+    roles = [role for role, _ in told]
+    assert {"button", "link", "checkbox", "slider", "application"} <= set(roles)
+    assert "image" in roles or "img" in roles
+    assert nameless == []
+    for kind in ("button", "slider", "application"):
+        names = [name for role, name in told if role == kind]
+        assert len(set(names)) == len(names), kind
+    pictures = [name for role, name in told if role in ("image", "img")]
+    assert len(pictures) >= page.locator("[data-plot]:visible").count() > 10
+    assert all(" from " in name for name in pictures)
+
+
+def test_headings_and_landmarks_tell_the_page_apart(page: Page) -> None:
+    levels = page.locator("h1, h2, h3, h4").evaluate_all("all => all.map((one) => Number(one.tagName[1]))")
+    assert levels.count(1) == 1
+    assert levels[0] == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+    roles = [role for role, _ in accessible(page)]
+    for landmark in ("banner", "navigation", "main", "contentinfo"):
+        assert roles.count(landmark) == 1
+    assert page.locator("html").get_attribute("lang") == "en"
+    lost = page.evaluate(
+        """() => [...document.querySelectorAll("a[href^='#']")]
+            .filter((a) => !document.querySelector(a.hash)).length"""
+    )
+    assert lost == 0
+
+
+def test_every_control_is_reached_by_the_tab_key_and_shows_it(page: Page) -> None:
+    settled(page)
+    wanted = page.evaluate(
+        """() => {
+            const all = [...document.querySelectorAll("a[href], button, input, summary, [tabindex='0']")]
+                .filter((one) => one.checkVisibility());
+            all.forEach((one, i) => { one.dataset.stop = i; });
+            return all.length;
+        }"""
+    )
+    page.evaluate("document.activeElement.blur(); getSelection().removeAllRanges(); scrollTo(0, 0)")
+    reached, faint = set(), []
+    for _ in range(wanted + 2):
+        page.keyboard.press("Tab")
+        stop, width = page.evaluate(
+            """() => {
+                const one = document.activeElement, style = getComputedStyle(one);
+                return [one.dataset.stop, style.outlineStyle === "none" ? 0 : parseFloat(style.outlineWidth)];
+            }"""
+        )
+        if stop is not None:
+            reached.add(int(stop))
+            if width < 2:
+                faint.append(stop)
+    assert reached == set(range(wanted))
+    assert faint == []
+
+
+def test_the_first_tab_leads_past_the_list_of_sections(page: Page) -> None:
+    page.reload()
+    skip = page.get_by_role("link", name="Skip to the report")
+    page.keyboard.press("Tab")
+    box = skip.bounding_box()
+    assert box is not None
+    assert box["y"] >= 0
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "main"
+    page.evaluate("history.replaceState(null, '', location.pathname)")
+
+
+# Colours.
+
+CONTRAST = """() => {
+    const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+    const rgb = (colour) => {
+        context.clearRect(0, 0, 1, 1);
+        context.fillStyle = colour;
+        context.fillRect(0, 0, 1, 1);
+        return [...context.getImageData(0, 0, 1, 1).data];
+    };
+    const light = ([r, g, b]) => [r, g, b].map((v) => v / 255)
+        .map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+        .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+    const contrast = (a, b) => {
+        const [low, high] = [light(a), light(b)].sort((a, b) => a - b);
+        return (high + 0.05) / (low + 0.05);
+    };
+    const behind = (one) => {
+        for (let at = one; at; at = at.parentElement) {
+            const colour = rgb(getComputedStyle(at).backgroundColor);
+            if (colour[3] === 255) return colour;
+        }
+        return [255, 255, 255];
+    };
+    const seen = (one) => one.checkVisibility({ visibilityProperty: true });
+    const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    const found = { text: [], line: [] };
+    while (texts.nextNode()) {
+        const one = texts.currentNode.parentElement;
+        if (!texts.currentNode.data.trim() || one.closest("script, style, noscript") || !seen(one)) continue;
+        const style = getComputedStyle(one);
+        const colour = rgb(one instanceof SVGElement ? style.fill : style.color);
+        found.text.push([contrast(colour, behind(one)), texts.currentNode.data.trim().slice(0, 40)]);
+    }
+    const strokes = ".tube, .thread, .drawn, .joint, .js-line, .points path, .legendlines path, .triad line";
+    for (const one of document.querySelectorAll(strokes)) {
+        const style = getComputedStyle(one);
+        if (!seen(one) || style.stroke === "none" || parseFloat(style.strokeWidth) === 0) continue;
+        found.line.push([contrast(rgb(style.stroke), behind(one)), one.getAttribute("class")]);
+    }
+    return found;
+}"""
+
+
+def require_contrast(found: Any) -> None:
+    assert len(found["text"]) > 500
+    assert len(found["line"]) > 100
+    assert [one for one in found["text"] if one[0] < TEXT] == []
+    assert [one for one in found["line"] if one[0] < LINES] == []
+
+
+@pytest.mark.parametrize(("scheme", "behind"), [("light", (255, 255, 255)), ("dark", (22, 24, 27))])
+def test_text_and_lines_stand_out_of_what_is_behind_them(page: Page, scheme: Any, behind: Any) -> None:
+    page.emulate_media(color_scheme=scheme)
+    settled(page)
+    require_contrast(page.evaluate(CONTRAST))
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == f"rgb{behind}"
+
+
+# Windows, phones and paper.
+
+CUT = """() => [...document.querySelectorAll("[data-plot]")].flatMap((plot) => {
+    const box = plot.getBoundingClientRect();
+    return [...plot.querySelectorAll("text")].filter((text) => {
+        const one = text.getBoundingClientRect();
+        return text.checkVisibility() && one.width && (one.left < box.left - 1 || one.right > box.right + 1
+            || one.top < box.top - 1 || one.bottom > box.bottom + 1);
+    }).map((text) => text.textContent);
+})"""
+
+OUTSIDE = """() => [...document.querySelectorAll("main *")].filter((one) => {
+    const box = one.getBoundingClientRect();
+    return one.checkVisibility() && box.width && !one.closest(".scroll") && !one.closest("svg svg, .plot svg")
+        && box.right > document.documentElement.clientWidth + 1;
+}).map((one) => one.outerHTML.slice(0, 80))"""
+
+
+@pytest.mark.parametrize("size", [WINDOW, PHONE], ids=["window", "phone"])
+def test_nothing_is_wider_than_the_window_and_no_label_is_cut(page: Page, size: Any) -> None:
+    page.set_viewport_size(size)
+    settled(page)
+    assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+    assert page.evaluate(OUTSIDE) == []
+    assert page.evaluate(CUT) == []
+
+
+def test_paper_shows_all_of_it_in_ink_on_white_and_in_plots_no_wider_than_their_places(page: Page) -> None:
+    settled(page, 1)
+    first = page.locator("details[open]").count()
+    page.set_viewport_size(PAPER)
+    page.emulate_media(media="print", color_scheme="dark")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    plots = page.evaluate(
+        """() => [...document.querySelectorAll("[data-plot]")].map((plot) => {
+            const [inner, outer] = [plot.querySelector(".main-svg"), plot]
+                .map((one) => one?.getBoundingClientRect());
+            return inner && inner.width <= outer.width + 1 && inner.height <= outer.height + 1;
+        })"""
+    )
+    cut = page.evaluate(CUT)
+    contrast = page.evaluate(CONTRAST)
+    behind = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    shown = [page.locator(one).first.is_visible() for one in ("nav", ".play", ".spatial input")]
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert len(plots) > 20
+    assert all(plots)
+    assert cut == []
+    assert shown == [False, False, False]
+    assert behind == "rgb(255, 255, 255)"
+    require_contrast(contrast)
+    assert page.locator("details[open]").count() == first
+
+
+def test_a_finger_that_moves_up_over_a_drawing_or_a_plot_moves_the_page(
+    browser: Browser, report: Opened
+) -> None:
+    phone = opened(browser, report.folder, viewport=PHONE, has_touch=True, is_mobile=True)
+    devices = phone.page.context.new_cdp_session(phone.page)
+    for place in (".spatial > svg", "[data-plot]"):
+        one = phone.page.locator(place).first
+        one.evaluate("(one) => one.scrollIntoView({ block: 'center' })")
+        if place != ".spatial > svg":
+            one.locator(".main-svg").first.wait_for()
+        before = phone.page.evaluate("scrollY")
+        box = one.bounding_box()
+        assert box is not None
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        devices.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [{"x": x, "y": y}]})
+        for up in range(20, 201, 20):
+            moved = {"type": "touchMove", "touchPoints": [{"x": x, "y": y - up}]}
+            devices.send("Input.dispatchTouchEvent", moved)
+        devices.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        until(phone.page, f"scrollY > {before + 100}")
+    phone.page.context.close()
+    assert phone.complaints == []
+
+
+# Names from files.
+
+
+def test_a_scene_that_is_called_as_a_script_shows_as_text(browser: Browser, tmp_path: Path) -> None:
+    lines = (SCENES / "bounce.toml").read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if not line.startswith("title")]
+    file = tmp_path / f"{NAME}.toml"
+    file.write_text("\n".join(["title = '</title></script><img src=x onerror=alert(1)>'", *kept]))
+    assert main(["report", "-q", str(tmp_path / "out"), str(file)]) == 0
+    one = opened(browser, tmp_path / "out", viewport=WINDOW)
+    settled(one.page)
+    assert NAME in one.page.locator("#agreement tbody th").first.inner_text()
+    assert NAME in one.page.locator("h3").first.inner_text()
+    assert one.page.get_by_role("button", name=NAME).count() >= 1
+    assert one.page.locator("script").count() == 3  # plotly and two of our own
+    assert one.page.locator("img").count() == 0
+    one.page.context.close()
+    assert one.complaints == []
