@@ -10,7 +10,7 @@ from typing import ClassVar
 from threadpoolctl import threadpool_info
 
 from validate.exit_status import ExitStatus
-from validate.studies.study import Findings, Kind, Number, Row
+from validate.long_studies.study import Findings, Kind, Number, Row
 
 
 @dataclass(frozen=True)

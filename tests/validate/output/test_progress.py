@@ -1,4 +1,4 @@
-"""How far a run is, and how long the rest takes at its pace; in a pipe a line a minute, where it is asked for."""
+"""How far a run is, and how long the rest takes at its pace; in a pipe a line a minute, if asked for."""
 
 import pytest
 

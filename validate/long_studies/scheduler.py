@@ -18,10 +18,10 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from validate.extras import MissingPackage
+from validate.long_studies.errors import ClusterLost, NoCluster
+from validate.long_studies.maker import Maker
+from validate.long_studies.study import Number, Row, Study
 from validate.plain_text import one_line, shown
-from validate.studies.errors import ClusterLost, NoCluster
-from validate.studies.maker import Maker
-from validate.studies.study import Number, Row, Study
 
 LOCAL = "local"
 ANSWER = 5.0  # seconds that a scheduler is given to answer

@@ -13,15 +13,15 @@ import pytest
 from program import ENVIRONMENT
 
 from validate.cli import main
+from validate.long_studies import maker
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.errors import RecordsError
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.maker import CODE, Maker
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.records import HEAD, Head, Records, adding_to, in_order, look
+from validate.long_studies.study import Number, Row
 from validate.output.files import OutputError
-from validate.studies import maker
-from validate.studies.bounds import BoundsStudy
-from validate.studies.errors import RecordsError
-from validate.studies.hard_runs import HardStudy
-from validate.studies.maker import CODE, Maker
-from validate.studies.random_runs import RandomStudy
-from validate.studies.records import HEAD, Head, Records, adding_to, in_order, look
-from validate.studies.study import Number, Row
 
 BOUNDS = Head.of(BoundsStudy(3, 0, seed=5))
 
@@ -142,7 +142,7 @@ def test_a_broken_file_is_named_with_what_to_do(tmp_path: Path) -> None:
 def test_all_code_that_rows_follow_from_is_in_their_digest() -> None:
     program = (
         "import sys\n"
-        "from validate.studies import bounds, hard_runs, random_runs, study\n"
+        "from validate.long_studies import bounds, hard_runs, random_runs, study\n"
         "hard = hard_runs.HardStudy(('at-rest',))\n"
         "for one in (bounds.BoundsStudy(1, 1), hard, random_runs.RandomStudy(1)):\n"
         "    one.examine(one.numbers[0])\n"

@@ -21,15 +21,15 @@ from program import ENVIRONMENT, PROGRAM
 from worked_out import without_who_and_how_long, worked_out
 
 from validate.cli import main
-from validate.studies import run as study_run
-from validate.studies import scheduler
-from validate.studies.bounds import BoundsStudy
-from validate.studies.errors import ClusterLost, NoCluster
-from validate.studies.hard_runs import HardStudy
-from validate.studies.maker import Maker
-from validate.studies.records import Head, Records, adding_to, in_order, look
-from validate.studies.run import run
-from validate.studies.study import Number
+from validate.long_studies import run as study_run
+from validate.long_studies import scheduler
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.errors import ClusterLost, NoCluster
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.maker import Maker
+from validate.long_studies.records import Head, Records, adding_to, in_order, look
+from validate.long_studies.run import run
+from validate.long_studies.study import Number
 
 
 def cluster_of(**options: Any) -> Any:

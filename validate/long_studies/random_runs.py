@@ -32,8 +32,8 @@ from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
+from validate.long_studies.study import Findings, Kind, Number, Row, counted
 from validate.output.terminal import Part, Table
-from validate.studies.study import Findings, Kind, Number, Row, counted
 
 PART = "scenes"
 OURS = "pointcoord"

@@ -26,10 +26,10 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from validate.extras import MissingPackage
+from validate.long_studies.errors import RecordsError
+from validate.long_studies.maker import Maker
+from validate.long_studies.study import Kind, Number, Row, Study
 from validate.output.files import unwritable, write_whole
-from validate.studies.errors import RecordsError
-from validate.studies.maker import Maker
-from validate.studies.study import Kind, Number, Row, Study
 
 FORMAT = 1
 HEAD = "_study.json"

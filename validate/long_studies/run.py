@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from validate.studies.records import Records
-from validate.studies.scheduler import Cluster
-from validate.studies.study import Number, Row, Study
+from validate.long_studies.records import Records
+from validate.long_studies.scheduler import Cluster
+from validate.long_studies.study import Number, Row, Study
 
 WRITTEN = 2.0  # seconds of what is worked out that one file holds: all that the end of this process can cost
 MOST_TASKS = 5000  # of a run: a scheduler needs a millisecond for each
