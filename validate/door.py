@@ -16,10 +16,10 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
 from validate.hardpoint_files.axes import UnknownAxes
 from validate.hardpoint_files.contents import HardpointFileError
+from validate.long_studies.errors import ClusterLost, NoCluster, RecordsError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 from validate.solvers.plain import NoSolver
-from validate.studies.errors import ClusterLost, NoCluster, RecordsError
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (

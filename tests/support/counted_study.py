@@ -10,7 +10,7 @@ from typing import ClassVar
 from threadpoolctl import threadpool_info
 
 from validate.exit_status import ExitStatus
-from validate.studies.study import Findings, Kind, Number, Row
+from validate.long_studies.study import Findings, Kind, Number, Row
 
 
 @dataclass(frozen=True)
@@ -20,13 +20,11 @@ class CountedStudy:
     Attributes:
         marks: a file that gets a line with a number whenever that one is begun.
         pause: seconds that each takes.
-        fatal: a number that ends its process.
     """
 
     count: int
     marks: str
     pause: float = 0.0
-    fatal: int = -1
 
     name = "counted"
     noun = "number"
@@ -44,8 +42,6 @@ class CountedStudy:
     def examine(self, number: Number) -> list[Row]:
         with open(self.marks, "a") as marks:
             marks.write(f"{number.number}\n")
-        if number.number == self.fatal:
-            os._exit(1)
         time.sleep(self.pause)
         threads = max(one["num_threads"] for one in threadpool_info())
         told = os.environ.get("OPENBLAS_NUM_THREADS")

@@ -41,6 +41,9 @@ from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.html.folder import require_folder
 from validate.html.hard_cases import read_hard_cases
+from validate.long_studies import scheduler
+from validate.long_studies.maker import Maker
+from validate.long_studies.records import look
 from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
@@ -52,9 +55,6 @@ from validate.reference.exact import bits
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
 from validate.solvers.check import check
-from validate.studies import scheduler
-from validate.studies.maker import Maker
-from validate.studies.records import look
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
@@ -419,17 +419,17 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
-    "validate.studies.errors.RecordsError": Recipe(
+    "validate.long_studies.errors.RecordsError": Recipe(
         lambda folder, _: look(folder),
         ("--records ", "holds no records of a study", "run the study first"),
         {"problem": bool},
     ),
-    "validate.studies.errors.NoCluster": Recipe(
+    "validate.long_studies.errors.NoCluster": Recipe(
         lambda *_: scheduler.require_same(scheduler.Worker("tcp://far:1", 2, Maker.here())),
         ("the worker tcp://far:1 takes 2 tasks at once", "start it with --nthreads 1"),
     ),
-    "validate.studies.errors.ClusterLost": Recipe(
-        lambda *_: scheduler.result_of(Late(), "the scheduler there"),
+    "validate.long_studies.errors.ClusterLost": Recipe(
+        lambda *_: scheduler.result_of(Late(), "the scheduler there", lambda: False),
         ("the scheduler there", "does not answer"),
     ),
     "validate.cost.store.StoreError": Recipe(

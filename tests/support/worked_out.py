@@ -1,7 +1,7 @@
 """A study worked out here, in one process and without a cluster."""
 
-from validate.studies.scheduler import rows_of
-from validate.studies.study import Row, Study
+from validate.long_studies.scheduler import rows_of
+from validate.long_studies.study import Row, Study
 
 
 def worked_out(study: Study) -> list[Row]:

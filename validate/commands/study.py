@@ -19,7 +19,7 @@ from validate.output.progress import progress
 from validate.plain_text import shown
 
 if TYPE_CHECKING:
-    from validate.studies.study import Findings, Study
+    from validate.long_studies.study import Findings, Study
 
 LOCAL = "local"
 
@@ -146,7 +146,7 @@ def _option(name: str) -> str:
 
 def _found(named: Named, folder: Path, name: str) -> Findings:
     """What all records in a folder come to."""
-    there = _module("validate.studies.records").look(folder)
+    there = _module("validate.long_studies.records").look(folder)
     if there.head.study != name:
         raise UsageError(
             f"--records {shown(str(folder))} holds the study {there.head.study!r}, not {name!r}; "
@@ -163,8 +163,8 @@ def _worked_out(
     study: Study, folder: Path, options: argparse.Namespace, journal: Journal, console: Console
 ) -> ExitStatus:
     """Work out what is missing, and say what the numbers that are asked for come to."""
-    records, scheduler = _module("validate.studies.records"), _module("validate.studies.scheduler")
-    words, run_study = _module("validate.studies.study"), _module("validate.studies.run").run
+    records, scheduler = _module("validate.long_studies.records"), _module("validate.long_studies.scheduler")
+    words, run_study = _module("validate.long_studies.study"), _module("validate.long_studies.run").run
     numbers = study.numbers
     if not numbers:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
@@ -278,7 +278,7 @@ def _add_hard(parser: argparse.ArgumentParser) -> None:
 
 
 def _study(module: str) -> Any:
-    return _module(f"validate.studies.{module}")
+    return _module(f"validate.long_studies.{module}")
 
 
 STUDIES: Mapping[str, Named] = {

@@ -59,14 +59,15 @@ class Progress:
         self._began = time.monotonic()
         self._told = self._began if patient else -math.inf
         self._patient = patient
-        self._first = 0
+        self._first: int | None = None  # how much was done when it was told first
 
     def __call__(self, what: str, done: int, of: int) -> None:
         """What is done now, as often as it likes."""
         now = time.monotonic()
-        if done < self._first or (not done and not self._patient):
+        begins = self._first is None or done < self._first or not done
+        if begins:
             self._began, self._first = now, done
-        elif now - self._told < self._pause:
+        if now - self._told < self._pause and (self._patient or not begins):
             return
         self._told = now
         rest = self._rest(now, done, of)
@@ -75,7 +76,7 @@ class Progress:
 
     def _rest(self, now: float, done: int, of: int) -> str:
         """About how long the rest takes, at the pace so far."""
-        if done <= self._first or of <= done:
+        if self._first is None or done <= self._first or of <= done:
             return ""
         seconds = (now - self._began) / (done - self._first) * (of - done)
         return f", {seconds / 60.0:.0f} min left" if seconds > 90.0 else f", {seconds:.0f} s left"

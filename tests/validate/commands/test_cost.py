@@ -370,6 +370,7 @@ def test_progress_is_told_to_a_terminal_only(
     assert main(["cost", "--rows", str(tmp_path / "a.jsonl")]) == 0
     assert "\r" not in capsys.readouterr().err
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setenv("TERM", "dumb")  # one that takes no more than lines
     assert main(["cost", "--rows", str(tmp_path / "b.jsonl")]) == 0
     err = capsys.readouterr().err
     assert "\r0 of 1: series" in err

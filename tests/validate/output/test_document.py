@@ -16,13 +16,13 @@ from worked_out import worked_out
 
 from validate.cli import main
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.study import Study
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.paper.scenes import DEFAULT_SCENES
-from validate.studies.bounds import BoundsStudy
-from validate.studies.hard_runs import HardStudy
-from validate.studies.random_runs import RandomStudy
-from validate.studies.study import Study
 
 SCHEMA = json.loads(schema_text())
 CHECK = jsonschema.Draft202012Validator(SCHEMA)

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
+import signal
 import tempfile
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
+from multiprocessing import resource_tracker
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from validate.extras import MissingPackage
+from validate.long_studies.errors import ClusterLost, NoCluster
+from validate.long_studies.maker import Maker
+from validate.long_studies.study import Number, Row, Study
 from validate.plain_text import one_line, shown
-from validate.studies.errors import ClusterLost, NoCluster
-from validate.studies.maker import Maker
-from validate.studies.study import Number, Row, Study
 
 LOCAL = "local"
 ANSWER = 5.0  # seconds that a scheduler is given to answer
@@ -123,13 +126,13 @@ class Cluster:
                     now = time.monotonic()
                     lost = None if self.client.status == "running" else lost or now
                     if lost is not None and now - lost > GONE:
-                        raise ClusterLost(
-                            f"{self.words} does not answer any more; the same command goes on elsewhere"
-                        ) from None
+                        raise ClusterLost(_gone(self.words)) from None
                     yield None
                     continue
                 futures.discard(future)
-                done = result_of(future, self.words)
+                done = result_of(future, self.words, lambda: self.client.status == "running")
+                # What is handed over is not to be worked out again when the worker that still has it dies.
+                future.release()
                 # Workers may join a cluster at any time.
                 if done.worker.address not in known:
                     require_same(done.worker)
@@ -140,26 +143,35 @@ class Cluster:
                 self.client.cancel(list(futures), force=True)
 
 
-def result_of(future: Any, words: str) -> Done:
+def result_of(future: Any, words: str, alive: Callable[[], bool]) -> Done:
     """What a task came to.
 
     Args:
-        future: Dask's, which is done. words: what the cluster is.
+        future: Dask's, which was done; it is worked out again if its worker has died since.
+        words: what the cluster is. alive: whether it is there.
     Raises:
         ClusterLost: nothing, for the cluster is gone or the task ends its workers.
         Exception: what the task raised.
     """
     distributed = import_module("distributed")
-    try:
-        done: Done = future.result(timeout=GONE)
-        return done
-    except distributed.KilledWorker as error:
-        raise ClusterLost(
-            f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of them "
-            f"{error.last_worker.address}; look into its log, and at its memory"
-        ) from None
-    except (distributed.CancelledError, TimeoutError):
-        raise ClusterLost(f"{words} does not answer any more; the same command goes on elsewhere") from None
+    while True:
+        try:
+            done: Done = future.result(timeout=GONE)
+            return done
+        except distributed.KilledWorker as error:
+            raise ClusterLost(
+                f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
+                f"them {error.last_worker.address}; look into its log, and at its memory"
+            ) from None
+        except TimeoutError:
+            if not alive():
+                raise ClusterLost(_gone(words)) from None
+        except distributed.CancelledError:
+            raise ClusterLost(_gone(words)) from None
+
+
+def _gone(words: str) -> str:
+    return f"{words} does not answer any more; the same command goes on elsewhere"
 
 
 def require_same(worker: Worker) -> None:
@@ -198,7 +210,8 @@ def opened(address: str, workers: int | None = None) -> Iterator[Cluster]:
             words, wanted, patience = "the scheduler of this machine's processes", count, START
         else:
             cluster, words, wanted, patience = address, f"the scheduler {shown(address)}", 1, FIRST_WORKER
-        client = _client(distributed, cluster, words)
+            _require_scheduler(distributed, address, words)
+        client = _client(distributed, cluster)
         stack.callback(_close, client)
         try:
             client.wait_for_workers(wanted, timeout=patience)
@@ -265,20 +278,39 @@ def quiet_dask() -> Any:
 def _local(distributed: Any, workers: int) -> Iterator[Any]:
     """Processes of this machine, one thread each; one that dies is started again."""
     with _environment(), tempfile.TemporaryDirectory(prefix="pointcoord-") as folder:
-        cluster = distributed.LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            memory_limit=0,
-            local_directory=folder,
-            silence_logs=logging.CRITICAL + 1,
-        )
+        with _deaf_to_interrupts():
+            cluster = distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                # No pages of its own; the port of those that any other cluster here may have is left alone.
+                dashboard_address=None,
+                scheduler_kwargs={"dashboard": False, "dashboard_address": "127.0.0.1:0"},
+                memory_limit=0,
+                local_directory=folder,
+                silence_logs=logging.CRITICAL + 1,
+            )
         try:
             yield cluster
         finally:
             with suppress(Exception):
                 cluster.close(timeout=ANSWER)
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Threads and processes that begin in the block, and theirs, never see Ctrl-C.
+
+    A terminal sends it to all; who ends the workers is this program. It waits until the block is over.
+    """
+    # Whoever starts the tracker of multiprocessing hears again.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -296,23 +328,43 @@ def _environment() -> Iterator[None]:
         os.environ.update(before)
 
 
-def _client(distributed: Any, cluster: Any, words: str) -> Any:
-    """A client of a cluster that answers.
+def _require_scheduler(distributed: Any, address: str, words: str) -> None:
+    """See that a scheduler answers: a client of something else waits for ever, or for long.
 
     Raises:
-        NoCluster: it does not.
+        NoCluster: none does.
     """
+    comm = import_module("distributed.comm")
+
+    async def asked() -> Any:
+        how = distributed.Security().get_connection_args("client")
+        line = await comm.connect(address, timeout=ANSWER, **how)
+        try:
+            await line.write({"op": "identity", "n_workers": 0, "reply": True})
+            return await line.read()
+        finally:
+            line.abort()
+
+    async def answered() -> Any:
+        return await asyncio.wait_for(asked(), ANSWER)
+
     try:
-        with warnings.catch_warnings():
-            # Of other versions; those that matter are refused below.
-            warnings.simplefilter("ignore")
-            return distributed.Client(cluster, timeout=ANSWER, set_as_default=False)
+        answer = asyncio.run(answered())
+        if not isinstance(answer, Mapping) or answer.get("type") != "Scheduler":
+            raise ValueError("something else answers")
     except Exception as error:
+        told = one_line(f"{type(error).__name__}: {error}").removesuffix(": ")
         raise NoCluster(
-            f"{words} does not answer as a Dask scheduler within {ANSWER:g} s "
-            f"({one_line(f'{type(error).__name__}: {error}')}); give --scheduler an address such as "
-            "tcp://HOST:8786, where dask scheduler runs, or leave it out"
+            f"{words} does not answer as a Dask scheduler within {ANSWER:g} s ({told}); give --scheduler an "
+            "address such as tcp://HOST:8786, where dask scheduler runs, or leave it out"
         ) from None
+
+
+def _client(distributed: Any, cluster: Any) -> Any:
+    with warnings.catch_warnings():
+        # Of other versions; those that matter are refused.
+        warnings.simplefilter("ignore")
+        return distributed.Client(cluster, timeout=START, set_as_default=False)
 
 
 def _close(client: Any) -> None:

@@ -13,15 +13,15 @@ import pytest
 from program import ENVIRONMENT
 
 from validate.cli import main
+from validate.long_studies import maker
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.errors import RecordsError
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.maker import CODE, Maker
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.records import HEAD, Head, Records, adding_to, in_order, look
+from validate.long_studies.study import Number, Row
 from validate.output.files import OutputError
-from validate.studies import maker
-from validate.studies.bounds import BoundsStudy
-from validate.studies.errors import RecordsError
-from validate.studies.hard_runs import HardStudy
-from validate.studies.maker import CODE, Maker
-from validate.studies.random_runs import RandomStudy
-from validate.studies.records import HEAD, Head, Records, adding_to, in_order, look
-from validate.studies.study import Number, Row
 
 BOUNDS = Head.of(BoundsStudy(3, 0, seed=5))
 
@@ -34,7 +34,7 @@ def recorded(folder: Path, *numbers: Sequence[int], head: Head = BOUNDS) -> Reco
     """A folder with a file for each group of numbers."""
     with adding_to(folder, head) as there:
         for group in numbers:
-            there.append([row(number) for number in group])
+            there.write(there.next_file(), [row(number) for number in group])
     return there
 
 
@@ -52,13 +52,13 @@ def test_what_is_added_is_there_and_what_was_there_stays_as_it_is(tmp_path: Path
 def test_numbers_come_back_to_the_last_bit_and_none_as_none(tmp_path: Path) -> None:
     values = [0.1 + 0.2, 5e-324, float("inf"), -0.0, 1.7976931348623157e308, None]
     with adding_to(tmp_path, BOUNDS) as there:
-        there.append([row(i, bound=value) for i, value in enumerate(values)])
+        there.write(there.next_file(), [row(i, bound=value) for i, value in enumerate(values)])
     assert [repr(one["bound"]) for one in there.rows()] == [repr(value) for value in values]
 
 
 def test_others_read_the_folder_while_something_is_being_written(tmp_path: Path) -> None:
     with adding_to(tmp_path, BOUNDS) as there:
-        there.append([row(0), row(1)])
+        there.write(there.next_file(), [row(0), row(1)])
         (tmp_path / ".pointcoord-1-ab.part").write_bytes(b"PAR1 half a file")
         assert pyarrow.dataset.dataset(str(tmp_path)).to_table().num_rows == 2
         assert list(pandas.read_parquet(tmp_path)["number"]) == [0, 1]
@@ -142,8 +142,9 @@ def test_a_broken_file_is_named_with_what_to_do(tmp_path: Path) -> None:
 def test_all_code_that_rows_follow_from_is_in_their_digest() -> None:
     program = (
         "import sys\n"
-        "from validate.studies import bounds, hard_runs, random_runs, study\n"
-        "for one in (bounds.BoundsStudy(1, 1), hard_runs.HardStudy(('at-rest',)), random_runs.RandomStudy(1)):\n"
+        "from validate.long_studies import bounds, hard_runs, random_runs, study\n"
+        "hard = hard_runs.HardStudy(('at-rest',))\n"
+        "for one in (bounds.BoundsStudy(1, 1), hard, random_runs.RandomStudy(1)):\n"
         "    one.examine(one.numbers[0])\n"
         "print(*(n for n in sys.modules if n.partition('.')[0] in ('pointcoord', 'absolute', 'validate')))\n"
     )
@@ -171,7 +172,7 @@ def test_the_findings_of_records_are_said_without_working_anything_out(
 ) -> None:
     more = {"suspension": "double wishbone", "distance": 0.5, "refusal": "no bound"}
     with adding_to(tmp_path, BOUNDS) as there:
-        there.append([row(number, **more) for number in range(3)])
+        there.write(there.next_file(), [row(number, **more) for number in range(3)])
     words = ["study", "bounds", "--from-records", "--records", str(tmp_path)]
     assert main([*words, "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)

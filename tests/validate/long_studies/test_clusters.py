@@ -5,10 +5,12 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pandas
@@ -19,20 +21,22 @@ from program import ENVIRONMENT, PROGRAM
 from worked_out import without_who_and_how_long, worked_out
 
 from validate.cli import main
-from validate.studies import run as study_run
-from validate.studies import scheduler
-from validate.studies.bounds import BoundsStudy
-from validate.studies.errors import ClusterLost, NoCluster
-from validate.studies.hard_runs import HardStudy
-from validate.studies.maker import Maker
-from validate.studies.records import Head, adding_to, in_order, look
-from validate.studies.run import run
-from validate.studies.study import Number
+from validate.long_studies import run as study_run
+from validate.long_studies import scheduler
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.errors import ClusterLost, NoCluster
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.maker import Maker
+from validate.long_studies.records import Head, Records, adding_to, in_order, look
+from validate.long_studies.run import run
+from validate.long_studies.study import Number
 
 
 def cluster_of(**options: Any) -> Any:
     distributed = scheduler.quiet_dask()
-    return distributed.LocalCluster(dashboard_address=None, silence_logs=100, **options)
+    pages = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
+    more = {"dashboard_address": None, "scheduler_kwargs": pages, "silence_logs": 100}
+    return distributed.LocalCluster(host="127.0.0.1", protocol="tcp://", **more, **options)
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +62,7 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
 
         def tell(done: int) -> None:
             if done and not before:
+                time.sleep(0.5)  # until the scheduler knows that these are handed over
                 os.kill(next(iter(pids.values())), signal.SIGKILL)
                 before.update({file: file.read_bytes() for file in records.files()})
                 # Others can read what is there while the rest is worked out.
@@ -84,18 +89,19 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
 def test_a_number_is_the_same_wherever_it_is_worked_out(
     address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["study", "hard", "at-rest", "link-twice", "--scheduler", address, "--records", str(tmp_path)]
-    assert main([*words, "--json", "-"]) == 0
+    cases = ["minus-infinity", "link-twice"]
+    words = ["study", "hard", *cases, "--records", str(tmp_path)]
+    assert main([*words, "--scheduler", address, "--json", "-"]) == 0
     out, err = capsys.readouterr()
     assert err.splitlines()[0].endswith("; a study that is stopped goes on with the same command")
-    assert main(["hard", "at-rest", "link-twice", "--json", "-"]) == 0
+    assert main(["hard", *cases, "--json", "-"]) == 0
     there, here = (json.loads(text)["cases"] for text in (out, capsys.readouterr().out))
     assert [{**case, "seconds": None} for case in there] == [{**case, "seconds": None} for case in here]
     study = HardStudy(("link-twice",))
     rows = in_order(look(tmp_path).rows(), study.numbers)
     assert without_who_and_how_long(rows) == without_who_and_how_long(worked_out(study))
     # Nobody is asked for what is recorded.
-    assert main([*words[:3], *words[4:5], "tcp://127.0.0.1:1", *words[6:]]) == 0
+    assert main([*words, "--scheduler", "tcp://127.0.0.1:1"]) == 0
     assert "All as expected" in capsys.readouterr().out
 
 
@@ -122,21 +128,67 @@ def test_a_worker_of_another_version_is_refused(
     assert not records.files()
 
 
-def test_a_worker_of_several_tasks_and_a_cluster_without_workers_are_refused(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    with cluster_of(n_workers=1, threads_per_worker=2, processes=False) as cluster:
-        with pytest.raises(NoCluster, match="takes 2 tasks at once.* --nthreads 1"), _opened(cluster):
-            pass
+def test_a_worker_of_several_tasks_is_refused() -> None:
+    with (
+        cluster_of(n_workers=1, threads_per_worker=2, processes=False) as cluster,
+        pytest.raises(NoCluster, match=r"takes 2 tasks at once.* --nthreads 1"),
+        _opened(cluster),
+    ):
+        pass
+
+
+def test_a_cluster_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scheduler, "FIRST_WORKER", 0.2)
-    with cluster_of(n_workers=0, processes=False) as cluster:
-        with pytest.raises(NoCluster, match="has no worker after .* dask worker .* --nthreads 1"):
-            with _opened(cluster):
-                pass
+    with (
+        cluster_of(n_workers=0, processes=False) as cluster,
+        pytest.raises(NoCluster, match=r"has no worker after .* dask worker .* --nthreads 1"),
+        _opened(cluster),
+    ):
+        pass
 
 
 def _opened(cluster: Any) -> Any:
     return scheduler.opened(cluster.scheduler_address)
+
+
+def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
+    killed = scheduler.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3)
+
+    class Fatal:
+        key = "random-1a-7"
+
+        def result(self, timeout: float) -> None:
+            raise killed
+
+    with pytest.raises(ClusterLost, match=r"random-1a-7 ended 4 workers .*, the last of them tcp://far:1;"):
+        scheduler.result_of(Fatal(), "the scheduler there", lambda: True)
+
+
+def test_ctrl_c_just_when_a_file_is_written_records_nothing_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = CountedStudy(4, str(tmp_path / "marks"))
+    monkeypatch.setattr(study_run, "WRITTEN", 0.0)
+
+    class Here(scheduler.Cluster):
+        def done(self, study: Any, tasks: Any) -> Iterator[scheduler.Done]:
+            worker = scheduler.Worker("here", 1, Maker.here())
+            for task in tasks:
+                yield scheduler.Done(tuple(task), tuple(scheduler.rows_of(study, task, "here")), worker)
+
+    class Interrupted(Records):
+        def write(self, file: Path, rows: Any) -> None:
+            super().write(file, rows)
+            monkeypatch.setattr(Interrupted, "write", Records.write)
+            raise KeyboardInterrupt
+
+    told: list[int] = []
+    with adding_to(tmp_path / "records", Head.of(study)) as records:
+        records = Interrupted(records.folder, records.head)
+        with pytest.raises(KeyboardInterrupt):
+            run(study, study.numbers, records, Here(None, "here", 1), told.append)
+    assert [row["number"] for row in pandas.read_parquet(records.folder).to_dict("records")] == [0, 1]
+    assert told[-1] == 2
 
 
 def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
@@ -145,8 +197,6 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
     monkeypatch.setattr(scheduler, "GONE", 1.0)
     monkeypatch.setattr(study_run, "WRITTEN", 0.1)
     study = CountedStudy(40, str(tmp_path / "marks"), pause=0.05)
-    distributed = scheduler.quiet_dask()
-    del distributed
     with cluster_of(n_workers=1, threads_per_worker=1, processes=False) as gone:
 
         def tell(done: int) -> None:
@@ -177,7 +227,7 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
         words = ["study", "random", "--count", "2", "--records", str(tmp_path / "records")]
         assert main([*words, "--scheduler", f"tcp://127.0.0.1:{port}"]) == 2
     assert time.monotonic() - began < 20.0
-    note, line = capsys.readouterr().err.splitlines()
+    _, line = capsys.readouterr().err.splitlines()
     assert f"the scheduler tcp://127.0.0.1:{port} does not answer as a Dask scheduler within 1 s" in line
 
 
@@ -225,7 +275,7 @@ def test_a_case_that_is_not_there_is_a_mistake_with_near_names(
 def test_without_the_extra_one_line_names_it(
     package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, package, None)
+    monkeypatch.setitem(sys.modules, package, None)
     folder = tmp_path / "records"
     assert main(["study", "random", "--count", "2", "--records", str(folder)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
@@ -235,7 +285,7 @@ def test_without_the_extra_one_line_names_it(
 
 
 def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(tmp_path: Path) -> None:
-    words = ["study", "bounds", "--poses", "90", "--motions", "0", "--workers", "1", "--records", "kept"]
+    words = ["study", "bounds", "--poses", "60", "--motions", "0", "--workers", "1", "--records", "kept"]
     folder, seen = tmp_path / "kept", dict[Path, bytes]()
     for end in (signal.SIGINT, signal.SIGKILL):
         process = subprocess.Popen(
@@ -256,20 +306,20 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
         assert {file: file.read_bytes() for file in seen} == seen
         seen = {file: file.read_bytes() for file in look(folder).files()}
         count = len(look(folder).recorded())
-        assert 0 < count < 90
+        assert 0 < count < 60
         if end == signal.SIGINT:
             assert process.returncode == 130
-            note, line = err.splitlines()
+            _, line = err.splitlines()
             assert (
-                line == f"pointcoord: interrupted; kept holds {count} of 90 poses; the same command goes on"
+                line == f"pointcoord: interrupted; kept holds {count} of 60 poses; the same command goes on"
             )
             assert out == ""
     assert main([*words[:-1], str(folder), "--quiet"]) == 0
     assert {file: file.read_bytes() for file in seen} == seen
     table = pandas.read_parquet(folder)
-    assert sorted(table["number"]) == list(range(90))
-    some = [Number("held", number) for number in range(0, 90, 9)]
-    study = BoundsStudy(90, 0)
+    assert sorted(table["number"]) == list(range(60))
+    some = [Number("held", number) for number in range(0, 60, 12)]
+    study = BoundsStudy(60, 0)
     here = [row for number in some for row in scheduler.rows_of(study, [number], "here")]
     found = without_who_and_how_long(in_order(look(folder).rows(), some))
     assert found == without_who_and_how_long(here)

@@ -32,8 +32,8 @@ from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
+from validate.long_studies.study import Findings, Kind, Number, Row, counted
 from validate.output.terminal import Part, Table
-from validate.studies.study import Findings, Kind, Number, Row, counted
 
 PART = "scenes"
 OURS = "pointcoord"
@@ -184,7 +184,7 @@ class RandomStudy:
 
     name = "random"
     noun = "scene"
-    chunk = 8
+    chunk = 2
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene"), "string"),
         **{f"share_{quantity}": "float64" for quantity in SHARED},

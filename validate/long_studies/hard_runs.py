@@ -12,7 +12,7 @@ from validate.hard.case import Answer, Trial
 from validate.hard.catalogue import chosen
 from validate.hard.report import results_data, summary_parts
 from validate.hard.run import Examined, as_expected, examined, tried
-from validate.studies.study import Findings, Kind, Number, Row
+from validate.long_studies.study import Findings, Kind, Number, Row
 
 TEXTS = ("formulation", "outcome", "reason")
 SIZES = ("error", "bound", "share", "condition")
@@ -33,7 +33,7 @@ class HardStudy:
 
     name = "hard"
     noun = "scene"
-    chunk = 2
+    chunk = 1
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys((*TEXTS, "facts"), "string"),
         **dict.fromkeys(("value", *SIZES), "float64"),

@@ -13,9 +13,7 @@ from validate.cars.near_singular import approach, near_pose
 from validate.cars.registry import VARIANTS
 from validate.cars.strategies import cars
 from validate.exit_status import ExitStatus
-from validate.output.terminal import text_of
-from validate.reference import InfeasibleError, solve_reference
-from validate.studies.bounds import (
+from validate.long_studies.bounds import (
     BoundsStudy,
     Check,
     FoundBounds,
@@ -31,6 +29,8 @@ from validate.studies.bounds import (
     moving_instants,
     of_variant,
 )
+from validate.output.terminal import text_of
+from validate.reference import InfeasibleError, solve_reference
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # A pose takes 40 ms, so the short profile searches briefly and the deep one as long as any.

@@ -26,10 +26,10 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from validate.extras import MissingPackage
+from validate.long_studies.errors import RecordsError
+from validate.long_studies.maker import Maker
+from validate.long_studies.study import Kind, Number, Row, Study
 from validate.output.files import unwritable, write_whole
-from validate.studies.errors import RecordsError
-from validate.studies.maker import Maker
-from validate.studies.study import Kind, Number, Row, Study
 
 FORMAT = 1
 HEAD = "_study.json"
@@ -104,8 +104,13 @@ class Records:
             yield from (row for row in rows if Number(row["part"], row["number"]) not in known)
             known |= here
 
-    def append(self, rows: Sequence[Row]) -> None:
-        """Add a file: all rows of some numbers.
+    def next_file(self) -> Path:
+        """The file that what is worked out next goes into."""
+        last = max((int(file.stem) for file in self.files() if file.stem.isdigit()), default=-1)
+        return self.folder / f"{last + 1:06d}.parquet"
+
+    def write(self, file: Path, rows: Sequence[Row]) -> None:
+        """Write a file: all rows of some numbers. Whoever was interrupted may write the same one again.
 
         Raises:
             OutputError: it cannot be written.
@@ -117,8 +122,7 @@ class Records:
         def put(stream: BinaryIO) -> None:
             parquet.write_table(table, stream)
 
-        last = max((int(file.stem) for file in self.files() if file.stem.isdigit()), default=-1)
-        write_whole(str(self.folder / f"{last + 1:06d}.parquet"), put)
+        write_whole(str(file), put)
 
 
 def look(folder: Path) -> Records:

@@ -36,10 +36,10 @@ from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.registry import VARIANTS, Variant
 from validate.cars.scene_content import scene_content
 from validate.exit_status import ExitStatus
+from validate.long_studies.study import Findings, Kind, Number, Row
 from validate.output.terminal import Part, Table
 from validate.reference import InfeasibleError, Instant, NoReferenceError
 from validate.reference.exact import as_fraction
-from validate.studies.study import Findings, Kind, Number, Row
 
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
@@ -253,7 +253,7 @@ class BoundsStudy:
 
     name = "bounds"
     noun = "pose"
-    chunk = 20
+    chunk = 4
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys(("suspension", "driven", "lock", "refusal"), "string"),
         **dict.fromkeys(NUMBERS, "float64"),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
-from validate.studies.records import Records
-from validate.studies.scheduler import Cluster
-from validate.studies.study import Number, Row, Study
+from validate.long_studies.records import Records
+from validate.long_studies.scheduler import Cluster
+from validate.long_studies.study import Number, Row, Study
 
 WRITTEN = 2.0  # seconds of what is worked out that one file holds: all that the end of this process can cost
 MOST_TASKS = 5000  # of a run: a scheduler needs a millisecond for each
@@ -31,23 +32,28 @@ def run(
     size = max(study.chunk, -(-len(numbers) // MOST_TASKS))
     tasks = [numbers[i : i + size] for i in range(0, len(numbers), size)]
     held: list[Row] = []
+    file: Path | None = None
     done = recorded = 0
     last = time.monotonic()
 
     def record() -> None:
-        nonlocal recorded, last
+        nonlocal held, file, recorded, last
         if held:
-            records.append(held)
-            held.clear()
-            recorded, last = done, time.monotonic()
-            told(recorded)
+            # Ctrl-C may come between any two steps. What is not known to be written is written again,
+            # into the same file, so that nothing is there twice.
+            file = file or records.next_file()
+            records.write(file, held)
+            recorded = done
+            held = []
+            file, last = None, time.monotonic()
+        told(recorded)
 
     try:
         for one in cluster.done(study, tasks):
             if one is not None:
                 held += one.rows
                 done += len(one.numbers)
-            if time.monotonic() - last >= WRITTEN:
+            if held and time.monotonic() - last >= WRITTEN:
                 record()
     finally:
         record()

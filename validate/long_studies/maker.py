@@ -21,7 +21,7 @@ CODE = (
     "validate/paper",
     "validate/reference",
     "validate/relative",
-    "validate/studies",
+    "validate/long_studies",
 )
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint")
 

@@ -15,10 +15,10 @@ from validate.cars.registry import VARIANTS
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
+from validate.long_studies import random_runs as deep
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.study import Row
 from validate.output.terminal import text_of
-from validate.studies import random_runs as deep
-from validate.studies.random_runs import RandomStudy
-from validate.studies.study import Row
 
 
 def test_a_number_names_one_scene() -> None:

@@ -50,7 +50,7 @@ class Study(Protocol):
         columns: of its rows, beside those that every study has (see `records`).
         numbers: all that are to be worked out, in this order.
         settings: all that a row depends on beside its number.
-        chunk: how many numbers take about a second.
+        chunk: how many numbers take some tenths of a second: one task of a worker.
     """
 
     @property
