@@ -27,11 +27,11 @@ def main() -> int:
     try:
         validate = importlib.import_module("validate")
         if getattr(validate, "DISTRIBUTION", None) != NAME:
-            return _said(_not_ours(), WRONG_INPUT)
+            return _said(not_ours(), WRONG_INPUT)
         cli = importlib.import_module("validate.cli")
     except ImportError as error:
         if (error.name or "").partition(".")[0] == "validate":
-            return _said(_not_ours(), WRONG_INPUT)
+            return _said(not_ours(), WRONG_INPUT)
         if "failed to map segment" in str(error):  # what the loader of libraries says without memory
             return _said("cannot start: out of memory", NOT_FINISHED)
         return _said(f"cannot start: {error}; try: pip install --force-reinstall {NAME}", NOT_FINISHED)
@@ -65,7 +65,8 @@ def _said(message: str, status: int) -> int:
     return status
 
 
-def _not_ours() -> str:
+def not_ours() -> str:
+    """What to say where Python finds another package `validate` than ours."""
     from importlib import metadata  # takes a third of numpy's time, for a rare message
 
     others = sorted({*metadata.packages_distributions().get("validate", ())} - {NAME})

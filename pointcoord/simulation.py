@@ -33,7 +33,7 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
-from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part
+from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part, stepped
 from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
@@ -304,8 +304,9 @@ def why_map(status: TooLong | TooRough) -> str:
 def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
     """Why a map does not cover the way of the inputs.
 
-    The way is tried a little further from the last pose that is covered, along straight paths: where these
-    are blocked, that is what stops the motion.
+    The way is tried a little further from the last pose that is covered. Where a place on it is not found
+    close ahead, the straight path to it is followed by proof; where that is blocked, that is what stops the
+    motion.
     """
     mechanism, functions, way, time = task.readout.mechanism, task.functions, states.way, task.scene.time
     until = max(way.until, time.start)
@@ -316,6 +317,10 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
     goal = float(later[0]) if len(later) else time.stop
     for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
         target = mechanism.known_series({name: f.series(instant, 0) for name, f in functions.items()})[0]
+        ahead = stepped(mechanism.map, y, target)
+        if ahead is not None:
+            y = ahead
+            continue
         path = follow(mechanism.map, y, target)
         if path.done < 1.0:
             problem = "the mechanism cannot be assembled"

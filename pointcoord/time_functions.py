@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 # rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
 SMALL_ANGLE = 2.0**-27
+# Instants up to which a polynomial takes less time one by one, in Python's own numbers.
+FEW = 16
 # Two pi and what its double lacks; the rest is below the radius.
 TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
@@ -101,6 +103,8 @@ class Polynomial:
         t = np.asarray(instants, dtype=float)
         if t.ndim == 0:
             return self._series_of_one(float(t), order)
+        if t.ndim == 1 and 0 < len(t) <= FEW:
+            return np.array([self._series_of_one(each, order) for each in t.tolist()])
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(min(order + 1, len(self.coefficients))):

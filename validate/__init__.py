@@ -3,8 +3,7 @@
 from validate import compare
 outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
 
-Names are imported when they are first used: pytest imports this package at every start where it is installed,
-for its plugin.
+Names are imported when they are first used, so that a part of the package costs no more than itself.
 """
 
 from importlib import import_module
@@ -16,7 +15,8 @@ if TYPE_CHECKING:
     from validate.comparison.compare import Comparison, Outcome, compare
     from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
     from validate.solvers.check import check
-    from validate.testing.assertion import NotTested, assert_agrees
+    from validate.testing.assertion import NotTested, assert_agrees, assert_refuses
+    from validate.testing.states import WrongStates
 
 __all__ = [
     "Accuracy",
@@ -26,7 +26,9 @@ __all__ = [
     "NotTested",
     "Outcome",
     "Solution",
+    "WrongStates",
     "assert_agrees",
+    "assert_refuses",
     "check",
     "compare",
 ]
@@ -38,7 +40,9 @@ _MODULES = {
     "Comparison": "comparison.compare",
     "NotTested": "testing.assertion",
     "Outcome": "comparison.compare",
+    "WrongStates": "testing.states",
     "assert_agrees": "testing.assertion",
+    "assert_refuses": "testing.assertion",
     "check": "solvers.check",
     "compare": "comparison.compare",
 }

@@ -33,6 +33,7 @@ COMMANDS = {
     "import": "hardpoints",
     "report": "report",
     "fit": "fit",
+    "study": "study",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

@@ -16,6 +16,7 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
 from validate.hardpoint_files.axes import UnknownAxes
 from validate.hardpoint_files.contents import HardpointFileError
+from validate.long_studies.errors import ClusterLost, NoCluster, RecordsError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 from validate.solvers.plain import NoSolver
@@ -29,6 +30,8 @@ MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exi
         ExitStatus.WRONG_INPUT,
     ),
     ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
+    ((RecordsError, NoCluster), ExitStatus.WRONG_INPUT),
+    (ClusterLost, ExitStatus.NOT_FINISHED),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )

@@ -13,7 +13,7 @@ from validate.extras import MissingPackage
 ROOT = Path(__file__).parent
 JOB = 'if __name__ == "__main__":'
 # Modules that need all packages of the extra, and what Python calls these.
-STUDIES = ("validate.studies.bounds", "validate.studies.claims", "validate.studies.random_runs")
+STUDIES = ("validate.studies.claims",)
 EXTRA = ("mpmath", "flint", "pinocchio")
 
 

@@ -135,10 +135,12 @@ def _with_rates(
         bounds.put_groups(places_of(here, group.members), group.sound, group.proven, group.expected)
     for low in range(0, len(left), BLOCK):
         members = left[low : low + BLOCK]
-        part = asked.reported.part(members)
-        pose = _alone(mechanism, times[members], part, certain)
+        some = (
+            asked if len(members) == len(times) else Instants.of(times[members], asked.reported.part(members))
+        )
+        pose = _alone(mechanism, some, certain)
         certified.put_alone(members, pose.certificate, pose.factors)
-        bounds.put(places_of(here, members), *reported_bounds(mechanism, pose, part))
+        bounds.put(places_of(here, members), *reported_bounds(mechanism, pose, some.reported))
     return certified
 
 
@@ -166,13 +168,13 @@ def _positions(
     return unit * own, unit * bound, unit * carried, gain, certified.condition, certified.residual
 
 
-def _alone(mechanism: Mechanism, times: Array, reported: Reported, certain: bool) -> Proven:
+def _alone(mechanism: Mechanism, some: Instants, certain: bool) -> Proven:
     """Poses that are proven each by its own inverse, with all that their rates depend on."""
-    y, *rates = (np.ascontiguousarray(state) for state in reported.solved.coordinates(times, 2))
+    times, laws = some.times, some.laws
+    y, *rates = (np.ascontiguousarray(state.T) for state in some.states)
     factors = factorise(mechanism.map.jacobian(y))
-    lacking, uncertainty = mechanism.known_data(y, reported.doubts(times, certain))
+    lacking, uncertainty = mechanism.known_data(y, some.reported.doubts(times, certain))
     expected = uncertainty + np.abs(lacking)
-    laws = reported.enclosed_laws(times)
     driven = driven_coordinates(mechanism, laws)
     lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
     for place, (value, _, _) in driven.items():

@@ -47,11 +47,13 @@ class Enclosed:
         cls, high: ArrayLike, low: ArrayLike = 0.0, proven: ArrayLike = 0.0, expected: ArrayLike = 0.0
     ) -> Enclosed:
         """From its parts, broadcast to one shape; an exact number unless radii are given."""
-        parts = np.broadcast_arrays(
-            *(np.asarray(part, dtype=float) for part in (high, low, proven, expected))
-        )
-        total, rest = two_sum(parts[0], parts[1])
-        return cls(total, rest, np.stack(parts[2:]))
+        number, *others = (np.asarray(part, dtype=float) for part in (high, low, proven, expected))
+        if any(part.ndim and part.shape != number.shape for part in others):
+            number, *others = np.broadcast_arrays(number, *others)
+        total, rest = two_sum(number, others[0])
+        radius = np.empty((2, *number.shape))
+        radius[0], radius[1] = others[1:]
+        return cls(total, rest, radius)
 
     def __add__(self, other: Enclosed) -> Enclosed:
         total, carry = two_sum(self.high, other.high)

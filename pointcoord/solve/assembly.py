@@ -57,6 +57,9 @@ SAFETY = 0.8
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
 STEPS = 2000
+# How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
+# proportion to the step: an end so near the tangent is far from where the step would double back.
+BESIDE = 0.25
 
 
 @dataclass(frozen=True)
@@ -361,6 +364,29 @@ def led(
     return follow(system, y, target, factors, tolerance)
 
 
+def stepped(system: QuadraticMap, y: Array, target: Array) -> Array | None:
+    """The pose at other known coordinates, if Newton's method finds it close to the tangent; None if not.
+
+    It is on the same side of a fold, and nothing else of it is proven: for telling what stops a motion, where
+    a motion itself goes along proven steps.
+
+    Args:
+        y: an assembled pose, shape (size,). target: known coordinates.
+    """
+    factors = factorise(system.jacobian(y))
+    if factors.singular:
+        return None
+    tangent = _tangent(system, y[None], factors.reshaped((1,)), target[None] - y[system.unknowns :], 0.0)[0]
+    guess = y + tangent
+    guess[system.unknowns :] = target
+    with np.errstate(all="ignore"):
+        reached = newton_refine(system, guess)
+        there = factorise(system.jacobian(reached.y))
+        beside = np.abs(reached.y - guess).max() <= BESIDE * np.abs(tangent).max()
+    found = bool(beside and reached.converged) and float(orientation(there)) == float(orientation(factors))
+    return reached.y if found else None
+
+
 def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array) -> Array:
     """What places are still off, e with C_u e = -(C(y) - wanted), shape (members, size)."""
     correction = np.zeros_like(y)
@@ -369,7 +395,7 @@ def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array)
     return correction
 
 
-def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array) -> Array:
+def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array | float) -> Array:
     """What is left of a path if it went on straight, C_u u1 = -(C_w w1 + offset), shape (members, size).
 
     Args:

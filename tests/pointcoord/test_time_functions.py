@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine, cosine_plainly
+from pointcoord.time_functions import FEW, Polynomial, Sine, Table, TimeFunction, cosine, cosine_plainly
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -255,8 +255,10 @@ def test_a_polynomial_at_one_instant_is_that_of_many_to_the_last_bit(
     coefficients: list[float], instant: float, order: int
 ) -> None:
     law = Polynomial(tuple(coefficients))
-    one, many = law.series(instant, order), law.series(np.array([instant, 1.0]), order)[0]
-    assert np.array_equal(one, many, equal_nan=True)
+    # So many that they are taken together.
+    one, many = law.series(instant, order), law.series(np.array([instant] * (FEW + 1)), order)
+    assert np.array_equal(one, many[0], equal_nan=True)
+    assert np.array_equal(law.series(np.array([1.0, instant]), order)[1], many[0], equal_nan=True)
 
 
 @given(

@@ -40,6 +40,10 @@ from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.html.folder import require_folder
+from validate.html.hard_cases import read_hard_cases
+from validate.long_studies import scheduler
+from validate.long_studies.maker import Maker
+from validate.long_studies.records import look
 from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
@@ -51,7 +55,6 @@ from validate.reference.exact import bits
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
 from validate.solvers.check import check
-from validate.studies.chunk_store import Store
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
@@ -60,6 +63,13 @@ HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0
 IN_LINE = np.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
 # The arm's axis is level and the arm stands upright: the ball joint is on top of its circle.
 TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, -300, 0)}
+
+
+class Late:
+    """What a cluster works out that is gone."""
+
+    def result(self, timeout: float) -> None:
+        raise TimeoutError
 
 
 class Recipe(NamedTuple):
@@ -409,8 +419,18 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
-    "validate.studies.chunk_store.StoreError": Recipe(
-        lambda folder, _: Store(folder, 0).append({}), ("cannot be written", "directory")
+    "validate.long_studies.errors.RecordsError": Recipe(
+        lambda folder, _: look(folder),
+        ("--records ", "holds no records of a study", "run the study first"),
+        {"problem": bool},
+    ),
+    "validate.long_studies.errors.NoCluster": Recipe(
+        lambda *_: scheduler.require_same(scheduler.Worker("tcp://far:1", 2, Maker.here())),
+        ("the worker tcp://far:1 takes 2 tasks at once", "start it with --nthreads 1"),
+    ),
+    "validate.long_studies.errors.ClusterLost": Recipe(
+        lambda *_: scheduler.result_of(Late(), "the scheduler there", lambda: False),
+        ("the scheduler there", "does not answer"),
     ),
     "validate.cost.store.StoreError": Recipe(
         lambda folder, _: RowStore(folder, Header.here()), ("cannot be read", "directory", "another file")
@@ -441,6 +461,11 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
+    ),
+    "validate.testing.states.WrongStates": Recipe(
+        lambda *_: assert_agrees({"camber": np.zeros(3)}, BOUNCE),
+        ("the states: camber has the shape (3,); needed: (131,), one number for each instant",),
+        {"what": "camber"},
     ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
@@ -481,6 +506,14 @@ RECIPES: dict[str, Recipe] = {
         ),
         ("index.html: is no report of this program", "give another folder"),
         {"target": lambda name: name.endswith("index.html"), "problem": bool},
+    ),
+    "validate.html.hard_cases.HardFileError": Recipe(
+        lambda folder, _: (
+            (folder / "hard.json").write_text('{"kind": "validate"}'),
+            read_hard_cases(str(folder / "hard.json")),
+        ),
+        ("hard.json: holds no hard cases", "allowed: a file that `pointcoord hard --json FILE` wrote"),
+        {"file": lambda name: name.endswith("hard.json"), "problem": bool},
     ),
     "validate.output.files.UnknownEnding": Recipe(
         lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),

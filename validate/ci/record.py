@@ -42,7 +42,7 @@ class Record:
 
     def add(self, examined: Examined, since: Since | None) -> None:
         """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=None))
+        self.examined.append(replace(without_numbers(examined), printed=None))
         if since is not None:
             self.since.append(since)
 
@@ -66,6 +66,12 @@ class Record:
         return combined(found)
 
 
+def without_numbers(examined: Examined) -> Examined:
+    """What came of a scene, and no more the numbers that it came from."""
+    printed = None if examined.printed is None else _told(examined.printed)
+    return replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=printed)
+
+
 def _told(outcome: Outcome) -> Outcome:
     one, two = (
         Solution(solution.formulation, solution.times, {}, _without_claims(solution.accuracy))
@@ -76,7 +82,7 @@ def _told(outcome: Outcome) -> Outcome:
 
 def _without_claims(accuracy: Accuracy) -> Accuracy:
     """What is left says whether the accuracy was stated, which decides what passes."""
-    return Accuracy(np.ones(0), blind=accuracy.blind)
+    return Accuracy(np.ones(0), blind=accuracy.blind, stated=accuracy.stated)
 
 
 def ends_the_run(examined: Examined, since: Since | None) -> bool:

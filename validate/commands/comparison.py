@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
-from validate.ci.files import Files
 from validate.ci.moves import baseline_data, since_text
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
+from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
     UsageError,
     add_quiet,
+    add_timings,
     load_scene,
     name_of,
-    require_target,
+    result_files,
 )
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
@@ -37,6 +37,7 @@ from validate.output.document import Head, Journal, program_version
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import PaperRow, compare_with_paper
 from validate.plain_text import shown
+from validate.solvers.apart import LIMIT, Apart
 from validate.solvers.check import ACCURACY, required_accuracy
 from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
@@ -64,6 +65,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="solve scenes by two formulations and compare them",
         description=DESCRIPTION,
     )
+    add_options(parser)
+    add_report(parser)
+    parser.set_defaults(run=run)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What is compared, how, and where results go beside a report."""
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
     parser.add_argument(
         "--first",
@@ -105,6 +113,18 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--traceback", action="store_true", help="show where in its files that solver raises an error"
     )
     parser.add_argument(
+        "--solver-timeout",
+        type=_timeout,
+        metavar="S",
+        help=f"how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes longer, "
+        "or crashes, has no answer there, and is made anew for the next scene",
+    )
+    parser.add_argument(
+        "--in-process",
+        action="store_true",
+        help="call that solver in this process, for a debugger: no time limit, and a crash ends the run",
+    )
+    parser.add_argument(
         "--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path"
     )
     parser.add_argument(
@@ -130,17 +150,25 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
     )
+    add_timings(parser)
     add_quiet(parser)
-    parser.set_defaults(run=run)
 
 
 def _factor(word: str) -> float:
+    return _positive(word, "factor")
+
+
+def _timeout(word: str) -> float:
+    return _positive(word, "time limit in s")
+
+
+def _positive(word: str, what: str) -> float:
     try:
         value = float(word)
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no factor; allowed: a positive, finite number")
+        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no {what}; allowed: a positive, finite number")
     return value
 
 
@@ -158,7 +186,7 @@ class _Results:
     unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
     paper: Sequence[PaperRow] = ()
 
-    def add(self, examined: Examined, since: Since | None, explanations: Explained = ()) -> None:
+    def add(self, examined: Examined, since: Since | None, explanations: Explained) -> None:
         self.record.add(examined, since)
         self.scenes.append(report.examined_data(examined, explanations))
         self.uncompared += not examined.outcomes
@@ -198,6 +226,21 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         from validate.commands.data import run as run_data
 
         return run_data(options, console)
+    return compare_scenes(options, console, page_of(options))
+
+
+def compare_scenes(
+    options: argparse.Namespace, console: Console, page: Page | None, brief: bool = False
+) -> ExitStatus:
+    """Compare scenes, with all that the options ask for.
+
+    Args:
+        page: is made of the run, if there is one.
+        brief: whether nothing is said but the verdict in a sentence, and where the page is.
+    Raises:
+        UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, OutputError: see
+            `run`.
+    """
     if options.map is not None:
         raise UsageError("--map is about a file of results; give it with --data FILE")
     all_of_ours = not options.scenes and options.scenes_dir is None
@@ -206,13 +249,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-    files = _files(options, names, console)
-    own = {}
-    if options.solver is not None:
-        accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
-        function = solver_at(options.solver, options.traceback)
-        own[shown(options.solver)] = PlainSolver(shown(options.solver), function, accuracy)
-    for name in dict.fromkeys(name for pair in pairs for name in pair if name not in own):
+    files = result_files(options, names, console)
+    mute, console.mute = console.mute, console.mute or brief
+    for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
     shown_names = [name_of(name) for name in names]
@@ -220,9 +259,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if baseline is not None:
         record.gone = baseline.gone(shown_names)
     files.require_writable()
-    journal = Journal(options.json, Head.of("validate", options.command), console)
+    if page is not None:
+        page.require()
+    telling = None if page is None else page.telling(len(names))
+    head = Head.of("validate", options.command, options.timings)
+    journal = Journal(options.json, head, console)
     results = _Results(record, baseline)
     with (
+        _solver(options) as own,
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
@@ -244,6 +288,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             else:
                 examined, explained = scene, []
             results.add(examined, since, explained)
+            if telling is not None:
+                telling.add(examined, scene if isinstance(scene, Scene) else None, explained)
             journal.keep(results.data, _finished(results, names))
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
@@ -252,45 +298,45 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
+        if page is not None and telling is not None:
+            whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
+            ending.status = whole.status
+            if brief:
+                console.mute = mute
+                console.say(f"{whole.sentence}\n{page.place}")
     return ending.status
+
+
+@contextmanager
+def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
+    """The solver of one's own by its name, as long as the run needs it; none if there is none.
+
+    Raises:
+        NoSolver: it cannot be found, or its accuracy is none.
+    """
+    if options.solver is None:
+        yield {}
+        return
+    name = shown(options.solver)
+    accuracy = required_accuracy(ACCURACY if options.accuracy is None else options.accuracy)
+    if options.in_process:
+        yield {name: PlainSolver(name, solver_at(options.solver, options.traceback), accuracy)}
+        return
+    with Apart(options.solver, options.traceback, options.solver_timeout or LIMIT) as solver:
+        solver.found()
+        yield {name: PlainSolver(name, solver, accuracy)}
 
 
 def _require_solver_options(options: argparse.Namespace) -> None:
     if options.solver is not None and options.first is not None:
         raise UsageError("--solver and --first are both given; the solver takes the place of --first")
-    for option in ("accuracy", "traceback"):
-        if options.solver is None and getattr(options, option) not in (None, False):
-            also = ", or about a file: --data FILE" if option == "accuracy" else ""
-            raise UsageError(f"--{option} is about a solver of your own: give --solver MODULE:NAME{also}")
-
-
-def _files(options: argparse.Namespace, names: Sequence[str], console: Console) -> Files:
-    """Where results go, each to a place of its own; standard output is left to one that is to go there.
-
-    Raises:
-        UsageError: two of them, or a result and what is read, are the same file.
-        OutputError: standard output is closed and wanted.
-    """
-    texts = {"--json": options.json, "--junit": options.junit, "--summary": options.summary}
-    targets = {**texts, "--save-baseline": options.save_baseline}
-    given = {option: target for option, target in targets.items() if target is not None}
-    for option, target in given.items():
-        require_target(target, option, tuple(names))
-    if options.save_baseline == "-":
-        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
-    if options.baseline is not None:
-        # A baseline may take the place of the one that it was compared with.
-        given = {"--baseline": options.baseline, **given}
-    by_place: dict[str, str] = {}
-    for option, target in given.items():
-        place = target if target == "-" else os.path.realpath(target)
-        other = by_place.setdefault(place, option)
-        if other != option and {other, option} != {"--baseline", "--save-baseline"}:
-            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    console.quiet, console.mute = options.quiet, "-" in texts.values()
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
-    return Files(options.junit, options.summary, options.save_baseline)
+    for option in ("--accuracy", "--traceback", "--solver-timeout", "--in-process"):
+        given = getattr(options, option.strip("-").replace("-", "_"))
+        if options.solver is None and given not in (None, False):
+            also = ", or about a file: --data FILE" if option == "--accuracy" else ""
+            raise UsageError(f"{option} is about a solver of your own: give --solver MODULE:NAME{also}")
+    if options.in_process and options.solver_timeout is not None:
+        raise UsageError("--in-process has no time limit; leave --solver-timeout out, or --in-process")
 
 
 def _names(options: argparse.Namespace) -> list[str]:

@@ -6,13 +6,13 @@ import argparse
 import importlib
 import os
 import shlex
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
 from pointcoord import UnknownName
+from validate.commands.reporting import Page
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -31,7 +31,8 @@ from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.files import OutputError, require_writable, unwritable, write_whole
+from validate.output.files import OutputError, require_writable, write_whole
+from validate.output.progress import Told, progress
 
 if TYPE_CHECKING:
     from validate.cost.scenes import StudyScene
@@ -49,7 +50,6 @@ MODULES: Mapping[Part, str] = {
 ROWS = "pointcoord-cost.jsonl"
 RACED = "bounce-and-steer"
 """The scene of the study whose car is solved at unrelated inputs if none is named."""
-PAUSE = 0.2  # seconds between two lines of progress
 
 DESCRIPTION = """\
 Measure what accuracy costs in time: every way to solve a scene, over the range of its settings,
@@ -98,7 +98,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--report",
         metavar="FOLDER",
-        help="write pictures (SVG, PNG), the full tables as Markdown and CSV, and the rows as JSON",
+        help="write a page of HTML that needs no network, pictures (SVG, PNG), the full tables as Markdown "
+        "and CSV, and the rows as JSON into a folder",
     )
     add_quiet(parser)
     parser.set_defaults(run=run)
@@ -138,11 +139,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.say(_listing())
         return ExitStatus.AGREE
     parts = _parts(options)
-    if options.report:
+    if options.report is not None:
         _require_folder(options.report)
     if options.csv not in (None, "-"):
         require_writable(options.csv)
-    journal = Journal(options.json, Head.of("cost", options.command), console)
+    journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)
@@ -201,8 +202,6 @@ def _check_options(options: argparse.Namespace) -> None:
     if options.rows == STANDARD_INPUT or not options.rows.strip():
         raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
     require_target(options.rows, "--rows", scenes)
-    if options.report is not None and not options.report.strip():
-        raise UsageError(f"--report {options.report!r} names no folder")
     if scenes.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
 
@@ -255,7 +254,6 @@ def _measured(
     """Measure, and report; what was measured is kept and named however it ends."""
     held = len(store.rows())
     console.note(f"rows are kept in {options.rows} ({held} there); a run that is stopped goes on with them")
-    progress = Progress(console)
 
     def report(rows: Iterable[Row]) -> Report:
         return Report(options.rows, store.header, shlex.join(options.command), options.quick, tuple(rows))
@@ -264,63 +262,35 @@ def _measured(
     try:
         with journal.closing(lambda: report(rows).data(), lambda: rows, lambda: _rows(len(rows))) as ending:
             try:
-                for part in study.parts:
-                    rows += _of_part(part, study, store, progress)
+                with progress(console, "what accuracy costs") as told:
+                    for part in study.parts:
+                        rows += _of_part(part, study, store, told)
             except BaseException:
                 # What the part that was stopped has kept is in the file only.
                 rows[:] = [row for row in latest(store.entries(), study.quick) if row.part in study.parts]
                 raise
-            console.end_progress()
             ending.status = _told(report(rows), options, console)
     except StoreError as error:
         raise OutputError("rows", str(error)) from None
     finally:
-        console.end_progress()
         console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows()))}")
     return ending.status
 
 
-def _of_part(part: Part, study: Study, store: Store, progress: Progress) -> tuple[Row, ...]:
+def _of_part(part: Part, study: Study, store: Store, told: Told) -> tuple[Row, ...]:
     """Measure what is missing of a part, and give its rows."""
     module = _module(MODULES[part])
     if part == "accuracy":
-        found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=progress)
+        found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=told)
     elif part == "effects":
-        found = module.measure_effects(store, study.scenes, study.quick, progress)
+        found = module.measure_effects(store, study.scenes, study.quick, told)
     elif part == "growth":
-        found = module.measure_growth(store, study.scenes, study.ways, study.quick, progress)
+        found = module.measure_growth(store, study.scenes, study.ways, study.quick, told)
     elif part == "loading":
-        found = module.measure_loading(store, study.quick, progress)
+        found = module.measure_loading(store, study.quick, told)
     else:
-        found = module.measure_unrelated(store, study.raced, study.ways, study.quick, progress)
+        found = module.measure_unrelated(store, study.raced, study.ways, study.quick, told)
     return tuple(found)
-
-
-class Progress:
-    """Tells a terminal what is measured now, how much is done, and about how long the rest takes."""
-
-    def __init__(self, console: Console) -> None:
-        self._console = console
-        self._began = self._told = time.monotonic()
-        self._first = 0
-
-    def __call__(self, what: str, done: int, of: int) -> None:
-        """Called before anything is measured."""
-        now = time.monotonic()
-        if now - self._told < PAUSE and done:
-            return
-        if done < self._first or not done:
-            self._began, self._first = now, done
-        self._told = now
-        share = f"{done} of {of}" if of else f"{done}"
-        self._console.progress(f"{share}{self._rest(now, done, of)}: {what}")
-
-    def _rest(self, now: float, done: int, of: int) -> str:
-        """About how long the rest takes, at the pace so far."""
-        if done <= self._first or of <= done:
-            return ""
-        seconds = (now - self._began) / (done - self._first) * (of - done)
-        return f", {seconds / 60.0:.0f} min left" if seconds > 90.0 else f", {seconds:.0f} s left"
 
 
 def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
@@ -371,7 +341,7 @@ def _names(names: Iterable[str]) -> list[str]:
 def _told(report: Report, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
     status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
-    console.say(report.text())
+    console.show(report.parts())
     if options.csv == "-":
         console.write(csv_text(report.rows))
         console.flush()
@@ -380,6 +350,10 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     if options.report:
         for name, content in report.files():
             _put(os.path.join(options.report, name), content)
+        # Most runs write no page.
+        from validate.html.run import Run
+
+        Page(options.report).write(Run(Head.of("cost", options.command, timed=True), cost=report), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
@@ -400,15 +374,13 @@ def _require_folder(folder: str) -> None:
     """Make the folder, and see that it takes files and that there is a painter, before anything is measured.
 
     Raises:
-        MissingPackage: matplotlib is not there.
+        UsageError: it has no name, or holds another's page.
+        MissingPackage: matplotlib, or what a page needs, is not there.
         OutputError: the folder cannot be had.
     """
     try:
         importlib.import_module("matplotlib")
     except ImportError as error:
         raise MissingPackage("--report", error, "plot") from None
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise unwritable(folder, error) from None
+    Page(folder).require()
     require_writable(os.path.join(folder, "report.md"))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
+from functools import partial
 from typing import BinaryIO
 
 from validate.commands.usage import (
@@ -19,13 +21,16 @@ from validate.commands.usage import (
 from validate.exit_status import ExitStatus
 from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints
+from validate.fitting.record import data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
 from validate.measured.mapping import read_results
 from validate.output.console import Console
+from validate.output.document import Head, json_text
 from validate.output.files import require_known_ending, require_writable, write_whole
 from validate.plain_text import shown
 
 ENDINGS = (".toml",)
+HOLDS = {"-o": "the corrected scene", "--json": "the fit", "--csv": "the corrections"}
 
 DESCRIPTION = """\
 Find the corrections of hardpoints that best explain a file of results, by least squares, each
@@ -75,6 +80,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="how far off the numbers of --data may be beside their digits, each in its column's unit",
     )
     parser.add_argument("-o", "--output", metavar="SCENE.toml", help="the corrected scene; - for the output")
+    parser.add_argument("--json", metavar="FILE", help="write all of it as JSON; - for standard output")
+    parser.add_argument(
+        "--csv", metavar="FILE", help="write the coordinates and their corrections as a table; - likewise"
+    )
     add_quiet(parser)
     parser.set_defaults(run=run)
 
@@ -88,7 +97,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         UsageError, UnknownEnding: the options do not go together, or the target has no name for a scene.
         ResultsError, FitError, UnknownName: the file, its map or an option is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
-        OutputError: the scene cannot be written.
+        OutputError: a result cannot be written.
     """
     if STANDARD_INPUT in (options.data, options.map):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")
@@ -96,37 +105,63 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         value = getattr(options, option)
         if not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and option == "accuracy"))):
             raise UsageError(f"--{option} is {value:g}; allowed: a finite number {least}")
-    files = tuple(file for file in (options.scene, options.data, options.map) if file is not None)
-    require_target(options.output, "-o", files)
-    to_output = options.output == "-"
-    console.quiet, console.mute = options.quiet, to_output
-    if to_output:
-        console.require("use -o FILE")
-    elif options.output is not None:
-        require_known_ending(options.output, ENDINGS)
-        require_writable(options.output)
+    targets = _targets(options, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
-    with told_as(name):
+    head = Head.of("fit", options.command)
+    with told_as(name), console.working("designs") as told:
         measured = read_results(options.data, options.map, scene)
-        fit = fit_hardpoints(scene, measured, options.free, options.bounds, options.prior, options.accuracy)
-    console.say(text_of(fit, name, measured.source))
+        limits = options.bounds, options.prior, options.accuracy
+        fit = fit_hardpoints(scene, measured, options.free, *limits, told=told)
+    status = ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT
+    source = measured.source
+    console.say(text_of(fit, name, source))
     for note in (*measured.notes, *fit.notes):
         console.note(f"{name}: {note}")
     for warning in warnings_of_fit(fit):
         console.warn(f"{name}: {warning}")
-    if options.output is not None:
-        text = corrected_text(fit, name, measured.source)
-        if to_output:
-            console.write(text)
+    texts = {
+        "-o": lambda: corrected_text(fit, name, source),
+        "--json": lambda: json_text(head.document(data_of(fit, name, source), status, True)),
+        "--csv": lambda: table_of(fit),
+    }
+    for option, target in targets.items():
+        content = texts[option]()
+        if target == "-":
+            console.write(content)
             console.flush()
-        else:
-            write_whole(options.output, lambda stream: _put(stream, text))
-            console.written = [f"{options.output} holds the corrected scene"]
-            console.say(
-                f"{shown(options.output)} is written; try: pointcoord validate {shown(options.output)}"
-            )
-    return ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT
+            continue
+        write_whole(target, partial(_put, content))
+        console.written = [*console.written, f"{target} holds {HOLDS[option]}"]
+    if options.output not in (None, "-"):
+        console.say(f"{shown(options.output)} is written; try: pointcoord validate {shown(options.output)}")
+    return status
 
 
-def _put(stream: BinaryIO, text: str) -> None:
-    stream.write(text.encode())
+def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:
+    """Where results go, each to a place of its own; standard output is left to one that is to go there.
+
+    Raises:
+        UsageError, UnknownEnding, OutputError: see `run`.
+    """
+    given = {"-o": options.output, "--json": options.json, "--csv": options.csv}
+    targets = {option: target for option, target in given.items() if target is not None}
+    files = tuple(file for file in (options.scene, options.data, options.map) if file is not None)
+    by_place: dict[str, str] = {}
+    for option, target in targets.items():
+        require_target(target, option, files)
+        other = by_place.setdefault(target if target == "-" else os.path.realpath(target), option)
+        if other != option:
+            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
+    console.quiet, console.mute = options.quiet, "-" in targets.values()
+    if not console.quiet or console.mute:
+        console.require("use --quiet with -o FILE, --json FILE or --csv FILE")
+    for option, target in targets.items():
+        if target != "-":
+            if option == "-o":
+                require_known_ending(target, ENDINGS)
+            require_writable(target)
+    return targets
+
+
+def _put(content: str, stream: BinaryIO) -> None:
+    stream.write(content.encode())

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import os
 
+from validate.commands.reporting import add_report, page_of
 from validate.commands.usage import UsageError, add_quiet, require_target
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 
-# Cases for a process of their own.
-FEW = 8
-
 DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
 in extreme sizes and rates. Every answer is held to a reference that is solved in 60 digits
-and proven: it must be right within what the formulation claims, or refused with a reason."""
+and proven: it must be right within what the formulation claims, or refused with a reason.
+`pointcoord study hard` does the same by several processes or machines, and keeps records."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -31,10 +29,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
     )
-    parser.add_argument(
-        "--workers", metavar="N", type=int, help="processes; as many as there are processors, if not given"
-    )
     parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
+    add_report(parser)
     add_quiet(parser)
     parser.set_defaults(run=run)
 
@@ -43,7 +39,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Try the cases; each is said, and written as JSON, as soon as it is done.
 
     Raises:
-        UsageError: no case has such a name, or no file; or fewer than one process.
+        UsageError: no case has such a name, or no file.
         MissingPackage: the reference, or a formulation, is not there.
         OutputError: the results cannot be written.
     """
@@ -60,13 +56,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.quiet, console.mute = options.quiet, options.json == "-"
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")
-    kind = "hard-list" if options.list else "hard"
-    journal = Journal(options.json, Head.of(kind, options.command), console)
+    page = page_of(options)
+    if page is not None and options.list:
+        raise UsageError("--report is about cases that are tried; leave it out with --list")
+    if page is not None:
+        page.require()
+    head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
+    journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))
         journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
         return ExitStatus.AGREE
-    workers = workers_for(options.workers, len(cases))
     results: list[hard_run.Examined] = []
     headings: list[str] = []
 
@@ -86,22 +86,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending,
         console.working("cases", len(cases)) as working,
     ):
-        hard_run.run(cases, tell, workers)
+        hard_run.run(cases, tell)
         if options.times:
-            console.say(hard_report.times_text(results) + "\n")
-        console.say(hard_report.summary_text(results))
+            console.show((*hard_report.times_parts(results), ""))
+        console.show(hard_report.summary_parts(results))
         if not hard_run.as_expected(results):
             ending.status = ExitStatus.DISAGREE
+        if page is not None:
+            from validate.html.hard_cases import HardCases
+            from validate.html.run import Run
+
+            document = head.document(hard_report.results_data(results), ending.status, complete=True)
+            ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
     return ending.status
-
-
-def workers_for(asked: int | None, cases: int) -> int:
-    """How many processes try so many cases.
-
-    Raises:
-        UsageError: fewer than one is asked for.
-    """
-    if asked is not None and asked < 1:
-        raise UsageError(f"--workers {asked}: allowed: 1 or more")
-    # A process takes a second to start, as long as two cases take.
-    return asked if asked is not None else max(1, min(os.cpu_count() or 1, cases // FEW))

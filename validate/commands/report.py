@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 import argparse
+import shlex
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
 
-from pointcoord import Motion, PointcoordError, Scene, SceneError, simulate
-from validate.commands.comparison import FIRST, FURTHER, SECOND
-from validate.commands.usage import SCENE_HELP, STANDARD_INPUT, UsageError, add_quiet, load_scene, name_of
-from validate.comparison.examined import Examined, examine
-from validate.diagnosis import explain_outcome
+from validate.commands.comparison import add_options, compare_scenes
+from validate.commands.cost import latest
+from validate.commands.reporting import Page
+from validate.commands.usage import UsageError
+from validate.cost.report import Report
+from validate.cost.store import StoreError, read_rows
 from validate.exit_status import ExitStatus
-from validate.formulations.registry import formulation
-from validate.html.folder import NotOurs, require_folder, write_report
-from validate.html.page import require_templates
-from validate.html.run import Run, Told
+from validate.html.hard_cases import HardCases, read_hard_cases
+from validate.html.run import Run
 from validate.output.console import Console
 from validate.output.document import Head
-from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
-from validate.paper.tables import compare_with_paper
+from validate.published.tables import compare_published
+
+# What a report of all built-in scenes tries itself: of each kind of singular place one, and few ways on one
+# scene; some five seconds.
+HARD = ("arm-highest-held-wishbone", "upper-arm-locks-held", "knuckle-in-line-wishbone")
+SCENE, WAYS = "bounce", ("series", "absolute", "relative")
 
 DESCRIPTION = """\
-Compare scenes as `pointcoord validate` does, and write a report of it into a folder: index.html,
-one page that needs no network and opens from disk, with results.json, which is what validate
---json writes, and comparisons.csv, a line for each number that was compared."""
+Compare scenes as `pointcoord validate` does, with its options, and write a report of it into a
+folder: index.html, one page that needs no network and opens from disk, with its data as JSON
+and CSV beside it.
+
+Without SCENE it is about all built-in scenes, and holds the paper's and other programs' printed
+tables, a few hard cases, and a first look at what accuracy costs in time. Whole studies of these
+are taken from files, for they take minutes: `pointcoord hard --json FILE` and then --hard FILE,
+`pointcoord cost --rows FILE` and then --cost FILE."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -31,63 +43,97 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "report", help="validate scenes and write a page of HTML about it", description=DESCRIPTION
     )
     parser.add_argument("folder", metavar="DIR", help="the report's folder, made if it is not there")
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
-    add_quiet(parser)
-    parser.set_defaults(run=run)
+    add_options(parser)
+    parser.add_argument(
+        "--hard", metavar="FILE", help="show the hard cases that `pointcoord hard --json` kept"
+    )
+    parser.add_argument("--cost", metavar="FILE", help="show the times that `pointcoord cost --rows` kept")
+    parser.set_defaults(run=run, report=None)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare the scenes and write the report.
 
     Raises:
-        UsageError: the folder has no name or cannot be a report's, or standard input is a scene twice.
+        UsageError: the options do not go together, or a file of rows cannot be used.
+        HardFileError: a file holds no hard cases.
         MissingPackage: a page needs the extra `report`, a formulation its own packages.
         OutputError: the report cannot be written.
     """
-    console.quiet = options.quiet
-    names = options.scenes or list(DEFAULT_SCENES)
-    if not options.folder.strip():
-        raise UsageError(f"{options.folder!r} names no folder; give the path of one, which is made if needed")
-    if names.count(STANDARD_INPUT) > 1:
-        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-    require_templates()
-    for name in dict.fromkeys((FIRST, SECOND, *FURTHER)):
-        formulation(name)  # found before any scene is read
+    if options.data is not None:
+        raise UsageError("--data is about a file of results, of which there is no page; give it to validate")
+    hard = None if options.hard is None else read_hard_cases(options.hard)
+    cost = None if options.cost is None else _kept_cost(options)
+    page = Page(options.folder, partial(_with_more, options, hard, cost, console), option="")
+    return compare_scenes(options, console, page, brief=True)
+
+
+def _with_more(
+    options: argparse.Namespace, hard: HardCases | None, cost: Report | None, console: Console, run: Run
+) -> Run:
+    """A run with the rest of a report; what is not computed is named, with the command that does."""
+    left_out: list[tuple[str, str]] = []
+    # The paper's tables are compared in a run of all that is built in, and of nothing else.
+    whole = bool(run.paper)
+    if hard is None and whole:
+        hard = _some_hard_cases(run.head, console)
+    if cost is None and whole:
+        cost = _first_look_at_cost(run.head)
+    if options.hard is None:
+        what = "more than a few hard cases" if whole else "hard cases"
+        left_out.append(
+            (what, "pointcoord hard --json hard.json; then pointcoord report with --hard hard.json")
+        )
+    if options.cost is None:
+        what = "more than a first look at accuracy against time" if whole else "accuracy against time"
+        left_out.append(
+            (what, "pointcoord cost --rows cost.jsonl; then pointcoord report with --cost cost.jsonl")
+        )
+    if not whole:
+        what = "the paper's figures, tables and errata, other programs' tables"
+        left_out.append((what, "pointcoord report DIR, without naming scenes"))
+    published = compare_published() if whole else ()
+    return replace(run, hard=hard, cost=cost, published=published, left_out=tuple(left_out))
+
+
+def _some_hard_cases(head: Head, console: Console) -> HardCases:
+    # The reference and its cases need packages that most commands do without.
+    from validate.hard import report as hard_report
+    from validate.hard import run as hard_run
+    from validate.hard.catalogue import chosen
+
+    cases = chosen(HARD)
+    with console.working("hard cases", len(cases)) as at:
+        done: list[str] = []
+
+        def tell(one: hard_run.Examined) -> None:
+            done.append(one.case.name)
+            at(one.case.name, len(done))
+
+        results = hard_run.run(cases, tell)
+    status = ExitStatus.AGREE if hard_run.as_expected(results) else ExitStatus.DISAGREE
+    mine = replace(head, kind="hard")
+    return HardCases.of(mine.document(hard_report.results_data(results), status, complete=True))
+
+
+def _first_look_at_cost(head: Head) -> Report:
+    # So does the study of cost.
+    from validate.cost.accuracy import accuracy_rows
+    from validate.cost.scenes import own_scene, study_scene
+    from validate.cost.store import Header, Store
+    from validate.cost.ways.registry import ways_named
+
+    command = shlex.join(head.command)
+    store = Store(None, Header.here(command))
+    scenes = (study_scene(SCENE, own_scene(SCENE)),)
+    rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True)
+    return Report("in this run", store.header, command, True, tuple(rows))
+
+
+def _kept_cost(options: argparse.Namespace) -> Report:
     try:
-        require_folder(options.folder)
-    except NotOurs as error:
-        raise UsageError(str(error)) from None
-    head = Head.of("validate", options.command)
-    told = []
-    with console.working("scenes", len(names)) as at:
-        for place, name in enumerate(names):
-            at(name_of(name), place)
-            one = _told(name)
-            if one.examined.complaint:
-                console.complain(one.examined.complaint)
-            told.append(one)
-    paper = () if options.scenes else compare_with_paper()
-    whole = Run(head, tuple(told), paper=paper)
-    page = write_report(options.folder, whole)[-1]
-    console.written = [f"{page} holds the report"]
-    console.say(f"{whole.sentence}\n{page}")
-    return whole.status
-
-
-def _told(name: str) -> Told:
-    try:
-        scene: Scene = load_scene(name)
-    except SceneError as error:
-        return Told(Examined(name=name_of(name), problem=str(error)), None)
-    examined = examine(name, scene, ((FIRST, SECOND), FURTHER), name in PAPER_SCENES)
-    explained = tuple(explain_outcome(scene, outcome) for outcome in examined.outcomes)
-    return Told(examined, scene, _motion(scene), explained)
-
-
-def _motion(scene: Scene) -> Motion | None:
-    try:
-        return simulate(scene)
-    except PointcoordError as error:
-        # Why it is refused is told already.
-        partial = error.partial
-        return partial if isinstance(partial, Motion) else None
+        header, entries = read_rows(Path(options.cost))
+    except StoreError as error:
+        raise UsageError(f"--cost {error}") from None
+    quick = all(key.quick for key, _ in entries)
+    return Report(options.cost, header, header.command, quick, tuple(latest(entries, quick)))

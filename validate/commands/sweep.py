@@ -28,6 +28,7 @@ from validate.commands.usage import (
     UsageError,
     add_quiet,
     add_scene,
+    add_timings,
     load_scene,
     name_of,
     require_target,
@@ -113,6 +114,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="what designs that are solved in one block may take; 256 if not given, whatever their number",
     )
     parser.add_argument("--json", metavar="FILE", help="write the summary as JSON; - for standard output")
+    add_timings(parser)
     add_quiet(parser)
     parser.set_defaults(run=run)
 
@@ -143,7 +145,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if not options.memory > 0.0:
         raise UsageError(f"--memory is {options.memory:g} MB; allowed: more than 0")
     summary = Summary(designs.count, scene.mechanism.topology.wheel_centre)
-    journal = Journal(options.json, Head.of("sweep", options.command), console)
+    journal = Journal(options.json, Head.of("sweep", options.command, options.timings), console)
 
     def data() -> dict[str, object]:
         return {"scene": name, **summary.data()}

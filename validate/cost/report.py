@@ -17,6 +17,7 @@ from validate.cost.sentences import verdicts
 from validate.cost.store import Header
 from validate.cost.tables import csv_text, full_tables, short_tables, wrapped
 from validate.output.document import json_text
+from validate.output.terminal import Part, text_of
 
 TITLE = "What accuracy costs in time"
 NOTHING = "nothing was measured, so that there is nothing to say"
@@ -91,12 +92,16 @@ class Report:
         rest = "".join(f", {count} {state}" for state, count in states.items() if count)
         return f"{self.store}: {self.measured} measured{rest}"
 
-    def text(self) -> str:
+    def parts(self) -> tuple[Part, ...]:
         """For a terminal: sentences first, then short tables."""
         head = "\n".join(wrapped(f"{name}: {value}", "  ") for name, value in self.head())
         blocks = [f"{TITLE}\n{head}", *map(wrapped, self._said)]
-        tables = [table.text() for table in short_tables(self.rows, self.found)]
-        return "\n\n".join(["\n".join(blocks), *tables])
+        tables = (("", *table.parts()) for table in short_tables(self.rows, self.found))
+        return ("\n".join(blocks), *(part for parts in tables for part in parts))
+
+    def text(self) -> str:
+        """The same in lines."""
+        return text_of(self.parts())
 
     def markdown(self, pictures: Sequence[str] = ()) -> str:
         """For a page: sentences, pictures by the names of their files, and full tables."""

@@ -23,9 +23,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import pointcoord
 from pointcoord import Scene
 from validate.cost.row import Part, QuantityError, Row, Time
+from validate.output.document import code_digest
 
 FORMAT = 1
 HEADER = "cost of accuracy"
@@ -85,7 +85,7 @@ class Header:
     def here(cls, command: str = "") -> Header:
         """Of this process."""
         return cls(
-            program=f"pointcoord {_version('pointcoord')}, code {_code()}",
+            program=f"pointcoord {_version('pointcoord')}, code {code_digest(MEASURED)}",
             machine=f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}",
             python=f"{platform.python_implementation()} {platform.python_version()}",
             packages={name: _version(name) for name in PACKAGES},
@@ -367,16 +367,6 @@ def _version(package: str) -> str:
         return metadata.version(package)
     except metadata.PackageNotFoundError:
         return "not installed"
-
-
-def _code() -> str:
-    """A digest of the code that is measured."""
-    root, digest = Path(pointcoord.__file__).parents[1], hashlib.sha256()
-    for place in MEASURED:
-        top = root / place
-        for file in sorted([top] if top.is_file() else top.rglob("*.py")):
-            digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
-    return digest.hexdigest()[:12]
 
 
 def _processor() -> str:

@@ -25,7 +25,8 @@ from validate.cost.findings import (
 )
 from validate.cost.row import NO_EFFECT, QuantityError, Row, Time
 from validate.cost.sentences import bytes_words, digits, duration, growth_words, power
-from validate.output import report
+from validate.output import terminal
+from validate.output.terminal import Part
 
 WIDTH = 110  # columns of a terminal
 PHASES = ("set-up", "solve", "rates", "output", "first")
@@ -65,10 +66,10 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
 
-    def text(self) -> str:
-        """For a terminal."""
-        notes = "".join("\n" + wrapped(note, "  ") for note in self.notes)
-        return f"{wrapped(self.title)}\n{report.table(self.head, self.rows)}{notes}"
+    def parts(self) -> tuple[Part, ...]:
+        """For a terminal, its columns apart."""
+        columns = terminal.Table(self.head, self.rows)
+        return (wrapped(self.title), columns, *(wrapped(note, "  ") for note in self.notes))
 
     def markdown(self) -> str:
         """For a page."""

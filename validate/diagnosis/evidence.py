@@ -5,7 +5,8 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,6 +28,7 @@ Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
+EVENLY = 32  # instants of the telling ones
 TINY = float(np.finfo(float).tiny)
 
 
@@ -84,6 +86,11 @@ class Evidence:
         given, held: the numbers, (N, 3) or (N,).
         allowed: how far a given number may be from the one that it is held to, likewise.
         wrong: the rows that disagree.
+        only: keys of the faults that are to be looked at; None: all.
+        over_time: whether the instants are times; else rows of a file, of inputs or travels.
+        own: how far a given number may be off by itself, in its own unit, beside what is allowed.
+        known: where points are, (N, 3), beside the rows.
+        in_our_units: whether the held numbers are; after another fault they may be in no unit that is known.
     """
 
     scene: Scene
@@ -93,6 +100,11 @@ class Evidence:
     allowed: Rows
     wrong: tuple[Row, ...]
     solved: Solved
+    only: frozenset[Hashable] | None = None
+    in_our_units: bool = True
+    over_time: bool = True
+    own: Rows = field(default_factory=dict)
+    known: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -131,17 +143,57 @@ class Evidence:
     def at(self, instants: Sequence[int]) -> Evidence:
         """The same at fewer instants."""
         some = np.asarray(instants, dtype=np.intp)
-        given, held, allowed = (
+        given, held, allowed, own = (
             {row: array[some] for row, array in rows.items()}
-            for rows in (self.given, self.held, self.allowed)
+            for rows in (self.given, self.held, self.allowed, self.own)
         )
-        return Evidence(self.scene, self.times[some], given, held, allowed, self.wrong, self.solved)
+        known = {point: places[some] for point, places in self.known.items()}
+        return replace(
+            self, times=self.times[some], given=given, held=held, allowed=allowed, own=own, known=known
+        )
+
+    def unit_of(self, row: Row) -> str:
+        """The unit of a row's held numbers, in words."""
+        return length_or_angle(row) if self.in_our_units else "in its own unit"
+
+    def wants(self, key: Hashable) -> bool:
+        """Whether a fault is to be looked at."""
+        return self.only is None or key in self.only
+
+    def wanting(self, keys: Iterable[Hashable]) -> Evidence:
+        """The same for some faults only."""
+        return replace(self, only=frozenset(keys))
+
+    @cached_property
+    def telling(self) -> Evidence:
+        """The same at some instants: evenly, and where numbers are largest or farthest off.
+
+        Of each row where ours is largest, so that what is allowed of rounding is the same; of each quantity
+        and number of the car where both differ most, where that is most beside what is allowed, and where
+        theirs is largest.
+        """
+        count = len(self.times)
+        some = {*np.linspace(0, count - 1, min(EVENLY, count)).astype(int).tolist()}
+        most: dict[object, dict[str, tuple[float, int]]] = {}
+        for row in self.wrong:
+            held, given = (part[row].reshape(count, -1) for part in (self.held, self.given))
+            gap = np.abs(given - held)
+            some.add(int(np.argmax(np.abs(held).max(axis=1))))
+            kinds = most.setdefault(row if kind_of(row) == "car" else row[0], {})
+            allowed = (self.allowed[row] + self.own.get(row, 0.0)).reshape(count, -1)
+            for what, of in (("gap", gap), ("share", gap / allowed), ("theirs", np.abs(given))):
+                worst = np.nan_to_num(of, nan=np.inf).max(axis=1)
+                at = int(np.argmax(worst))
+                if what not in kinds or worst[at] > kinds[what][0]:
+                    kinds[what] = float(worst[at]), at
+        some |= {at for kinds in most.values() for _, at in kinds.values()}
+        return self.at(sorted(some))
 
     def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
-        return Evidence(self.scene, self.times, self.given, held, allowed, wrong, self.solved)
+        return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def left(self, row: Row, value: Array, allowed: Array) -> float:
         """The largest difference of given numbers from others, in parts of what is allowed."""
@@ -149,7 +201,7 @@ class Evidence:
         if QUANTITIES[row[0]].unit == "rad":
             gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
         gap = np.where(np.isfinite(gap), gap, np.inf)
-        return float(np.max(gap / allowed, initial=0.0))
+        return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
         """What is allowed of numbers that were computed again, from the held ones or from the drawing.
@@ -160,6 +212,46 @@ class Evidence:
             float(np.abs(array).max(initial=0.0)) for array in (self.held[row], *map(np.asarray, others))
         )
         return np.asarray(2.0 * self.allowed[row] + 8.0 * EPS * largest)
+
+    def share_apart(self, rows: tuple[Row, ...]) -> float | None:
+        """The largest difference of rows in parts of the largest held number; None where there is none."""
+        if rows not in self._apart:
+            finite = all(np.isfinite(self.given[row]).all() for row in rows)
+            most = max(float(np.abs(self.held[row]).max()) for row in rows)
+            apart = max(float(np.abs(self.given[row] - self.held[row]).max()) for row in rows)
+            self._apart[rows] = apart / most if finite and most > 0.0 else None
+        return self._apart[rows]
+
+    def distinct(self, rows: tuple[Row, ...]) -> int:
+        """How many distinct numbers that are off rows have, beside one of each axis; the fewer of both sides.
+
+        One number of each axis is none to tell anything by.
+        """
+        if rows not in self._distinct:
+            self._distinct[rows] = min(
+                self._distinct_of(numbers, rows) for numbers in (self.held, self.given)
+            )
+        return self._distinct[rows]
+
+    def _distinct_of(self, numbers: Rows, rows: tuple[Row, ...]) -> int:
+        distinct: dict[int, set[float]] = {}
+        for row in rows:
+            part = numbers[row].reshape(len(self.times), -1)
+            allowed = self.allowed[row] + self.own.get(row, 0.0)
+            off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
+            step = max(100.0 * float(self.allowed[row].max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
+            for axis in range(part.shape[1]):
+                some = part[off[:, axis], axis]
+                distinct.setdefault(axis, set()).update(np.unique(np.rint(some / step)).tolist())
+        return sum(len(found) - 1 for found in distinct.values() if found)
+
+    @cached_property
+    def _apart(self) -> dict[tuple[Row, ...], float | None]:
+        return {}
+
+    @cached_property
+    def _distinct(self) -> dict[tuple[Row, ...], int]:
+        return {}
 
     def wrong_of(self, quantity: str) -> tuple[Row, ...]:
         """The rows of a quantity that disagree."""
@@ -178,10 +270,12 @@ class Evidence:
 
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
+        if point in self.known:
+            return self.known[point]
         for row, array in self.held.items():
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
-        motion = self.solved.motion
+        motion = self.solved.motion if self.over_time else None
         if motion is None:
             return None
         (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)

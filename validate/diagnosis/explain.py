@@ -7,6 +7,13 @@ are off from more than one value.
 
 The kinds that need only arithmetic come first, each alone; then those that solve other cars; then two faults
 in the same numbers.
+
+Of many instants some are looked at first (`Evidence.telling`; of rates by differences the first ones, without
+the end of these). A fault that explains all numbers explains those, and what is allowed of them is the same
+(of differences it is less by the rounding of the largest number, here SPARED times at most): none is lost
+that explains whole rows. One that lowers a difference WORTH times lowers it there too, where it is largest,
+but for how much smaller the largest number is that it makes of ours there: it is given up only where it
+lowers it less than WORTH / SPARED times. What is claimed is claimed of all instants.
 """
 
 from __future__ import annotations
@@ -21,6 +28,7 @@ from pointcoord import PointcoordError, Scene
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Outcome
+from validate.comparison.explanation import Explanation
 from validate.diagnosis.evidence import Evidence, Row, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import kinds
@@ -31,27 +39,14 @@ from validate.formulations.protocol import Solution
 WORTH = 20.0
 # By how many times, so that no other car is solved for what is left.
 ENOUGH = 1e3
+# More instants than this are looked at in part first.
+MANY = 300
+UNIT = "unit"
+AND = ", and "  # between two faults
+SPARED = 10.0
+AHEAD = 64  # instants at the beginning, for kinds that look at neighbours
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """What would explain that numbers disagree.
-
-    Attributes:
-        words: which numbers, and what was done to them.
-        kind: of fault, as its file in `kinds` calls it; two kinds joined by "and".
-        quantities: whose numbers it explains: a quantity where it explains all that disagrees of it, else
-            quantity.name.
-        leftover: the largest difference that is left when the fault is undone / what it is held to; more
-            than 1 where it explains a part only.
-    """
-
-    words: str
-    kind: str
-    quantities: tuple[str, ...]
-    leftover: float
 
 
 @dataclass(frozen=True)
@@ -86,11 +81,15 @@ def explain(scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> 
     """
     if not outcome.disagreements:
         return ()
-    evidence = Evidence.of(scene, given, held, outcome)
+    return explain_evidence(Evidence.of(scene, given, held, outcome))
+
+
+def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
+    """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = list(_supposed(evidence, _quick()))
-    if _open(evidence, found, mostly=True) and _elsewhere(evidence):
+    if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
         deep = list(_supposed(evidence, [kind for kind in kinds() if kind.solves]))
         found += deep
         for one in _ranked(deep)[:1]:
@@ -117,7 +116,7 @@ def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
 
 
 def _quick() -> list[Kind]:
-    return [kind for kind in kinds() if not kind.solves and not kind.last]
+    return [kind for kind in kinds() if not kind.solves and not kind.last and not kind.follows]
 
 
 def _elsewhere(evidence: Evidence) -> bool:
@@ -136,16 +135,43 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
 def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
     """What the numbers carry of the faults of some kinds; the same fault of several quantities is one."""
     for kind in some:
-        merged: dict[Hashable, Hypothesis] = {}
+        if kind.of_time and not evidence.over_time:
+            continue
+        here = evidence
         # A car that cannot be solved, or gives no such numbers, explains nothing.
         with suppress(PointcoordError):
-            for one in kind.hypotheses(evidence):
-                known = merged.get(one.key)
-                merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
-        for one in merged.values():
-            carried = _carried(evidence, one)
-            if carried is not None:
-                yield carried
+            if kind.reach is not None and len(evidence.times) > MANY:
+                here = evidence.wanting(_promising(evidence, kind, kind.reach))
+                if not here.only:
+                    continue
+            for one in _merged(kind, here).values():
+                carried = _carried(evidence, one) if here.wants(one.key) else None
+                if carried is not None:
+                    yield carried
+
+
+def _merged(kind: Kind, evidence: Evidence) -> dict[Hashable, Hypothesis]:
+    """The faults of a kind by their keys."""
+    merged: dict[Hashable, Hypothesis] = {}
+    for one in kind.hypotheses(evidence):
+        known = merged.get(one.key)
+        merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
+    return merged
+
+
+def _promising(evidence: Evidence, kind: Kind, reach: int) -> Iterator[Hashable]:
+    """The keys of faults that may explain something of all instants, by some of these."""
+    few = evidence.at(range(AHEAD + reach)) if reach else evidence.telling
+    count = len(few.times) - reach
+    for key, one in _merged(kind, few).items():
+        seen = few.at(range(count)) if reach else few
+        rows = {row: (value[:count], allowed[:count]) for row, (value, allowed) in one.rows.items()}
+        wrong = [row for row in rows if row in evidence.wrong]
+        enough = SPARED if reach else 1.0
+        if any(seen.left(row, *rows[row]) <= enough for row in wrong) or any(
+            _lowered(seen, replace(one, rows=rows), group) * SPARED >= WORTH for group in _together(wrong)
+        ):
+            yield key
 
 
 def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
@@ -161,12 +187,12 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
     exact = [row for some in _together(exact) if _decided(evidence, some, hypothesis.fitted) for row in some]
     if exact:
         return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
-    lowered = {
-        tuple(some): _lowered(evidence, hypothesis, some)
-        for some in _together([*left])
-        if _decided(evidence, some, hypothesis.fitted)
+    lowered = {tuple(some): _lowered(evidence, hypothesis, some) for some in _together([*left])}
+    partly = {
+        rows: factor
+        for rows, factor in lowered.items()
+        if factor >= WORTH and _decided(evidence, rows, hypothesis.fitted)
     }
-    partly = {rows: factor for rows, factor in lowered.items() if factor >= WORTH}
     if not partly:
         return None
     rows = tuple(row for some in partly for row in some)
@@ -175,15 +201,17 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
 
 def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) -> float:
     """By what factor a fault lowers the difference of rows, both in parts of the largest number there."""
-    theirs, ours, then = (
-        np.concatenate([part[row].ravel() for row in rows])
-        for part in (evidence.given, evidence.held, {row: hypothesis.rows[row][0] for row in rows})
-    )
-    if not (np.isfinite(theirs).all() and ours.any() and then.any()):
+    before = evidence.share_apart(tuple(rows))
+    if before is None:
         return 0.0
-    before = float(np.abs(theirs - ours).max() / np.abs(ours).max())
-    after = float(np.abs(theirs - then).max() / np.abs(then).max())
-    return before / after if after > 0.0 else np.inf
+    apart = most = 0.0
+    for row in rows:
+        then = hypothesis.rows[row][0]
+        apart = max(apart, float(np.abs(evidence.given[row] - then).max()))
+        most = max(most, float(np.abs(then).max()))
+    if not most > 0.0:
+        return 0.0
+    return before * most / apart if apart > 0.0 else np.inf
 
 
 def _together(rows: Sequence[Row]) -> list[list[Row]]:
@@ -196,26 +224,12 @@ def _together(rows: Sequence[Row]) -> list[list[Row]]:
 
 def _decided(evidence: Evidence, rows: Sequence[Row], fitted: int) -> bool:
     """Whether rows have enough distinct numbers that are off to tell one fault from another."""
-    for numbers in (evidence.held, evidence.given):
-        distinct: set[tuple[int, float]] = set()
-        for row in rows:
-            off = ~(np.abs(evidence.given[row] - evidence.held[row]) <= evidence.allowed[row])
-            part = numbers[row]
-            step = max(
-                100.0 * float(evidence.allowed[row].max()), 1e-9 * float(np.abs(part).max(initial=0.0))
-            )
-            for axis in range(3) if part.ndim == 2 else (0,):
-                some = part[:, axis][off[:, axis]] if part.ndim == 2 else part[off]
-                distinct |= {(axis, float(number)) for number in np.unique(np.rint(some / step))}
-        # One number of each axis is none to tell anything by.
-        if len(distinct) - len({axis for axis, _ in distinct}) < fitted + 1:
-            return False
-    return True
+    return evidence.distinct(tuple(rows)) > fitted
 
 
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
-    opening = [kind for kind in kinds() if kind.opens]
+    opening = [kind for kind in kinds() if kind.opens and (evidence.over_time or not kind.of_time)]
     closing = [kind for kind in kinds() if kind.closes]
     count = len(evidence.times)
     few = np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp))
@@ -241,17 +255,16 @@ def _seconds(
         only: the pairs to try.
     """
     wanted = None if only is None else set(only)
-    begun: dict[Hashable, Hypothesis] = {}
-    for one in first.hypotheses(evidence):
-        known = begun.get(one.key)
-        begun[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
+    firsts = None if wanted is None else {pair[0] for pair in wanted}
+    begun = _merged(first, evidence if firsts is None else evidence.wanting(firsts))
     found: dict[tuple[Hashable, Hashable], _Found] = {}
     for one in begun.values():
-        if wanted is not None and not any(pair[0] == one.key for pair in wanted):
+        if firsts is not None and one.key not in firsts:
             continue
-        after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
+        wrong = tuple(row for row in evidence.wrong if row in one.rows)
+        after = replace(evidence.after(one.rows, wrong), only=None, in_our_units=first.name != UNIT)
         for kind in closing:
-            if kind.name == first.name:
+            if kind.name == first.name or (kind.follows and first.name not in kind.follows):
                 continue
             for two in kind.hypotheses(after):
                 key = (one.key, (kind.name, two.key))
@@ -260,7 +273,7 @@ def _seconds(
                 both = Hypothesis(
                     kind=f"{first.name} and {kind.name}",
                     key=key,
-                    words=f"{one.words}, and {two.words}",
+                    words=f"{one.words}{AND}{two.words}",
                     rows={**(found[key].hypothesis.rows if key in found else {}), **two.rows},
                     fitted=one.fitted + two.fitted,
                     cost=one.cost + two.cost + 1.0,
@@ -294,7 +307,8 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         better = any(
             set(one.rows) <= set(other.rows)
             and (
-                other.whole != one.whole
+                _same(one, other)
+                or other.whole != one.whole
                 or other.hypothesis.cost < one.hypothesis.cost
                 or len(other.rows) > len(one.rows)
                 or (not one.whole and other.lowered > 2.0 * one.lowered)
@@ -306,6 +320,12 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         }:
             kept.append(one)
             yield one
+
+
+def _same(one: _Found, other: _Found) -> bool:
+    """Whether two faults are two others in the other order."""
+    first, second = (set(found.hypothesis.words.split(AND)) for found in (one, other))
+    return first == second
 
 
 def _told(evidence: Evidence, found: _Found) -> Explanation:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from validate.fitting.fit import Fit
+from validate.fitting.words import counted
 from validate.plain_text import shown
 
 
@@ -18,11 +19,14 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
         first, last, _ = fit.rms(unit)
         before.append(f"# r.m.s. difference {first:.4g} {unit} before, {last:.4g} {unit} after.")
     if not fit.unique:
-        before.append(
-            f"# Not unique: {len(fit.unseen)} combinations of coordinates are not seen by the data."
-        )
+        before.append(f"# Not unique: the data do not see {counted(len(fit.unseen))} of coordinates.")
     before += [
-        f"# {one} moved by {amount:+.4f} mm, standard deviation {fit.deviations[one]:.2g} mm."
+        f"# {one} moved by {amount:+z.4f} mm, "
+        + (
+            "which is its bound."
+            if one in fit.on_bounds
+            else f"standard deviation {fit.deviations[one]:.2g} mm."
+        )
         for one, amount in fit.corrections.items()
     ]
     return "\n".join([*before, *_lines(content, ())]) + "\n"

@@ -8,15 +8,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.fitting.fit import Combination, Fit, Fitted
+from validate.fitting.fit import CONFIDENCE, Combination, Fit, Fitted
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
 
-# Parts of a combination that are said, of its largest one.
-SAID = 0.05
-# Singular values below this part of the largest are rounding of the slopes.
-NOTHING = 1e-6
+# Parts of a combination that are said, of its largest one; all that two decimals show where it is exact.
+SAID, SAID_EXACT = 0.2, 0.005
+# Singular values below this part of the largest are rounding: the slopes are exact to some 1e-13 of theirs.
+NOTHING = 1e-12
+# Times what the digits explain, from which on something else than hardpoints is likelier.
+STRANGE = 5.0
 
 
 def text_of(fit: Fit, name: str, source: str) -> str:
@@ -31,13 +33,21 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         if fit.factor > 1.0
         else "  what is left is no more than the digits explain"
     )
-    lines += ["", f"  correction, mm, within +-{fit.bounds:g}, and its standard deviation"]
+    lines += [
+        "",
+        f"  correction, mm, within +-{fit.bounds:g}, its standard deviation, and where it lies "
+        f"{100.0 * CONFIDENCE:g} times in 100",
+    ]
     width = max(len(one) for one in fit.corrections)
     for one, amount in fit.corrections.items():
         deviation = fit.deviations[one]
+        said = f"    {one.ljust(width)} {amount:+z10.4f}"
+        if one in fit.on_bounds:
+            lines.append(f"{said}   on its bound, and held there")
+            continue
+        low, high = fit.interval(one)
         open_ = "   not known from these data" if deviation >= fit.bounds else ""
-        bound = "   on its bound" if one in fit.on_bounds else ""
-        lines.append(f"    {one.ljust(width)} {amount + 0.0:+10.4f} +- {deviation:.2g}{open_}{bound}")
+        lines.append(f"{said} +- {deviation:.2g}   {low:+z.4f} to {high:+z.4f}{open_}")
     lines += [
         "",
         "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm",
@@ -55,7 +65,7 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
         "coordinates.",
         f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it; any of "
-        "them may be added:",
+        "them may be added, to first order:",
     ]
     lines += [f"    {words}" for words in unseen_words(fit)]
     return "\n".join(lines)
@@ -65,17 +75,31 @@ def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
     """What must not be overlooked."""
     found = []
     if not fit.converged:
-        found.append("least squares had not ended at a minimum when it was stopped; take fewer coordinates")
+        why = f"; a design on the way could not be solved ({fit.failures[-1]})" if fit.failures else ""
+        found.append(
+            f"least squares did not end at a minimum, {fit.solves} designs were tried{why}; take fewer "
+            "coordinates, closer bounds or a smaller prior"
+        )
+    if fit.factor > STRANGE:
+        found.append(
+            f"what is left is {fit.factor:.3g} times what the digits explain: other hardpoints than "
+            "these, or another unit, sign or definition of a column; pointcoord validate SCENE --data FILE "
+            "says column by column how far they are apart"
+        )
     if fit.on_bounds:
         found.append(
             f"{', '.join(fit.on_bounds)} would go beyond the bounds of {fit.bounds:g} mm: less might be left"
         )
     if not fit.unique:
         found.append(
-            f"the answer is not unique: {len(fit.unseen)} combinations of coordinates are "
-            "not seen by the data"
+            f"the answer is not unique: the data do not see {counted(len(fit.unseen))} of coordinates"
         )
     return tuple(found)
+
+
+def counted(number: int) -> str:
+    """So many combinations."""
+    return f"{number} combination{'' if number == 1 else 's'}"
 
 
 def unseen_words(fit: Fit) -> list[str]:
@@ -83,16 +107,16 @@ def unseen_words(fit: Fit) -> list[str]:
     largest = max(one.singular for one in fit.combinations)
     nothing = [one for one in fit.unseen if one.singular <= NOTHING * largest]
     weak = [one for one in fit.unseen if one not in nothing]
-    said = [f"{combination(parts)}: changes nothing" for parts in simplest(nothing)]
+    said = [f"{combination(parts, SAID_EXACT)}: changes nothing" for parts in simplest(nothing)]
     said += [f"{combination(one.parts)}: known to {one.deviation:.2g} mm only" for one in weak]
     return said
 
 
-def combination(parts: Mapping[str, float]) -> str:
+def combination(parts: Mapping[str, float], said: float = SAID) -> str:
     """A combination as a sum, largest part first; parts that are small beside it are left out."""
     largest = max(abs(part) for part in parts.values())
     told = sorted(parts.items(), key=lambda one: -abs(one[1]))
-    some = [(name, part / largest) for name, part in told if abs(part) >= SAID * largest]
+    some = [(name, part / largest) for name, part in told if abs(part) >= said * largest]
     if len(some) == 1:
         return some[0][0]
     sign = math.copysign(1.0, some[0][1])

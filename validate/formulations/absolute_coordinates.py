@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +67,8 @@ class AbsoluteCoordinates:
                 effects=_effects(asked),
             )
         except absolute.AbsoluteError as error:
-            raise FormulationError(self.name, error, reading.partial(self.name, error)) from error
+            before = partial(reading.partial, self.name, error)
+            raise FormulationError(self.name, error, before) from error
         try:
             return reading.solution(self.name, solved)
         except AccuracyError as error:

@@ -8,6 +8,7 @@ to solve as the scene asks. What is claimed is what was left out, whichever it w
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +74,7 @@ class PointCoordinates:
         except SceneError:
             raise
         except PointcoordError as error:
-            raise FormulationError(self.name, error, self._partial(scene, error)) from error
+            raise FormulationError(self.name, error, partial(self._partial, scene, error)) from error
         return self._solution(scene, motion)
 
     def _solved(self, scene: Scene, start: Task | PointcoordError | None) -> Motion:
@@ -109,6 +110,7 @@ class PointCoordinates:
         proof = motion.proof(rates=True)
         # Numbers that nothing is known of would agree with anything: they are no answer here.
         _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
+        uncertain = _uncertain_laws(scene, motion.times)
         return Solution(
             formulation=self.name,
             times=motion.times,
@@ -116,21 +118,25 @@ class PointCoordinates:
             accuracy=Accuracy(
                 condition=proof.condition,
                 claims={
-                    quantity: self._claims(scene, motion, proof, quantity) for quantity in motion.numbers
+                    quantity: self._claims(motion, proof, quantity, uncertain) for quantity in motion.numbers
                 },
                 proven=True,
             ),
             notes=motion.notes,
         )
 
-    def _claims(self, scene: Scene, motion: Motion, proof: Proof, quantity: str) -> dict[str, Array]:
+    def _claims(
+        self, motion: Motion, proof: Proof, quantity: str, uncertain: NDArray[np.bool_]
+    ) -> dict[str, Array]:
         """The proven error of each number, or the expected one where that is less.
 
         The proof sees how far off a number is, whatever the reason: a fault of the method would widen its
         own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong; but
         where an input's terms cancel until few of its digits are left, only the proof knows what that does.
+
+        Args:
+            uncertain: at which instants that is so, (N,).
         """
-        uncertain = _uncertain_laws(scene, motion.times)
         claims: dict[str, Array] = {}
         expected = proof.expected[quantity]
         for name, proven in proof.proven[quantity].items():

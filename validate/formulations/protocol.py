@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from typing import Any, Protocol
 
@@ -50,6 +50,7 @@ class Accuracy:
         blind: where the claims are what an accuracy makes that was stated beforehand, at which instants they
             say nothing, (N,); such claims may be as wide as they are, and elsewhere they test. None: how
             much they test is judged by their width (see `comparison.tolerance`).
+        stated: how exactly it says beforehand that it places points, mm, if it does.
     Raises:
         AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
             about no quantity that there is.
@@ -59,6 +60,7 @@ class Accuracy:
     claims: Numbers = field(default_factory=dict)
     proven: bool = False
     blind: NDArray[np.bool_] | None = None
+    stated: float | None = None
 
     def with_claims(self, claims: Numbers) -> Accuracy:
         """The same with other claims of some quantities."""
@@ -150,14 +152,26 @@ class Formulation(Protocol):
 
 
 class FormulationError(Exception):
-    """A formulation refused a scene, with its own reason as the cause.
+    """A formulation refused a scene, with its own reason as the cause."""
 
-    Attributes:
-        partial: what it solved before, at the first of the scene's instants; None if nothing.
-    """
-
-    def __init__(self, formulation: str, reason: Exception, partial: Solution | None = None) -> None:
+    def __init__(
+        self,
+        formulation: str,
+        reason: Exception,
+        partial: Solution | Callable[[], Solution | None] | None = None,
+    ) -> None:
         self.formulation = formulation
         self.reason = reason
-        self.partial = partial
+        self._partial = partial
         super().__init__(f"{formulation}: {reason}")
+
+    @property
+    def partial(self) -> Solution | None:
+        """What was solved before, at the first of the scene's instants; None if nothing.
+
+        Found when it is first asked for, if it was given as a function: what is claimed of it costs as much
+        as of a whole motion, and few who are refused want it.
+        """
+        if callable(self._partial):
+            self._partial = self._partial()
+        return self._partial

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,7 @@ class RelativeCoordinates:
             try:
                 return reading.solution(model.poses(inputs, scene.instants))
             except PoseError as error:
-                raise FormulationError(self.name, error, reading.partial(error)) from error
+                raise FormulationError(self.name, error, partial(reading.partial, error)) from error
         except (RelativeError, SceneError, AccuracyError) as error:
             raise FormulationError(self.name, error) from error
 

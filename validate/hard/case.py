@@ -11,6 +11,8 @@ from typing import Any, Literal
 # unjudged: the reference could not be proven, which is a failure of the catalogue.
 Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
 
+OURS = "pointcoord"
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -84,6 +86,9 @@ class Case:
         unit: of error and bound.
         content: of the scene at a value, of a case whose trial is one scene; for whoever has another solver
             to try on it.
+        without_pose: whether some instants of that scene have no pose, at every value.
+        also_answered: values at which the scene has an answer although `expected` allows a refusal as well;
+            they need not be among those that are tried.
     """
 
     name: str
@@ -96,6 +101,17 @@ class Case:
     examine: Callable[[float], Trial]
     unit: str = "mm"
     content: Callable[[float], Mapping[str, Any]] | None = None
+    without_pose: bool = False
+    also_answered: tuple[float, ...] = ()
+
+    @property
+    def answered(self) -> tuple[float, ...]:
+        """The values at which the scene has an answer that any solver can be held to."""
+        if self.content is None or self.without_pose:
+            return ()
+        expected = self.expected.get(OURS) or next(iter(self.expected.values()))
+        needed = (v for v in self.values if expected.met(v, "right") and not expected.met(v, "refused"))
+        return tuple(dict.fromkeys((*needed, *self.also_answered)))
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:

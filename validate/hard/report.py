@@ -8,9 +8,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any, get_args
 
-from validate.hard.case import Answer, Case, Expected, Outcome
-from validate.hard.run import MAP, OURS, Examined, as_expected, counts, refusals
-from validate.output.report import table
+from validate.hard.case import OURS, Answer, Case, Expected, Outcome
+from validate.hard.run import MAP, Examined, as_expected, counts, refusals
 from validate.output.terminal import Part, Table, text_of
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
@@ -134,28 +133,28 @@ def _facts(facts: Any) -> str:
     return ", ".join(f"{k}: {v:.6g}" if isinstance(v, float) else f"{k}: {v}" for k, v in facts.items())
 
 
-def times_text(results: Sequence[Examined]) -> str:
+def times_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     """How long each case took, the longest first."""
     longest = sorted(results, key=lambda result: -result.seconds)
     rows = [(r.case.name, str(len(r.trials)), f"{r.seconds:.2f}", _most(r)) for r in longest]
     total = sum(result.seconds for result in results)
-    return table(("case", "scenes", "seconds", "s a scene"), rows) + f"\n{total:.1f} s in all."
+    return Table(("case", "scenes", "seconds", "s a scene"), tuple(rows)), f"{total:.1f} s in all."
 
 
 def _most(result: Examined) -> str:
     return f"{result.seconds / max(len(result.trials), 1):.3f}"
 
 
-def summary_text(results: Sequence[Examined]) -> str:
+def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     """Counts over all cases, and the verdict."""
     rows = [
         (name, str(sum(found.values())), *(str(found[o] or ".") for o in OUTCOMES))
         for name, found in counts(results).items()
     ]
     trials = sum(len(result.trials) for result in results)
-    lines = [
+    lines: list[Part] = [
         f"{numbered(len(results), 'case')}, {numbered(trials, 'scene')}:",
-        table(("formulation", "answers", *OUTCOMES), rows),
+        Table(("formulation", "answers", *OUTCOMES), tuple(rows)),
     ]
     refused = refusals(results, MAP)
     if refused:
@@ -172,7 +171,7 @@ def summary_text(results: Sequence[Examined]) -> str:
             f"NOT as expected: {numbered(sum(len(r.unexpected) for r in other), 'answer')}, "
             f"{wrong} wrong without a warning, in {', '.join(result.case.name for result in other)}."
         )
-    return "\n".join(lines)
+    return tuple(lines)
 
 
 def listing_data(cases: Sequence[Case]) -> dict[str, Any]:

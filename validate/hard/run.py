@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
-from validate.formulations.registry import formulation
 from validate.hard.case import (
+    OURS,
     REFUSED,
     RIGHT_OR_REFUSED,
     Answer,
@@ -23,7 +21,7 @@ from validate.hard.case import (
 )
 
 # Every case that pointcoord has to solve is tried by a map of the inputs too.
-OURS, MAP = "pointcoord", "pointcoord-map"
+MAP = "pointcoord-map"
 
 
 @dataclass(frozen=True)
@@ -65,11 +63,25 @@ def examine(case: Case) -> Examined:
         MissingPackage: a formulation of the case is not installed.
     """
     began = time.perf_counter()
-    chosen = _few(case.values)
-    trials = tuple(_also_by_map(case, _tried(case, value), value in chosen) for value in case.values)
+    trials = [tried(case, number) for number in range(len(case.values))]
+    return examined(case, trials, time.perf_counter() - began)
+
+
+def tried(case: Case, number: int) -> Trial:
+    """The value of a number tried, by a map too if it is one of the few.
+
+    Raises:
+        MissingPackage: a formulation of the case is not installed.
+    """
+    value = case.values[number]
+    return _also_by_map(case, _tried(case, value), value in _few(case.values))
+
+
+def examined(case: Case, trials: Sequence[Trial], seconds: float) -> Examined:
+    """A case with its trials, of which those by a map are to come to what a map may."""
     if any(answer.formulation == MAP for trial in trials for answer in trial.answers):
         case = replace(case, expected={**case.expected, MAP: _of_map(case)})
-    return Examined(case, trials, time.perf_counter() - began)
+    return Examined(case, tuple(trials), seconds)
 
 
 def _few(values: Sequence[float]) -> tuple[float, ...]:
@@ -100,55 +112,13 @@ def _tried(case: Case, value: float) -> Trial:
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
 
 
-def run(cases: Sequence[Case], done: Callable[[Examined], None], workers: int = 1) -> tuple[Examined, ...]:
-    """Examine cases one after the other; each is handed over as soon as it and all before it are done.
-
-    Args:
-        workers: processes; a case is examined in one of them.
-    """
+def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:
+    """Examine cases one after the other; each is handed over as soon as it is done."""
     results = []
-    for result in map(examine, cases) if workers == 1 else _examined_elsewhere(cases, workers):
-        done(result)
-        results.append(result)
+    for case in cases:
+        results.append(examine(case))
+        done(results[-1])
     return tuple(results)
-
-
-def _examined_elsewhere(cases: Sequence[Case], workers: int) -> Iterator[Examined]:
-    """Cases of the catalogue, examined by other processes, which find them by their names.
-
-    Raises:
-        MissingPackage: a formulation of the cases is not installed.
-    """
-    # Found out here, where it can be said in a line.
-    for name in dict.fromkeys(name for case in cases for name in case.expected):
-        formulation(name)
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        waiting = [pool.submit(_examine_named, case.name) for case in cases]
-        try:
-            for case, future in zip(cases, waiting, strict=True):
-                found = future.result()
-                yield Examined(replace(case, expected=found.expected), found.trials, found.seconds)
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-@dataclass(frozen=True)
-class _Found:
-    """What a process sends back: all of `Examined` but functions."""
-
-    expected: Mapping[str, Expected]
-    trials: tuple[Trial, ...]
-    seconds: float
-
-
-def _examine_named(name: str) -> _Found:
-    # Imported here: the catalogue's cases are made of what this module runs.
-    from validate.hard.catalogue import chosen
-
-    result = examine(*chosen([name]))
-    trials = tuple(replace(trial, judge=None) for trial in result.trials)
-    return _Found(result.case.expected, trials, result.seconds)
 
 
 def counts(results: Iterable[Examined]) -> dict[str, Counter[str]]:

@@ -21,7 +21,7 @@ from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import Answer, Case, Expected, Trial
+from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial
 from validate.hard.classify import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
@@ -45,8 +45,6 @@ class Tried:
 
 Measure = Callable[[Tried], Facts]
 
-# Where its methods start is found once.
-OURS = "pointcoord"
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
 
@@ -62,6 +60,7 @@ def scene_case(
     expected: Mapping[str, Expected],
     behaviour: str,
     measure: Measure | None = None,
+    also_answered: tuple[float, ...] = (),
 ) -> Case:
     """A case whose trial is one scene.
 
@@ -69,12 +68,25 @@ def scene_case(
         scene: the content of the scene at a value of the parameter; see `scene_content`.
         expected: by name of a formulation; these are tried.
         measure: what else is measured on the solutions.
+        also_answered: see `Case`.
     """
 
     def examine(value: float) -> Trial:
         return try_scene(value, scene(value), tuple(expected), measure)
 
-    return Case(name, group, why, parameter, tuple(values), expected, behaviour, examine, content=scene)
+    return Case(
+        name,
+        group,
+        why,
+        parameter,
+        tuple(values),
+        expected,
+        behaviour,
+        examine,
+        content=scene,
+        without_pose=all(one == REFUSED for one in expected.values()),
+        also_answered=also_answered,
+    )
 
 
 def try_scene(

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, fields
+from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
-from validate.comparison.compare import Comparison
+from validate.html.data import OF_COST, WORDS, data_files
 from validate.html.page import GENERATOR, page
 from validate.html.run import Run
-from validate.output.document import json_text
 from validate.output.files import OutputError, require_writable, unwritable, write_whole
 
 PAGE = "index.html"
-FILES = {"json": "results.json", "csv": "comparisons.csv"}
 # The mark of our pages is near their beginning.
 BEGINNING = 4096
 
@@ -49,7 +44,7 @@ def require_folder(folder: str) -> None:
     except ValueError as error:
         # A path with a zero byte in it.
         raise NotOurs(folder, f"names no folder ({error})") from None
-    for name in (*FILES.values(), PAGE):
+    for name in (*WORDS, PAGE):
         require_writable(os.path.join(folder, name))
 
 
@@ -62,7 +57,9 @@ def write_report(folder: str, run: Run) -> tuple[str, ...]:
         MissingPackage: a package of the extra is not there.
         OutputError: one cannot be written.
     """
-    contents = {FILES["json"]: json_text(run.document), FILES["csv"]: csv_text(run), PAGE: page(run, FILES)}
+    data = data_files(run)
+    links = OF_COST if run.head.kind == "cost" else {name: WORDS[name] for name in data}
+    contents = {**data, PAGE: page(run, links)}
     for name, text in contents.items():
         write_whole(os.path.join(folder, name), _writer(text))
     return tuple(os.path.join(folder, name) for name in contents)
@@ -74,19 +71,3 @@ def _writer(text: str) -> Callable[[BinaryIO], None]:
         stream.write(text.encode("utf-8", "backslashreplace"))
 
     return write
-
-
-def csv_text(run: Run) -> str:
-    """Every comparison of a run, a line each; numbers give their bits back, a missing one is empty."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, [field.name for field in fields(Comparison)])
-    writer.writeheader()
-    writer.writerows(_lines(run))
-    return stream.getvalue()
-
-
-def _lines(run: Run) -> Iterator[dict[str, object]]:
-    for one in run.told:
-        for outcome in one.examined.outcomes:
-            for row in outcome.rows:
-                yield {name: "" if value != value else value for name, value in asdict(row).items()}

@@ -48,7 +48,7 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     """The page of a run.
 
     Args:
-        files: names of the files beside it, by their kind.
+        files: beside it, by name, and what each holds.
     Raises:
         MissingPackage: a package of the extra is not there.
     """

@@ -1,12 +1,13 @@
 """Plots of a page: what plotly draws, as plain data.
 
-Texts in it come from our own registries only: plotly reads some HTML in its labels, and a scene's own words
-stand around a plot and not in it.
+Texts in it come from our own registries, or through `plain`: plotly reads some HTML in its labels, and a
+scene's own words stand around a plot and not in it.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -20,8 +21,6 @@ Array = NDArray[np.float64]
 
 # Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
 OURS, OTHER = "#2f86c9", "#d9641c"
-# Points of a curve, at most: a page stays small however many instants a scene has.
-MOST_POINTS = 600
 
 
 @dataclass(frozen=True)
@@ -69,11 +68,16 @@ def numbers(array: Array, digits: int) -> list[float | None]:
     return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in array.tolist()]
 
 
-def fewer(weight: Array) -> Sequence[int]:
-    """Places of at most MOST_POINTS numbers, (N,): of each stretch that which weighs most, and the ends."""
+def fewer(weight: Array, most: int) -> Sequence[int]:
+    """Places of at most so many numbers of (N,): of each stretch that which weighs most, and the ends."""
     count = len(weight)
-    if count <= MOST_POINTS:
+    if count <= most:
         return range(count)
-    stretches = np.array_split(np.arange(count), MOST_POINTS - 2)
+    stretches = np.array_split(np.arange(count), most - 2)
     peaks = {int(stretch[np.argmax(weight[stretch])]) for stretch in stretches}
     return sorted(peaks | {0, count - 1})
+
+
+def plain(text: str) -> str:
+    """Words from a file as a label: plotly reads some HTML, and these are no marks of it."""
+    return re.sub(r"[^\w .,:;()/^+=-]", "?", text)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-from validate.html.run import Run
+from validate.html.run import FIRST, FURTHER, Run
 
 # The script that the package plotly brings.
 PLOTLY = "plotly"
@@ -76,3 +76,16 @@ class Section:
     title: str
     place: int
     blocks: Callable[[Run], Sequence[Block]]
+
+
+def which(run: Run) -> list[Block]:
+    """Which scenes are drawn, where these are not all."""
+    drawn, all_of_them = len(run.drawn), len(run.told)
+    if drawn == all_of_them:
+        return []
+    return [
+        Paragraph(
+            f"Drawn are {drawn} of {all_of_them} scenes: the first {FIRST}, and the first {FURTHER} further "
+            "ones that were compared and do not agree. The tables and the data beside this page have all."
+        )
+    ]

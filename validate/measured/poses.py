@@ -10,6 +10,7 @@ as a rounding of the travel.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from typing import Protocol
 
 import numpy as np
@@ -54,12 +55,14 @@ class Found:
         numbers, bounds: by quantity and name, (N, 3) or (N,); NaN where there is no pose.
         reached: at which rows there is a pose, (N,).
         reasons: by row, why there is none.
+        inputs: at each row, (N,), as far as they are known; none over time.
     """
 
     numbers: Numbers
     bounds: Numbers
     reached: Bools
     reasons: Mapping[int, str]
+    inputs: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Poses(Protocol):
@@ -156,32 +159,28 @@ def _spread(array: Array, reached: Bools) -> Array:
     return found
 
 
-@dataclass(frozen=True, repr=False)
-class OverMap:
-    """By the kinematic map, over inputs and a travel.
+@dataclass(frozen=True)
+class Plan:
+    """Which inputs the rows of a file have, over inputs and a travel.
 
     Attributes:
-        map: of the scene's suspension.
         kinds: what each independent column is: travel or input, and its name.
-        solved: the input that is solved for; empty if there is no travel.
+        solved: the input that a travel is reached by; empty if there is no travel.
         held: every other input that no column gives. level: the travel that every row has, or None.
         drawn: the inputs of the closed drawing.
-        radius: the rolling radius, mm.
         taken: what was taken without being told.
     """
 
-    map: KinematicMap
     kinds: tuple[tuple[str, str], ...]
     solved: str
     held: Mapping[str, float]
     level: tuple[str, float] | None
     drawn: Mapping[str, float]
-    radius: float
     taken: tuple[str, ...]
 
     @classmethod
-    def of(cls, scene: Scene, measured: Measured) -> OverMap:
-        """Makes a map that reaches from the drawing to all that a file asks for.
+    def of(cls, scene: Scene, measured: Measured) -> Plan:
+        """What the file gives and holds, and of the rest the drawing.
 
         Raises:
             ResultsError: a travel without what it needs, or of which no input can be solved for.
@@ -216,10 +215,45 @@ class OverMap:
                 held[name] = drawn[name]
                 unit = topology.input_units[name]
                 taken.append(f"{name} is held as drawn, {drawn[name]:.6g} {unit}: the file does not give it")
+        return cls(kinds, solved, held, level, drawn, tuple(taken))
+
+
+@dataclass(frozen=True, repr=False)
+class OverMap:
+    """By the kinematic map, over inputs and a travel.
+
+    Attributes:
+        map: of the scene's suspension.
+        kinds: what each independent column is: travel or input, and its name.
+        solved: the input that is solved for; empty if there is no travel.
+        held: every other input that no column gives. level: the travel that every row has, or None.
+        drawn: the inputs of the closed drawing.
+        radius: the rolling radius, mm.
+        taken: what was taken without being told.
+    """
+
+    map: KinematicMap
+    kinds: tuple[tuple[str, str], ...]
+    solved: str
+    held: Mapping[str, float]
+    level: tuple[str, float] | None
+    drawn: Mapping[str, float]
+    radius: float
+    taken: tuple[str, ...]
+
+    @classmethod
+    def of(cls, scene: Scene, measured: Measured) -> OverMap:
+        """Makes a map that reaches from the drawing to all that a file asks for.
+
+        Raises:
+            ResultsError: a travel without what it needs, or of which no input can be solved for.
+        """
+        plan, mechanism = Plan.of(scene, measured), scene_mechanism(scene)
+        topology, held, drawn = mechanism.topology, plan.held, plan.drawn
         ranges: dict[str, tuple[float, float]] = {}
         for name in topology.required_inputs:
             wide = _widest(mechanism, name)
-            if name == solved:
+            if name == plan.solved:
                 ranges[name] = _sensible(mechanism, name, (drawn[name] - wide, drawn[name] + wide))
                 continue
             if name in held:
@@ -238,7 +272,7 @@ class OverMap:
             wide = 1e-3 * _widest(mechanism, name)
             ranges[name] = (ranges[name][0] - wide, ranges[name][0] + wide)
         map = kinematic_map(scene, ranges)
-        return cls(map, kinds, solved, held, level, drawn, measured.rolling_radius, tuple(taken))
+        return cls(map, plan.kinds, plan.solved, held, plan.level, drawn, measured.rolling_radius, plan.taken)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -303,7 +337,7 @@ class OverMap:
             quantity: {name: _spread(np.asarray(array), covered) for name, array in part.items()}
             for quantity, part in poses.bounds.items()
         }
-        return Found(numbers, bounds, covered, reasons)
+        return Found(numbers, bounds, covered, reasons, inputs)
 
     def _why(self, inputs: Mapping[str, float]) -> str:
         try:

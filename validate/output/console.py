@@ -130,17 +130,17 @@ class Console:
             self._working.resume()
 
     @contextmanager
-    def working(self, message: str, total: int | None = None) -> Iterator[Callable[[str, int], None]]:
+    def working(self, message: str, total: int | None = None) -> Iterator[Callable[..., None]]:
         """A terminal's standard error says how far the block is, once it takes over two seconds.
 
         It does so where `rich` is installed; nothing is said elsewhere, or if the run is quiet.
 
         Yields:
-            What tells it what is being done and how much of the total is.
+            What tells it what is being done and how much of the total is; and of another total, if it is one.
         """
         rich = None if self.quiet else rich_for(sys.stderr)
         if rich is None or sys.stderr is None:
-            yield lambda message, done: None
+            yield lambda message, done, total=None: None
             return
         working = self._working = Working(message, total, sys.stderr, rich)
         try:

@@ -44,6 +44,18 @@ def _version(distribution: str) -> str | None:
         return None
 
 
+def code_digest(places: Sequence[str]) -> str:
+    """A digest of the code in files and folders of this distribution, such as `validate/cost`."""
+    import hashlib
+
+    root, digest = Path(__file__).parents[2], hashlib.sha256()
+    for place in places:
+        top = root / place
+        for file in sorted([top] if top.is_file() else top.rglob("*.py")):
+            digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:12]
+
+
 def schema_text() -> str:
     """The JSON Schema of every document that the program writes."""
     return Path(__file__).with_name("schema.json").read_text(encoding="utf-8")
@@ -74,19 +86,20 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, bounds, cost or sweep.
+        kind: which command's results follow: validate, hard, hard-list, random, bounds, cost, sweep or fit.
         command: the command line, word by word.
-        started: UTC.
+        started: UTC; None in a run whose results say nothing of times, so that the same run gives the same
+            bytes.
     """
 
     kind: str
     command: tuple[str, ...]
-    started: str
+    started: str | None = None
 
     @classmethod
-    def of(cls, kind: str, command: Sequence[str]) -> Head:
+    def of(cls, kind: str, command: Sequence[str], timed: bool = False) -> Head:
         """The head of a run that begins now."""
-        return cls(kind, tuple(command), now())
+        return cls(kind, tuple(command), now() if timed else None)
 
     def document(
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
@@ -101,7 +114,7 @@ class Head:
             "command": list(self.command),
             "command_line": shlex.join(self.command),
             "started": self.started,
-            "written": now(),
+            "written": None if self.started is None else now(),
             "machine": machine(),
             "complete": complete,
             "exit_status": None if status is None else status.value,

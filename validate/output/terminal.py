@@ -160,10 +160,10 @@ class Working:
             self._ready = True
             self.resume()
 
-    def told(self, message: str, done: int) -> None:
-        """What is done now, and how much has been."""
+    def told(self, message: str, done: int, total: int | None = None) -> None:
+        """What is done now, how much has been, and of how much where that is another total than before."""
         with self._lock:
-            self._progress.update(self._task, description=shown(message), completed=done)
+            self._progress.update(self._task, description=shown(message), completed=done, total=total)
 
     def pause(self) -> None:
         """Take the line away, so that something else can be said."""

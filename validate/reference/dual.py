@@ -46,6 +46,11 @@ class Dual:
         sine, cosine = self.value.sin_cos()
         return Dual(sine, cosine * self.slope), Dual(cosine, -sine * self.slope)
 
+    def sqrt(self) -> Dual:
+        """The root of a positive number."""
+        root = self.value.sqrt()
+        return Dual(root, self.slope / (2 * root))
+
     __radd__ = __add__
     __rmul__ = __mul__
 

@@ -40,10 +40,9 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,25 +51,31 @@ from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
 from validate.reference import Design
-from validate.reference.design import HEAVE, values_only
+from validate.reference.design import values_only
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.effect import Axes
 from validate.reference.effects.registry import EFFECTS
+from validate.reference.in_doubles import (
+    changes_of,
+    inverse_of,
+    jacobian_of,
+    known_in_doubles,
+    local_places,
+    newton_step,
+    order_of,
+    unknown_jets_of,
+    values_of,
+    with_slopes,
+)
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_turns
 from validate.reference.linkage import Known
-from validate.reference.vectors import Scalar, Vector, plus
-
-try:
-    from flint import arb
-except ImportError as error:
-    raise MissingPackage("validate.solvers.held", error) from None
+from validate.reference.vectors import Vector
 
 Array = NDArray[np.float64]
 
@@ -117,20 +122,6 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
 
 
-class Constant(float):
-    """A number that the equations take the root of, alone or after a quotient."""
-
-    def sqrt(self) -> float:
-        """Its root."""
-        return sqrt(self)
-
-    def __truediv__(self, other: float) -> Self:
-        return type(self)(float(self) / other)
-
-    def __rtruediv__(self, other: float) -> Self:
-        return type(self)(other / float(self))
-
-
 class _Held:
     """A car and an accuracy.
 
@@ -156,18 +147,20 @@ class _Held:
 
     def at(self, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
         """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
-        known = self._known(laws, len(next(iter(places.values()))))
+        known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
         values, inverse, matrix, blind = self._pose(places, values_only(known))
-        jets = _jets(values, inverse, known)
+        jets = unknown_jets_of(values, inverse, known)
         linkage = self.design.linkage
         scale = np.ones(linkage.size)
         scale[linkage.coordinates :] = 1.0 / self.height
         missed = self.off * (np.abs(matrix) @ scale)
-        slopes = _slopes(jets, inverse, missed, known)
-        change = _change(_with_slopes(jets, slopes), inverse, values_only(known))
+        # Missing a row by delta moves the unknowns by a column of the inverse.
+        first = np.einsum("nij,nj->ijn", inverse, missed)
+        slopes = changes_of(jets, inverse, known, linkage.size, first)
+        change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
-        claims = self._claims(_with_slopes(jets, slopes), known, growth)
+        claims = self._claims(with_slopes(jets, slopes), known, growth)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
             q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
@@ -175,51 +168,18 @@ class _Held:
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
 
-    def _known(self, laws: Mapping[str, Array], count: int) -> Known:
-        """What the equations take as given, as jets of arrays (N,) of doubles."""
-        design, linkage = self.design, self.design.linkage
-        still = np.zeros((count, 3))
-        driven = {}
-        for name, drive in linkage.inputs.items():
-            found = [
-                drive.driven(Jet(*(arb(x) for x in law)), design.squared_length, design.unit)
-                for law in laws.get(name, still).tolist()
-            ]
-            parts = np.array([[float(x) for x in (j.value, j.rate, j.acceleration)] for j in found])
-            driven[name] = Jet(*parts.T)
-        up, right = _floats(design.up), _floats(design.right)
-        rise = Jet(*(laws.get(HEAVE, still) / self.unit).T)
-        lift = (rise * up[0], rise * up[1], rise * up[2])
-        return Known(
-            linkage=linkage,
-            chassis={n: plus(_jet_vector(design.table[n], count), lift) for n in linkage.chassis},
-            up=up,
-            right=right,
-            squared_length={link: Constant(float(x)) for link, x in design.squared_length.items()},
-            driven=driven,
-            knuckle={name: _floats(shape) for name, shape in design.knuckle.items()},
-        )
-
     def _pose(
         self, places: Mapping[str, Array], known: Known
     ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
         """The unknowns, the inverse of their Jacobian, it, and where the pose is not the equations' own."""
-        linkage = self.design.linkage
-        local = {}
-        for name in self.design.names:
-            x, y, z = ((places[name] - self.origin) / self.unit).T
-            local[name] = (x, y, z)
-        values = np.array(linkage.unknown_of(local, known), dtype=float)
-        matrix = _matrix(list(values), known)
-        inverse = _inverse(matrix)
-        rows = np.array(
-            [np.broadcast_to(row, values.shape[1:]) for row in linkage.residual(list(values), known)]
-        )
-        step = np.einsum("nij,jn->in", inverse, rows)
+        local = local_places(self.design, places)
+        values = np.array(self.design.linkage.unknown_of(local, known), dtype=float)
+        matrix = jacobian_of(list(values), known)
+        step = newton_step(values, inverse_of(matrix), known)
         blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
         values = np.where(blind, values, values - step)
-        matrix = _matrix(list(values), known)
-        return list(values), _inverse(matrix), matrix, blind
+        matrix = jacobian_of(list(values), known)
+        return list(values), inverse_of(matrix), matrix, blind
 
     def _claims(
         self, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
@@ -227,9 +187,9 @@ class _Held:
         points = known.linkage.points_of(solved, known)
         turns = body_turns(solved, points, known)
         count = len(growth[0])
-        states = {name: [_values(_order(p, d), count) for d in range(3)] for name, p in points.items()}
+        states = {name: [values_of(order_of(p, d), count) for d in range(3)] for name, p in points.items()}
         turning, bending = (
-            np.max([_lengths(_values(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
+            np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
         )
         fastest, hardest = (np.max([_lengths(state[d]) for state in states.values()], axis=0) for d in (1, 2))
         own = (
@@ -246,7 +206,7 @@ class _Held:
                 claims[quantity] = {
                     n: self.unit
                     * (
-                        _off(_order(points[n], d), count) * growth[d][:, None]
+                        _off(order_of(points[n], d), count) * growth[d][:, None]
                         + own[d][:, None]
                         + UNIT_ROUNDOFF * np.abs(states[n][d])
                         + (rounded if d == 0 else 0.0)
@@ -257,7 +217,7 @@ class _Held:
                 claims[quantity] = {
                     n: _off(turns[n][d - 1], count) * growth[d][:, None]
                     + 2.0 * own[d][:, None] / self.heights[n]
-                    + UNIT_ROUNDOFF * np.abs(_values(turns[n][d - 1], count))
+                    + UNIT_ROUNDOFF * np.abs(values_of(turns[n][d - 1], count))
                     for n in names
                 }
             else:
@@ -266,7 +226,7 @@ class _Held:
 
     def _angles(self, points: Mapping[str, Vector], known: Known, growth: Array) -> dict[str, Array]:
         """Of every angle: what the pose makes of it, and the ends of its line, which are off themselves."""
-        places = {name: _order(p, 0) for name, p in points.items()}
+        places = {name: order_of(p, 0) for name, p in points.items()}
         axes = Axes.of(places, known, self.design.outboard)
         wheel, steering = (
             _with_own(line, 2.0 * self.off, first, growth)
@@ -287,68 +247,9 @@ def _height(a: Array, b: Array, c: Array) -> float:
     return area / max(float(np.linalg.norm(side)) for side in (b - a, c - a, c - b))
 
 
-def _floats(vector: Vector) -> Vector:
-    x, y, z = (float(x) for x in vector)
-    return x, y, z
-
-
-def _jet_vector(vector: Vector, count: int) -> Vector:
-    x, y, z = (Jet(np.full(count, float(x)), np.zeros(count), np.zeros(count)) for x in vector)
-    return x, y, z
-
-
-def _matrix(values: Sequence[Scalar], known: Known, part: Callable[[Scalar], Scalar] = value_of) -> Array:
-    """The Jacobian or its slope, (..., N, size, size)."""
-    entries = [(i, j, part(entry)) for i, j, entry in known.linkage.jacobian(values, known)]
-    shape = np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries))
-    matrix = np.zeros((*shape, known.linkage.size, known.linkage.size))
-    for i, j, entry in entries:
-        matrix[..., i, j] = entry
-    return matrix
-
-
-def _inverse(matrix: Array) -> Array:
-    """Of matrices (N, size, size); of one without an inverse what comes nearest to one."""
-    try:
-        return np.asarray(np.linalg.inv(matrix), dtype=float)
-    except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.pinv(matrix), dtype=float)
-
-
-def _jets(values: Sequence[Array], inverse: Array, known: Known) -> list[Jet]:
-    """The unknowns with their rates, as in `reference.kinematics`."""
-    zero = np.zeros_like(values[0])
-
-    def solved(rows: Sequence[Scalar]) -> Array:
-        stacked = np.array([np.broadcast_to(row, zero.shape) for row in rows])
-        return np.asarray(-np.einsum("nij,jn->in", inverse, stacked))
-
-    still = [Jet(value, zero, zero) for value in values]
-    velocity = solved([row.rate for row in known.linkage.residual(still, known)])
-    moving = [Jet(jet.value, rate, zero) for jet, rate in zip(still, velocity, strict=True)]
-    bend = solved([row.acceleration for row in known.linkage.residual(moving, known)])
-    return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
-
-
-def _slopes(jets: Sequence[Jet], inverse: Array, missed: Array, known: Known) -> Array:
-    """By order, unknown and row that is missed, (3, size, size, N): what missing each row makes of y."""
-    size, count = len(jets), len(inverse)
-    found = np.zeros((3, size, size, count))
-    found[0] = np.einsum("nij,nj->ijn", inverse, missed)
-    for d in (1, 2):
-        rows = known.linkage.residual(_with_slopes(jets, found), known)
-        moved = np.array([np.broadcast_to(slope_of(_part(row, d)), (size, count)) for row in rows])
-        found[d] = -np.einsum("nij,jkn->ikn", inverse, moved)
-    return found
-
-
-def _with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
-    return [Jet(*(Dual(_part(jet, d), slopes[d, i]) for d in range(3))) for i, jet in enumerate(jets)]
-
-
 def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     """r of the top of this file, (N,)."""
-    slopes = _matrix([jet.value for jet in jets], known, slope_of)
+    slopes = jacobian_of([jet.value for jet in jets], known, slope_of)
     return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
 
 
@@ -365,20 +266,6 @@ def _with_own(line: Vector, off: float, first: int, growth: Array) -> Vector:
         components.append(Dual(value, np.concatenate([slopes, more])))
     x, y, z = components
     return x, y, z
-
-
-def _part(jet: Jet, order: int) -> Scalar:
-    return (jet.value, jet.rate, jet.acceleration)[order]
-
-
-def _order(point: Vector, order: int) -> Vector:
-    x, y, z = (_part(component, order) for component in point)
-    return x, y, z
-
-
-def _values(vector: Vector, count: int) -> Array:
-    """(N, 3)."""
-    return np.stack([np.broadcast_to(value_of(x), count) for x in vector], axis=-1)
 
 
 def _off(vector: Vector, count: int) -> Array:

@@ -132,6 +132,11 @@ def said(error: BaseException) -> str:
     return f"{type(error).__name__}: {words}" if words else type(error).__name__
 
 
+def no_mapping(answer: object) -> str:
+    """What is wrong with an answer that is none."""
+    return f"it answers with a {type(answer).__name__}; needed: a mapping of what it has"
+
+
 @dataclass(frozen=True)
 class PlainSolver:
     """Anybody's solver, held to the accuracy that it states.
@@ -156,13 +161,12 @@ class PlainSolver:
         given = given_to_solver(scene)
         try:
             answer = self.function(given)
+        except SolverFailed as error:
+            raise FormulationError(self.name, error) from error
         except (Exception, SystemExit) as error:
             raise FormulationError(self.name, SolverFailed(said(error), raised_at(error))) from error
         if not isinstance(answer, Mapping):
-            problem = SolverFailed(
-                f"it answers with a {type(answer).__name__}; needed: a mapping of what it has"
-            )
-            raise FormulationError(self.name, problem)
+            raise FormulationError(self.name, SolverFailed(no_mapping(answer)))
         numbers, notes = _numbers(self.name, answer, asked_numbers(scene))
         times = self._times(answer, scene)
         accuracy, untold = self._accuracy(scene)
@@ -174,11 +178,11 @@ class PlainSolver:
         from validate.solvers.held import accuracy_for
 
         try:
-            return accuracy_for(scene, self.accuracy), ()
+            return replace(accuracy_for(scene, self.accuracy), stated=self.accuracy), ()
         except (FormulationError, SceneError, NoReferenceError) as error:
             every = np.ones(len(scene.instants), dtype=bool)
             note = f"no tolerance can be derived for {self.name}, so that nothing is tested: {error}"
-            return Accuracy(np.ones(len(every)), blind=every), (note,)
+            return Accuracy(np.ones(len(every)), blind=every, stated=self.accuracy), (note,)
 
     def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
         if INSTANTS not in answer:

@@ -1,1 +1,1 @@
-"""Long runs: random scenes, proven bounds, claims."""
+"""Long runs of one process: claims, mutants."""

@@ -1,19 +1,29 @@
-"""The assertion of a test: a solver's numbers lie within what its stated accuracy makes of each of them."""
+"""What a test asserts of a solver: its numbers lie within what its stated accuracy makes of each of them, and
+it gives none where there is no pose.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from pointcoord import Scene
+import numpy as np
+
+from pointcoord import PointcoordError, Scene
+from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.comparison.compare import Comparison, Outcome, compare, compare_solutions
 from validate.diagnosis import explain_outcome
-from validate.formulations.protocol import Formulation, Solution
+from validate.extras import MissingPackage
+from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.output.report import about
+from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
-from validate.solvers.plain import PlainSolver
+from validate.solvers.plain import NoSolver, PlainSolver, as_function, given_to_solver
+from validate.testing.states import WrongStates, numbers_of, require_comparable, require_given
 
 WHO = "the states"
+# What is said of a test's own arguments; anything else that is raised is a defect of this package.
+TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, NoSolver, MissingPackage)
 MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there are is said
 
 
@@ -22,17 +32,22 @@ class NotTested(AssertionError):
 
     Attributes:
         scene: its name. accuracy: as it was stated, mm. numbers: what is not tested, in words.
+        agree: how many others do.
     """
 
     def __init__(self, scene: str, accuracy: float, numbers: Sequence[str], agree: int) -> None:
         self.scene = scene
         self.accuracy = accuracy
         self.numbers = tuple(numbers)
+        self.agree = agree
         super().__init__(
             f"not tested in {scene!r}: {', '.join(numbers)}; an accuracy of {accuracy:g} mm says nothing of "
             f"them, for the scene is too near a singular pose for it ({agree} others agree); state a finer "
             "accuracy, or leave this scene out"
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.scene, self.accuracy, self.numbers, self.agree)
 
 
 def assert_agrees(
@@ -40,6 +55,7 @@ def assert_agrees(
     scene: Scene | str,
     accuracy: float = ACCURACY,
     against: str | Formulation | Solution = AGAINST,
+    needed: Collection[str] = (),
 ) -> Outcome:
     """Hold numbers to a formulation, within what the stated accuracy makes of each of them.
 
@@ -49,11 +65,14 @@ def assert_agrees(
         scene: that was solved, or its name or path.
         accuracy: how exactly the solver places every point, mm, as it says itself.
         against: the name of a formulation, or one, or a solution of this scene, such as the reference's.
+        needed: what must be given, all that the scene asks for of it: quantities, such as "velocity", or
+            numbers of the car, such as "camber". Anything else may be missing.
     Returns:
         All comparisons; its notes say what was given that the scene does not ask for.
     Raises:
         AssertionError: a number disagrees, or nothing that is asked for is given. The message says which
             quantity of what, the difference, the tolerance and the instant, and what would explain it.
+        WrongStates: a number has another shape than its kind, or a misspelt name; what is needed is missing.
         NotTested: this accuracy says nothing of some of them, and nothing disagrees.
         NoSolver: `accuracy` is no length above 0.
         FormulationError: the states are no mapping, or the other formulation refuses the scene.
@@ -66,7 +85,10 @@ def assert_agrees(
     __tracebackhide__ = True
     exact = required_accuracy(accuracy)
     taken = Scene.load(scene) if isinstance(scene, str) else scene
-    name = taken.title or (scene if isinstance(scene, str) else "the scene")
+    name = scene if isinstance(scene, str) else taken.title or "the scene"
+    if isinstance(states, Mapping):
+        require_comparable(states, taken)
+        require_given(states, taken, needed)
     one = PlainSolver(WHO, lambda _: states, exact)
     if isinstance(against, Solution):
         outcome = compare_solutions(taken, one.solve(taken), against, name)
@@ -81,6 +103,60 @@ def assert_agrees(
     if not agree:
         raise AssertionError(_nothing(outcome))
     return outcome
+
+
+def assert_refuses(
+    solver: object, scene: Scene | str, raises: type[Exception] | tuple[type[Exception], ...] = Exception
+) -> None:
+    """See that a solver does not answer where a scene has no pose.
+
+    It may raise an error, leave out these instants, or have a NaN among its numbers at each of them. That
+    there is no pose is proven by the reference.
+
+    Args:
+        solver: a function of one mapping, or an object or class with a method `solve` (see `solvers.plain`).
+        scene: with instants that have no pose, or its name or path.
+        raises: what it raises to refuse; another error is none, and comes through.
+    Raises:
+        AssertionError: all that it gives at such an instant are numbers; or it gives nothing.
+        NoSolver: `solver` is none. SceneError: there is no such scene, or every instant has a pose.
+    """
+    __tracebackhide__ = True
+    function = as_function(solver, "the solver")
+    taken = Scene.load(scene) if isinstance(scene, str) else scene
+    name = scene if isinstance(scene, str) else taken.title or "the scene"
+    without = _without_pose(taken)
+    if not without:
+        raise AssertionError(f"every instant of {name!r} has a pose; hold the numbers there by assert_agrees")
+    plain = given_to_solver(taken)
+    try:
+        answer = function(plain)
+    except raises:
+        return
+    if not isinstance(answer, Mapping):
+        raise WrongStates("all of it", f"is a {type(answer).__name__}", "a mapping of what the solver has")
+    require_comparable(answer, taken)
+    times, arrays = numbers_of(answer, taken)
+    if not arrays:
+        raise WrongStates("all of it", f"holds nothing that {name!r} can ask for", "a mapping, or an error")
+    finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=-1) for a in arrays], axis=0)
+    answered = [time for time in times[finite].tolist() if time in without]
+    if answered:
+        raise AssertionError(
+            f"the solver answers {name!r} at t = {answered[0]:.9g} s, where there is no pose: "
+            f"{without[answered[0]]}; let it raise an error there, or give NaN"
+        )
+
+
+def _without_pose(scene: Scene) -> dict[float, str]:
+    """The instants of a scene that have none, each with the reason."""
+    found = {}
+    for time in scene.instants.tolist():
+        try:
+            reference_instant(scene, inputs_at(scene, time))
+        except InfeasibleError as error:
+            found[time] = str(error)
+    return found
 
 
 def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
@@ -101,6 +177,8 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
 
 
 def _row(row: Comparison) -> str:
+    if not np.isfinite(row.difference):
+        return f"  {about(row.quantity, row.name)}: not a number at t = {row.instant:.9g} s"
     return (
         f"  {about(row.quantity, row.name)}: difference {row.difference:.3g} {row.unit}, tolerance "
         f"{row.tolerance:.3g} {row.unit} at t = {row.instant:.9g} s; "

@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from pointcoord import Scene, built_in_scenes
+from pointcoord import Scene, SceneError, built_in_scenes
+from pointcoord.scene.messages import meant
 from pointcoord.suspensions import SUSPENSIONS
 from validate.hard.case import Case
 from validate.hard.catalogue import CASES
-from validate.solvers.check import AGAINST
 
 NEAR = 1e-3
 
+# Hard cases that no solver can be asked, by the reason.
+_NO_SCENE = "it is no scene: the number cannot be part of one, and pointcoord refuses to read it"
+_NO_LENGTH = "it is no scene: a link or an axis without length is refused when it is read"
+_OTHER_LINKS = "it is a mechanism with other links than a suspension has, which no scene can say"
+_OF_BOTH = (
+    (_NO_SCENE, ("not-a-number", "infinity", "minus-infinity", "whole-number-too-large", "heave-not-finite")),
+    (_NO_LENGTH, ("link-without-length",)),
+    (_OTHER_LINKS, ("link-missing", "link-twice", "link-twice-for-another", "link-too-long")),
+    (_OTHER_LINKS, ("input-twice", "contradictory-links", "arm-held-by-a-third-link")),
+)
+_BESIDE = ("constraint-missing-beside", "link-twice-beside", "link-twice-for-another-beside")
+NOT_ASKED: Mapping[str, str] = {
+    **{f"{n}{suffix}": reason for reason, names in _OF_BOTH for n in names for suffix in ("", "-wishbone")},
+    **dict.fromkeys(_BESIDE, _OTHER_LINKS),
+}
+
 
 def scenes_to_try(
-    names: Sequence[str | Scene] = (), hard: bool = False, suspension: str | None = None, near: float = NEAR
+    names: Sequence[str | Scene] = (),
+    hard: bool = False,
+    suspension: str | None = None,
+    closure: str | None = None,
+    near: float | None = NEAR,
 ) -> dict[str, Scene]:
     """Scenes by the names that tests over them get.
 
@@ -23,40 +43,88 @@ def scenes_to_try(
         names: of built-in or hard scenes, paths, or scenes themselves; all built-in ones if not given.
         hard: whether the hard cases are added: every one that is one scene and has an answer.
         suspension: scenes of this type only, such as "double_wishbone".
+        closure: scenes whose drawing closes in this way only, such as "drawn".
         near: how near to its singular place each hard case is taken: at the value of its parameter that is
-            nearest to this, of those where an answer is expected.
+            nearest to this, of those where there is an answer. None: at each of them.
     Raises:
         SceneError: there is no such scene, or it is wrong.
-        ValueError: there is no such suspension, or `near` is no number above 0.
+        ValueError: there is no such suspension or closure, or `near` is no number above 0.
     """
-    if suspension is not None and suspension not in SUSPENSIONS:
-        raise ValueError(f"suspension={suspension!r}: there is none; there are: {', '.join(SUSPENSIONS)}")
-    if not (math.isfinite(near) and near > 0.0):
-        raise ValueError(f"near={near!r} is no number above 0; give one such as {NEAR:g}")
-    cases = {case.name: case for case in CASES if case.content is not None and _answered(case)}
+    cases = {case.name: case for case in CASES if case.answered}
     found: dict[str, Scene] = {}
     for name in names or built_in_scenes():
         if isinstance(name, Scene):
             found[name.title or f"scene {len(found)}"] = name
         elif name in cases:
-            found.update(_at(cases[name], near))
+            found.update(_taken(cases[name], cases[name].answered, near))
         else:
-            found[name] = Scene.load(name)
+            found[name] = _loaded(name)
     if hard:
         for case in cases.values():
-            found.update(_at(case, near))
-    return {name: scene for name, scene in found.items() if suspension in (None, scene.mechanism.type)}
+            found.update(_taken(case, case.answered, near))
+    return _of_kind(found, suspension, closure)
 
 
-def _answered(case: Case) -> tuple[float, ...]:
-    """The values at which there is an answer, and no refusal is allowed."""
-    expected = case.expected.get(AGAINST)
-    return tuple(
-        v for v in case.values if expected and expected.met(v, "right") and not expected.met(v, "refused")
-    )
+def impossible_scenes(
+    names: Sequence[str] = (),
+    suspension: str | None = None,
+    closure: str | None = None,
+    near: float | None = NEAR,
+) -> dict[str, Scene]:
+    """Hard cases in which some instants have no pose, by the names that tests over them get.
+
+    Args: as for `scenes_to_try`; all such cases without names.
+    Raises:
+        ValueError: there is no such case, suspension or closure, or `near` is no number above 0.
+    """
+    cases = {case.name: case for case in CASES if case.without_pose}
+    for name in names:
+        if name not in cases:
+            raise ValueError(f"{name!r} is no case without a pose; there are: {', '.join(cases)}")
+    found: dict[str, Scene] = {}
+    for name, case in cases.items():
+        if not names or name in names:
+            found.update(_taken(case, case.values, near))
+    return _of_kind(found, suspension, closure)
 
 
-def _at(case: Case, near: float) -> Iterator[tuple[str, Scene]]:
+def _loaded(name: str) -> Scene:
+    """A scene by its name or path; of a hard case without an answer, why."""
+    if name in NOT_ASKED:
+        raise ValueError(f"the hard case {name!r} cannot be asked of a solver: {NOT_ASKED[name]}")
+    cases = {case.name: case for case in CASES}
+    if name in cases:
+        raise ValueError(f"the hard case {name!r} has instants without a pose; mark with impossible_scenes")
+    try:
+        return Scene.load(name)
+    except SceneError as error:
+        if not isinstance(name, str):
+            raise
+        known = (*built_in_scenes(), *(case for case in cases if case not in NOT_ASKED))
+        raise ValueError(f"{error}{meant(name, known)}") from error
+
+
+def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[tuple[str, Scene]]:
+    """The scenes of a case, each named with its value."""
+    if near is not None:
+        if not (math.isfinite(near) and near > 0.0):
+            raise ValueError(f"near={near!r} is no number above 0; give one such as {NEAR:g}, or None")
+        values = [min(values, key=lambda v: abs(math.log(abs(v) / near)) if v else math.inf)]
     if case.content is not None:
-        value = min(_answered(case), key=lambda v: abs(math.log(abs(v) / near)) if v else math.inf)
-        yield f"{case.name} at {value:g}", Scene.from_mapping(case.content(value), case.name)
+        for value in values:
+            name = f"{case.name} at {value:g}"
+            yield name, Scene.from_mapping({**case.content(value), "title": name}, name)
+
+
+def _of_kind(scenes: Mapping[str, Scene], suspension: str | None, closure: str | None) -> dict[str, Scene]:
+    """Those of a type and a closure."""
+    if suspension is not None and suspension not in SUSPENSIONS:
+        raise ValueError(f"suspension={suspension!r}: there is none; there are: {', '.join(SUSPENSIONS)}")
+    closures = dict.fromkeys(name for one in SUSPENSIONS.values() for name in one.closures)
+    if closure is not None and closure not in closures:
+        raise ValueError(f"closure={closure!r}: there is none; there are: {', '.join(closures)}")
+    return {
+        name: scene
+        for name, scene in scenes.items()
+        if suspension in (None, scene.mechanism.type) and closure in (None, scene.mechanism.closure)
+    }

@@ -9,7 +9,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord import AssemblyError, Motion, MotionNotMapped, MotionTooLong, Scene, simulate, standing
+from pointcoord import (
+    AssemblyError,
+    Motion,
+    MotionNotMapped,
+    MotionTooLong,
+    PointcoordError,
+    Scene,
+    simulate,
+    simulation,
+    standing,
+)
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import MAP
 from pointcoord.patches import way_map
@@ -18,7 +28,7 @@ from pointcoord.patches.lookup import Lookup, Marked, touched
 from pointcoord.patches.path import Spans, covered_until, way_of
 from pointcoord.patches.way_map import map_way, starts_on
 from pointcoord.simulation import map_limits, prepare_task
-from pointcoord.solve.assembly import close_drawing
+from pointcoord.solve.assembly import close_drawing, follow, stepped
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Array = NDArray[np.float64]
@@ -203,6 +213,61 @@ def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     assert np.isfinite(error.partial.proof().bound).all()
     # Nothing but the map is in the way.
     assert simulate(scene).method == "series"
+
+
+@pytest.mark.parametrize(
+    ("arm", "rack", "kind"),
+    [
+        ([1.6], [0.0, 100.0], AssemblyError),
+        ([1.6, 0.3], [0.0, 20.0, 30.0], AssemblyError),
+        ([1.6], [0.0, 55.0], MotionNotMapped),
+        ([1.6, 0.2], [0.0, 30.0], MotionNotMapped),
+    ],
+)
+def test_what_stops_a_map_is_what_stops_a_path_that_is_proven_step_by_step(
+    make_scene: Make,
+    monkeypatch: pytest.MonkeyPatch,
+    arm: list[float],
+    rack: list[float],
+    kind: type[PointcoordError],
+) -> None:
+    # Of a map that gives up at once all of the way to the next instant is looked at.
+    monkeypatch.setattr(way_map, "HALVINGS", {1: 0, 2: 0})
+    scene = make_scene(arm, rack, stop=2.0, samples=2)
+    said = {}
+    for stepping in (True, False):
+        if not stepping:
+            monkeypatch.setattr(simulation, "stepped", lambda *_: None)
+        with pytest.raises(kind) as caught:
+            simulate(scene, "map")
+        said[stepping] = caught.value
+    plain, quick = said[False], said[True]
+    if isinstance(plain, AssemblyError):
+        assert (quick.limits, quick.reduce, quick.instant) == (plain.limits, plain.reduce, plain.instant)
+        # Both end at the fold, which is found to the square root of rounding in the unknowns, and so to some
+        # roundings of the inputs' own sizes.
+        for name, value in plain.reached.items():
+            assert abs(quick.reached[name] - value) <= 1e-12 * max(abs(value), abs(plain.wanted[name]))
+
+
+def test_a_step_is_not_taken_across_a_fold_nor_far_from_its_tangent(make_scene: Make) -> None:
+    scene = make_scene([1.6], [0.0])
+    task = prepare_task(scene, MAP)
+    mechanism, y = task.readout.mechanism, task.start.y
+
+    def at(rack: float) -> Array:
+        series = {"arm_angle": np.array([1.6]), "rack": np.array([rack])}
+        return mechanism.known_series(series)[0]
+
+    far = 200.0 * float(follow(mechanism.map, y, at(200.0)).done)
+    assert 100.0 < far < 200.0
+    near = stepped(mechanism.map, y, at(1e-2 * far))
+    assert near is not None
+    proven = follow(mechanism.map, y, at(1e-2 * far))
+    assert np.abs(near - proven.y).max() < 1e-14
+    assert follow(mechanism.map, y, at(0.999 * far)).done == 1.0
+    assert stepped(mechanism.map, y, at(0.999 * far)) is None
+    assert stepped(mechanism.map, y, at(1.001 * far)) is None
 
 
 LAWS: list[TimeFunction] = [

@@ -9,7 +9,10 @@ import plain_solvers
 import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints
 
+from pointcoord import Scene
 from validate.cli import main
+from validate.solvers.apart import Apart
+from validate.solvers.plain import SolverFailed, given_to_solver
 
 RIGHT = "def solve(given):\n    from plain_solvers import closed_form\n    return closed_form(given)\n"
 MODULES = {
@@ -25,6 +28,25 @@ MODULES = {
     "none": "def solve(given):\n    return None\n",
     "broken": "import nothing_of_that_name\n",
     "odd": "x = 1 / 0\n",
+    "exits": "import os\nos._exit(7)\n",
+}
+STRUT = "    if given['suspension'] == 'macpherson':\n        "
+CHASSIS = "    place = given['points']['rack_centre']\n"
+CHASSIS += "    return {'position': {'rack_centre': [place] * len(given['instants'])}}\n"
+# What becomes of a strut with it; a double wishbone it answers.
+ENDS = {
+    "leaves": ("os._exit(0)", "ended with exit status 0 and without an answer"),
+    "crashes": ("os.kill(os.getpid(), 11)", "was ended by SIGSEGV"),
+    "interrupts": ("raise KeyboardInterrupt", "KeyboardInterrupt"),
+    "cuts": ("os.closerange(3, 64)", "ended with exit status"),
+    "reads": ("input()", "EOFError"),
+    "writes": ("given['instants'][0] = 1.0", "ValueError: assignment destination is read-only"),
+    "counts": ("raise ValueError(os.getpid())", "ValueError"),
+}
+HANGS = {"hangs": "while True: pass", "waits": "os.system('sleep 60')"}
+MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, what in HANGS.items()}
+MODULES |= {
+    name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, (what, _) in ENDS.items()
 }
 
 
@@ -145,3 +167,103 @@ def test_an_accuracy_without_a_solver_is_a_mistake(capfd: pytest.CaptureFixture[
 def test_an_answer_that_is_no_mapping_is_told(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run("own_solvers.none:solve", "off-axis-strut.toml") == 3
     assert "it answers with a NoneType; needed: a mapping" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("module", ENDS)
+def test_a_solver_that_crashes_or_reads_loses_that_scene_only(
+    solvers: Path, capfd: pytest.CaptureFixture[str], module: str
+) -> None:
+    scenes = ["double-wishbone.toml", "off-axis-strut.toml", "./double-wishbone.toml"]
+    junit, summary = (str(solvers / name) for name in ("j.xml", "s.md"))
+    files = ["--junit", junit, "--summary", summary, "--json", "out.json"]
+    assert run(f"own_solvers.{module}:solve", *scenes, *files) == 3
+    said = capfd.readouterr()
+    assert "2 of 3 scenes agree" in said.out
+    (line,) = complaints(said.err)
+    assert line.startswith("pointcoord: off-axis-strut.toml: ")
+    assert ENDS[module][1] in line
+    verdicts = [scene["exit_status"] for scene in json.loads(Path("out.json").read_text())["scenes"]]
+    assert verdicts == [0, 3, 0]
+    assert ENDS[module][1].split(":")[0] in Path(junit).read_text(encoding="utf-8")
+    assert "2 of 3 scenes agree" in Path(summary).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("module", HANGS)
+def test_a_solver_that_hangs_is_stopped_and_made_anew(
+    solvers: Path, capfd: pytest.CaptureFixture[str], module: str
+) -> None:
+    # Only who never answers is held to a short limit: a right one may wait for the machine.
+    assert run(f"own_solvers.{module}:solve", "off-axis-strut.toml", "--solver-timeout", "0.5") == 3
+    (line,) = complaints(capfd.readouterr().err)
+    assert "took longer than 0.5 s and was stopped; --solver-timeout S allows more" in line
+    strut, wishbone = (
+        given_to_solver(Scene.load(name)) for name in ("off-axis-strut.toml", "double-wishbone.toml")
+    )
+    with Apart(f"own_solvers.{module}:solve", limit=0.5) as solver:
+        with pytest.raises(SolverFailed, match="was stopped"):
+            solver(strut)
+        solver.limit = 600.0
+        assert list(solver(wishbone)) == ["position"]
+
+
+def test_a_module_that_ends_its_process_is_told_before_any_scene(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run("own_solvers.exits:solve", "off-axis-strut.toml") == 2
+    (line,) = complaints(capfd.readouterr().err)
+    assert "cannot be imported: its process ended with exit status 7" in line
+
+
+def test_what_a_stopped_solver_started_is_stopped_too(solvers: Path) -> None:
+    mark = f"sleep {60 + len(str(solvers)) / 1000 + 0.0173}"
+    text = f"import os\ndef solve(given):\n    os.system({mark!r})\n"
+    (solvers / "own_solvers" / "starts.py").write_text(text, encoding="utf-8")
+    assert run("own_solvers.starts:solve", "off-axis-strut.toml", "--solver-timeout", "3") == 3
+    processes = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    assert mark not in processes.splitlines()
+
+
+def test_a_solver_is_imported_once_for_all_scenes(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    text = "print('imported')\ndef solve(given):\n    return {}\n"
+    (solvers / "own_solvers" / "once.py").write_text(text, encoding="utf-8")
+    assert run("own_solvers.once:solve", "off-axis-strut.toml", "double-wishbone.toml") == 3
+    assert capfd.readouterr().err.count("imported\n") == 1
+
+
+def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in_the_process(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "class Array:\n    def __init__(self, a): self.a = a\n"
+        "    def __array__(self, dtype=None, copy=None): return __import__('numpy').array(self.a)\n"
+        "class Odd: pass\n"
+        "def solve(given):\n"
+        "    n, place = len(given['instants']), given['points']['rack_centre']\n"
+        "    return {'position': {'rack_centre': Array([place] * n), 'wheel_centre': [[1.0], [2.0, 3.0]],\n"
+        "                         'strut_top': Odd()}, 'velocity': Odd(), 3: 3}\n"
+    )
+    (solvers / "own_solvers" / "odd_ones.py").write_text(text, encoding="utf-8")
+    told = []
+    for extra in ([], ["--in-process"]):
+        assert run("own_solvers.odd_ones:solve", "off-axis-strut.toml", *extra) == 0
+        out = capfd.readouterr().out
+        assert "agrees" in next(line for line in out.splitlines() if line.startswith("position"))
+        told.append(out)
+    assert told[0] == told[1]
+    assert "velocity is a Odd" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--solver-timeout", "0"], "is no time limit in s"),
+        (["--solver-timeout", "soon"], "is no time limit in s"),
+        (["--solver-timeout", "5", "--in-process"], "--in-process has no time limit"),
+    ],
+)
+def test_a_time_limit_that_is_none_is_refused(
+    solvers: Path, capfd: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    assert run("own_solvers.right:solve", "off-axis-strut.toml", *words) == 2
+    (line,) = complaints(capfd.readouterr().err)
+    assert said in line

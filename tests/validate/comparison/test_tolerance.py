@@ -9,7 +9,7 @@ import pytest
 import absolute
 from pointcoord import Scene
 from validate.comparison.compare import Comparison, compare_solutions
-from validate.comparison.tolerance import level, tolerance, untested
+from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
@@ -30,10 +30,13 @@ def test_a_tolerance_is_the_sum_of_both_claims_and_a_rounding_of_a_rounding() ->
     assert found[0, 1] == pytest.approx(4.93e-29, rel=1e-3)
 
 
-@pytest.mark.parametrize(("wider", "tests_nothing"), [(999.0, False), (1001.0, True)])
-def test_a_thousand_times_the_other_sides_claim_tests_nothing(wider: float, tests_nothing: bool) -> None:
-    small = np.array([1e-12, 1e-12])
-    wide = np.array([1e-12, wider * 1e-12])
+@pytest.mark.parametrize(("wider", "tests_nothing"), [(999.0, False), (1000.0, False), (1001.0, True)])
+def test_more_than_a_thousand_times_the_other_sides_claim_tests_nothing(
+    wider: float, tests_nothing: bool
+) -> None:
+    claim = 2.0**-40  # times a thousand is exact
+    small = np.array([claim, claim])
+    wide = np.array([claim, wider * claim])
     assert untested(small, wide, small, wide).tolist() == [False, tests_nothing]
     assert untested(wide, small, wide, small).tolist() == [False, tests_nothing]
 
@@ -43,6 +46,12 @@ def test_what_a_side_would_give_is_its_largest_claim_or_what_rounding_leaves() -
     assert level(claims, np.array([1.0]), np.array([10.0])).tolist() == [5e-12]
     # eps times the condition number times the largest number.
     assert level(claims, np.array([400.0]), np.array([100.0])).tolist() == [EPS * 100.0 * 400.0]
+
+
+def test_the_largest_number_of_an_instant_is_of_all_that_are_finite_there() -> None:
+    one = np.array([[1e-3, -4e-3, 0.0], [np.nan, np.inf, np.nan]])
+    other = np.array([[np.nan, 2e-3, 3e-3], [np.nan, -np.inf, np.nan]])
+    assert largest_numbers([one, other], 2).tolist() == [4e-3, 0.0]
 
 
 def changed(solution: Solution, quantity: str, arrays: Mapping[str, np.ndarray]) -> Solution:

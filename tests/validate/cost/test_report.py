@@ -14,6 +14,7 @@ from validate.cost.findings import findings
 from validate.cost.report import NOTHING, Report
 from validate.cost.row import Row
 from validate.cost.tables import csv_text, full_tables, short_tables
+from validate.output.terminal import text_of
 
 ROWS = tuple(study())
 
@@ -111,7 +112,7 @@ def test_every_measured_setting_is_in_the_full_tables_and_the_short_ones_say_how
     for row in ROWS:
         if row.part == "accuracy" and row.status == "measured":
             assert f"{row.way}{'*' if row.dense else ''} {row.setting}".strip() in full
-    assert "24 further settings" in "\n".join(table.text() for table in short_tables(ROWS, found))
+    assert "24 further settings" in "\n".join(text_of(table.parts()) for table in short_tables(ROWS, found))
 
 
 def test_the_way_to_an_accuracy_is_its_cheapest_setting_in_the_table_and_what_is_not_reached_says_so() -> (

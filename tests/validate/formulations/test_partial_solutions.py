@@ -47,3 +47,16 @@ def test_a_scene_refused_at_its_start_keeps_nothing() -> None:
         with pytest.raises(FormulationError) as caught:
             formulation(solver).solve(Scene.from_mapping(scene))
         assert caught.value.partial is None
+
+
+def test_what_was_solved_before_a_refusal_is_found_once_and_only_if_asked_for() -> None:
+    found: list[int] = []
+
+    def before() -> Solution | None:
+        found.append(1)
+        return None
+
+    refusal = FormulationError("somebody", ValueError("no way on"), before)
+    assert found == []
+    assert (refusal.partial, refusal.partial) == (None, None)
+    assert found == [1]

@@ -18,10 +18,11 @@ from validate.hard import trial
 from validate.hard.cars import paper_car
 from validate.hard.case import FAILS, RIGHT, Answer, Case, Expected, Trial, decades
 from validate.hard.classify import judged_answer
-from validate.hard.report import case_text, results_data, summary_text
+from validate.hard.report import case_text, results_data, summary_parts
 from validate.hard.run import as_expected, examine
 from validate.hard.trial import scene_case, try_scene
 from validate.output.document import json_text
+from validate.output.terminal import text_of
 
 OURS = ("pointcoord", "absolute")
 
@@ -202,7 +203,9 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     assert refused.gives_up("absolute") == (1, Answer("absolute", "refused", "why"))
     assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in case_text(refused)
     assert "gives up at 0.1: why" in case_text(refused)
-    assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in summary_text([refused])
+    assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in text_of(
+        summary_parts([refused])
+    )
     # A value without an answer breaks the trial, not the run.
     broken = examine(replace(made_case({1.0: Answer("absolute", "right")}), values=(1.0, 2.0)))
     assert [answer.outcome for _, answer in broken.answers("absolute")] == ["right", "unjudged"]

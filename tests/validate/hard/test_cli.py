@@ -56,26 +56,8 @@ def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest
     assert data["counts"]["absolute"] == {"right": 13}
 
 
-def test_two_processes_find_what_one_finds_in_the_same_order(tmp_path: Path) -> None:
-    found = []
-    for workers in ("1", "2"):
-        target = tmp_path / f"{workers}.json"
-        assert (
-            main(["hard", "minus-infinity", "link-twice", "--workers", workers, "--json", str(target)]) == 0
-        )
-        cases = json.loads(target.read_text())["cases"]
-        found.append([{**case, "seconds": None} for case in cases])
-    assert len(found[0]) == 2
-    assert found[0] == found[1]
-
-
-def test_no_process_at_all_is_a_mistake(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "at-rest", "--workers", "0"]) == 2
-    assert "--workers 0: allowed: 1 or more" in capsys.readouterr().err
-
-
 def test_times_are_told_the_longest_first(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "minus-infinity", "link-twice", "--workers", "1", "--times"]) == 0
+    assert main(["hard", "minus-infinity", "link-twice", "--times"]) == 0
     out = capsys.readouterr().out
     table = out[out.index("s a scene") :].splitlines()
     rows = [line.split() for line in table if line.split()[:1] in (["minus-infinity"], ["link-twice"])]

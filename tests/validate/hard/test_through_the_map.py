@@ -14,9 +14,10 @@ from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.cars import paper_car
 from validate.hard.case import REFUSED, RIGHT, Case, decades
-from validate.hard.report import summary_text
+from validate.hard.report import summary_parts
 from validate.hard.run import MAP, OURS, as_expected, examine
 from validate.hard.trial import scene_case
+from validate.output.terminal import text_of
 
 
 def steered(far: Callable[[float], float], expected: str = OURS) -> Case:
@@ -94,7 +95,9 @@ def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
     result = examine(steered(lambda value: value))
     assert {a.outcome for _, a in result.answers(MAP)} == {"refused"}
     assert as_expected([result])
-    assert "Refused by the map, whose effort is bounded here: 2 MotionNotMapped." in summary_text([result])
+    assert "Refused by the map, whose effort is bounded here: 2 MotionNotMapped." in text_of(
+        summary_parts([result])
+    )
 
 
 def test_a_case_that_pointcoord_does_not_try_is_not_tried_by_the_map() -> None:

@@ -18,7 +18,7 @@ from pointcoord import Scene, simulate
 from validate.cli import main
 from validate.comparison.examined import Examined, examine
 from validate.html.page import page
-from validate.html.plot import MOST_POINTS, fewer
+from validate.html.plot import fewer
 from validate.html.run import Run, Told
 from validate.html.sections import sections
 from validate.output.document import Head, schema_text
@@ -26,7 +26,7 @@ from validate.output.report import worst_rows
 from validate.paper.tables import TABLE_2, TABLE_3
 
 BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
-FILES = {"json": "results.json", "csv": "comparisons.csv"}
+FILES = {"results.json": "the run", "comparisons.csv": "its lines"}
 
 
 class Read(HTMLParser):
@@ -129,8 +129,9 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
     read = Read(page(run, FILES))
     assert read.verdict == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
     coloured = [given for tag, given in read.opened if tag == "td" and given.get("class") == "disagrees"]
-    assert len(coloured) == 1
-    assert sum(cell.startswith("disagrees") for row in read.cells for cell in row) == 1
+    # The quantity's own cell, and that of the scene.
+    assert len(coloured) == 2
+    assert sum(cell.startswith("disagrees") for row in read.cells for cell in row) == 2
     assert run.document["verdict"] == "disagree"
 
 
@@ -160,7 +161,7 @@ def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
     for tag, given in read.opened:
         assert tag not in ("link", "iframe", "object", "embed", "base")
         assert "src" not in given
-        assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES.values()
+        assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES
 
 
 def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Told) -> None:
@@ -244,8 +245,8 @@ def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce
 def test_of_very_many_instants_the_worst_is_drawn() -> None:
     weight = np.zeros(100_000)
     weight[[123, 77_777]] = 1.0, 2.0
-    places = fewer(weight)
-    assert len(places) <= MOST_POINTS
+    places = fewer(weight, 600)
+    assert len(places) <= 600
     assert {0, 123, 77_777, 99_999} <= set(places)
 
 
@@ -302,3 +303,40 @@ def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bo
     for name, place in scene.mechanism.points.items():
         assert drawn[name] == pytest.approx(list(place), abs=0.006)
     assert {shown["points"][i] for i in shown["chassis"]} == set(scene.mechanism.topology.chassis)
+
+
+def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it_names(
+    built_in: Path,
+) -> None:
+    read = Read((built_in / "index.html").read_text(encoding="utf-8"))
+    there = [given["id"] for tag, given in read.opened if tag == "section"]
+    told = ["verdict", "agreement", "motion", "differences", "curves", "figures", "paper", "errata"]
+    assert there == [*told, "cost", "hard", "published", "left-out", "machine"]
+    assert there == [section.name for section in sections()]
+    links = [given["href"] or "" for tag, given in read.opened if tag == "a"]
+    files = {link for link in links if not link.startswith("#")}
+    assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
+    document = json.loads((built_in / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    jsonschema.validate(json.loads((built_in / "hard.json").read_text()), json.loads(schema_text()))
+    assert document["exit_status"] == 0
+    assert read.verdict.startswith("6 of 6 scenes agree; ")
+    assert read.verdict.endswith("all as expected.")
+    # A line for each printed number: 11 rows of 4 angles, 21 of 2.
+    with (built_in / "published.csv").open(newline="") as stream:
+        assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2
+
+
+def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Told) -> None:
+    closing = bounce.examined.closing
+    assert closing is not None
+    read = Read(page(run_of(bounce), FILES))
+    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    drawn, closed = (dict(zip(shown["points"], shown[key], strict=True)) for key in ("drawn", "closed"))
+    rows = [row for row in read.cells if row[0] == "bounce"]
+    assert closing["largest"] == pytest.approx(16.8, abs=0.05)  # of Table 1
+    for name, movement in closing["movements"].items():
+        moved = np.linalg.norm(np.subtract(closed[name], drawn[name]))
+        assert moved == pytest.approx(movement, abs=0.02)
+        told = f"{movement:.3g}" if movement > 1e-6 else "0"
+        assert any(told in row for row in rows)

@@ -12,13 +12,17 @@ import jsonschema
 import numpy as np
 import pytest
 from program import PAST_ITS_END, short_scene
+from worked_out import worked_out
 
 from validate.cli import main
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.long_studies.bounds import BoundsStudy
+from validate.long_studies.hard_runs import HardStudy
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.study import Study
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.paper.scenes import DEFAULT_SCENES
-from validate.studies import bounds
 
 SCHEMA = json.loads(schema_text())
 CHECK = jsonschema.Draft202012Validator(SCHEMA)
@@ -57,14 +61,14 @@ def test_the_schema_is_in_the_wheel() -> None:
 
 def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixture[str]) -> None:
     before = datetime.now(UTC).replace(microsecond=0)
-    words = ["validate", "steer", "--json", "-"]
+    words = ["validate", "steer", "--timings", "--json", "-"]
     assert main(words) == 0
     data = document(capsys.readouterr().out)
     assert (data["schema_version"], data["kind"], data["complete"]) == (SCHEMA_VERSION, "validate", True)
     assert (data["exit_status"], data["verdict"]) == (0, "agree")
     assert data["program"] == {"name": "pointcoord", "version": metadata.version("pointcoord")}
     assert data["command"] == ["pointcoord", *words]
-    assert data["command_line"] == "pointcoord validate steer --json -"
+    assert data["command_line"] == "pointcoord validate steer --timings --json -"
     assert before <= datetime.fromisoformat(data["started"]) <= datetime.fromisoformat(data["written"])
     assert data["machine"]["packages"]["numpy"] == np.__version__
     assert data["machine"]["packages"]["pin"] == metadata.version("pin")
@@ -118,9 +122,11 @@ def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureF
     assert data["kind"] == ("hard-list" if "--list" in words else "hard")
 
 
-def test_the_study_of_bounds_keeps_to_the_schema(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert bounds.main(["--poses", "4", "--motions", "1", "--json", "-"]) == 0
-    assert document(capsys.readouterr().out)["kind"] == "bounds"
+@pytest.mark.parametrize("study", [RandomStudy(4), BoundsStudy(4, motions=1), HardStudy(("at-rest",))])
+def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:
+    findings = study.findings(worked_out(study))
+    text = json_text(Head.of(study.name, ("pointcoord",)).document(findings.data, findings.status, True))
+    assert document(text)["kind"] == study.name
 
 
 @pytest.mark.parametrize("words", [["--help"], ["validate", "--help"], ["simulate", "-h"]])

@@ -5,7 +5,7 @@ import pytest
 from plain_solvers import closed_form
 
 from pointcoord import Scene
-from validate import FormulationError, NotTested, assert_agrees
+from validate import FormulationError, NotTested, WrongStates, assert_agrees
 from validate.adjudication.reference_solution import reference_solution
 from validate.solvers.plain import NoSolver, given_to_solver
 
@@ -67,9 +67,76 @@ def test_states_that_hold_nothing_are_no_agreement() -> None:
         assert_agrees({}, SCENE)
     with pytest.raises(AssertionError, match=r"'positions'.*did you mean 'position'"):
         assert_agrees({"positions": {}}, SCENE)
-    nan = np.full(len(SCENE.instants), np.nan)
-    with pytest.raises(AssertionError, match="camber: difference"):
-        assert_agrees({"camber": nan}, SCENE)
+
+
+def test_a_nan_is_told_with_its_time_and_how_many_there_are(states) -> None:
+    camber = states["wheel"]["camber"].copy()
+    camber[[4, 9]] = np.nan
+    with pytest.raises(AssertionError) as caught:
+        assert_agrees({"camber": camber}, SCENE)
+    said = str(caught.value)
+    assert f"camber: not a number at t = {SCENE.instants[4]:.9g} s" in said
+    assert f"not a number at 2 of {len(SCENE.instants)} instants" in said
+
+
+COUNT = len(SCENE.instants)
+ZEROS = np.zeros(COUNT)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (
+            {"camber": np.zeros(3)},
+            f"camber has the shape (3,); needed: ({COUNT},), one number",
+        ),
+        (
+            {"position": {"wheel_centre": np.zeros((3, COUNT))}},
+            f"position of wheel_centre has the shape (3, {COUNT}); needed: ({COUNT}, 3), three numbers",
+        ),
+        (
+            {"position": np.zeros((COUNT, 3))},
+            "position is a ndarray; needed: an array for each name",
+        ),
+        (
+            {"position": {"wheel_center": np.zeros((COUNT, 3))}},
+            "position of 'wheel_center' is of no point that there is (did you mean 'wheel_centre'?)",
+        ),
+        ({"cambre": ZEROS}, "'cambre' is no quantity (did you mean 'camber'?)"),
+        ({"wheel": {"camber": ["0.1"] * COUNT}}, "wheel of camber is of type <U3; needed: real numbers"),
+        ({"camber": [[0.1], [0.1, 0.2]]}, "camber is no array"),
+        ({"velocity": {"wheel_centre": None}}, "velocity of wheel_centre is of type object"),
+    ],
+)
+def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are(
+    states, wrong: dict[str, object], words: str
+) -> None:
+    """A comparison leaves it out and says so; a test would pass, and nobody would read that."""
+    good = {"acceleration": states["acceleration"]}
+    with pytest.raises(WrongStates) as caught:
+        assert_agrees(good | wrong, SCENE)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    # What is no misspelt name of ours is nobody's business.
+    assert assert_agrees(good | {"iterations": 3, "seconds": [0.1]}, SCENE).passed
+
+
+def test_what_is_needed_must_be_there_all_of_it(states) -> None:
+    assert assert_agrees(states, SCENE, needed=("position", "camber", "wheel")).passed
+    alone = {"camber": states["wheel"]["camber"]}
+    assert assert_agrees(alone, SCENE, needed=("camber",)).passed
+    for needed, words in (
+        ("velocity", "velocity is needed and missing of lower_arm_front, "),
+        ("toe", "toe is needed and missing; needed: all that the scene asks for"),
+        ("wheel", "wheel is needed and missing of kingpin"),
+        ("tow", "'tow' is needed, and the scene does not ask for it (did you mean 'toe'?)"),
+    ):
+        with pytest.raises(WrongStates) as caught:
+            assert_agrees(alone, SCENE, needed=(needed,))
+        assert words in str(caught.value)
+    most = {name: place for name, place in states["position"].items() if name != "wheel_centre"}
+    with pytest.raises(WrongStates, match="position is needed and missing of wheel_centre;"):
+        assert_agrees({"position": most}, SCENE, needed=("position",))
 
 
 def test_an_accuracy_that_says_nothing_is_no_agreement_either(states) -> None:

@@ -4,14 +4,27 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from pointcoord import built_in_scenes
-from validate.testing.scenes import scenes_to_try
+from pointcoord import built_in_scenes, pytest_plugin
+from validate import WrongStates, assert_refuses
+from validate.adjudication.reference_solution import reference_solution
+from validate.hard.case import Case
+from validate.hard.catalogue import CASES
+from validate.solvers.plain import given_to_solver
+from validate.testing.scenes import NOT_ASKED, impossible_scenes, scenes_to_try
+
+
+def mark(name: str, *names: object, **options: object) -> SimpleNamespace:
+    """A mark as pytest hands it over; the plugin need not be loaded here."""
+    return SimpleNamespace(name=name, args=names, kwargs=options)
+
 
 ROOT = Path(__file__).parents[3]
-OURS = ("-p", "validate.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:xdist", "--strict-markers")
+OURS = ("-p", "pointcoord.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:xdist", "--strict-markers")
 
 
 def run(folder: Path, text: str, *options: str) -> "subprocess.CompletedProcess[str]":
@@ -74,38 +87,119 @@ def test_one(scene):
 
 
 @pytest.mark.parametrize(
-    ("line", "words"),
+    ("marked", "words"),
     [
-        ("@pytest.mark.suspension_scenes('bunce')\ndef test_one(scene): ...", ("bunce", "bounce")),
-        ("@pytest.mark.suspension_scenes()\ndef test_one(): ...", ("takes no argument 'scene'; add it",)),
-        ("@pytest.mark.suspension_scenes(hrad=True)\ndef test_one(scene): ...", ("hrad",)),
+        (mark("suspension_scenes", "bunce"), "did you mean 'bounce'?"),
+        (mark("suspension_scenes", "arm-highest-hold"), "did you mean 'arm-highest-held'?"),
         (
-            "@pytest.mark.suspension_scenes(suspension='wishbone')\ndef test_one(scene): ...",
-            ("'wishbone'", "double_wishbone"),
+            mark("suspension_scenes", "link-twice"),
+            "cannot be asked of a solver: it is a mechanism",
         ),
-        ("@pytest.mark.suspension_scenes(near=0.0)\ndef test_one(scene): ...", ("near=0.0", "above 0")),
+        (mark("suspension_scenes", "arm-highest-beyond"), "without a pose; mark with impossible_scenes"),
+        (mark("suspension_scenes", hrad=True), "unexpected keyword argument 'hrad'; it takes (*names"),
         (
-            "@pytest.mark.suspension_scenes('steer', suspension='double_wishbone')\ndef test_one(scene): ...",
-            ("leave `suspension` out",),
+            mark("suspension_scenes", suspension="wishbone"),
+            "'wishbone': there is none; there are: mac",
+        ),
+        (mark("suspension_scenes", closure="bent"), "'bent': there is none; there are: drawn, collinear"),
+        (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is no number above 0"),
+        (mark("suspension_scenes", 3.0), "3.0: is a float, and names no scene"),
+        (
+            mark("suspension_scenes", "steer", suspension="double_wishbone"),
+            "no scene is as the mark says; leave `suspension` out",
+        ),
+        (
+            mark("impossible_scenes", "steer"),
+            "'steer' is no case without a pose; there are: arm-",
         ),
     ],
+    ids=str,
 )
-def test_a_mark_that_cannot_be_followed_is_told_where_it_stands(
-    tmp_path: Path, line: str, words: tuple[str, ...]
+def test_a_mark_that_cannot_be_followed_is_told_in_a_line(marked: SimpleNamespace, words: str) -> None:
+    with pytest.raises(pytest.UsageError) as caught:
+        pytest_plugin.scenes_of("test_it.py::test_one", [marked])
+    said = str(caught.value)
+    assert said.startswith("test_it.py::test_one: ")
+    assert words in said
+    assert "\n" not in said
+
+
+def test_a_marked_test_without_the_argument_is_refused_and_one_beside_it_is_left_alone(
+    tmp_path: Path,
 ) -> None:
-    done = run(tmp_path, f"import pytest\n{line}\n")
+    text = """
+import pytest
+pytestmark = pytest.mark.suspension_scenes("steer")
+
+def test_of_a_scene(scene):
+    assert len(scene.instants)
+
+def test_of_something_else(): ...
+"""
+    done = run(tmp_path, text)
+    assert "2 passed" in done.stdout, done.stdout + done.stderr
+    done = run(tmp_path, "import pytest\n@pytest.mark.suspension_scenes()\ndef test_one(): ...\n")
     said = done.stdout + done.stderr
+    assert "test_one: suspension_scenes: the test takes no argument 'scene'; add it" in said
     assert done.returncode not in (0, 1, 5), said
-    assert [word for word in ("test_one", *words) if word not in said] == []
     assert "Traceback" not in said
 
 
-def test_hard_scenes_are_many_of_every_suspension_and_nearer_where_asked_for() -> None:
-    every = scenes_to_try(hard=True)
-    assert set(built_in_scenes()) < set(every)
-    kinds = {scene.mechanism.type for name, scene in every.items() if name not in built_in_scenes()}
-    assert kinds == {scene.mechanism.type for scene in scenes_to_try().values()}
+def test_hard_scenes_are_nearer_where_asked_for() -> None:
     some = [scenes_to_try(["arm-highest-held"], near=near) for near in (1e-1, 1e-9)]
     assert [list(one) for one in some] == [["arm-highest-held at 0.1"], ["arm-highest-held at 1e-09"]]
     (far,), (near,) = (one.values() for one in some)
     assert far.inputs["arm_angle"] != near.inputs["arm_angle"]
+    assert near.title == "arm-highest-held at 1e-09"
+    every = scenes_to_try(["arm-highest-held"], near=None)
+    assert len(every) > 10
+    assert {"arm-highest-held at 0.1", "arm-highest-held at 1e-09"} <= set(every)
+
+
+def test_every_hard_case_is_asked_or_has_a_reason_why_no_solver_can_be() -> None:
+    asked = {case.name for case in CASES if case.answered}
+    refused = {case.name for case in CASES if case.without_pose}
+    assert not asked & refused
+    assert {case.name for case in CASES} - asked - refused == set(NOT_ASKED)
+    # What is no scene is refused when it is read, or is tried without one.
+    for case in CASES:
+        assert (case.content is None) == (case.name in NOT_ASKED), case.name
+
+
+# One of each family; all of them take minutes, and agree (see the study of hard cases).
+FAMILIES = {case.group: case for case in CASES if case.answered}
+
+
+@pytest.mark.parametrize("case", FAMILIES.values(), ids=lambda case: case.name)
+def test_a_hard_case_that_is_asked_has_an_answer_that_is_proven(case: Case) -> None:
+    for scene in scenes_to_try([case.name]).values():
+        assert reference_solution(scene).accuracy.proven
+
+
+@pytest.mark.parametrize("name", ["arm-lowest-beyond-wishbone", "branches-met", "start-beyond-both"])
+def test_a_case_without_a_pose_is_answered_by_none_that_is_right(name: str) -> None:
+    (scene,) = impossible_scenes([name]).values()
+    plain = given_to_solver(scene)
+    answer = {"position": {"wheel_centre": np.zeros((len(plain["instants"]), 3))}}
+    with pytest.raises(AssertionError, match="where there is no pose: ") as caught:
+        assert_refuses(lambda _: answer, scene)
+    assert f"answers {scene.title!r} at t = " in str(caught.value)
+    answer["position"]["wheel_centre"] += np.nan
+    assert_refuses(lambda _: answer, scene)
+    with pytest.raises(WrongStates, match="has the shape"):
+        assert_refuses(lambda _: {"camber": [1.0, 2.0, 3.0, 4.0]}, scene)
+    with pytest.raises(WrongStates, match="is a NoneType; needed: a mapping"):
+        assert_refuses(lambda _: None, scene)
+
+
+def test_a_refusal_is_an_error_and_only_the_one_that_is_named() -> None:
+    (scene,) = impossible_scenes(["arm-lowest-beyond-wishbone"]).values()
+
+    def solve(given: object) -> None:
+        raise ZeroDivisionError("the arm")
+
+    assert_refuses(solve, scene)
+    with pytest.raises(ZeroDivisionError):
+        assert_refuses(solve, scene, raises=ValueError)
+    with pytest.raises(AssertionError, match="every instant of 'double-wishbone' has a pose"):
+        assert_refuses(solve, "double-wishbone")

@@ -27,7 +27,7 @@ KEPT, ELSEWHERE = 1e-5, 1e-4
 class Branch(Kind):
     """From the first instant on, or from where the given numbers leave ours."""
 
-    name, solves = "branch", True
+    name, solves, of_time = "branch", True, True
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The one of the whole car."""
@@ -46,6 +46,8 @@ class Branch(Kind):
             for name in (*topology.moving, *topology.carried)
         }
         links = {ends for constraint in topology.constraints for ends in constraint.squared_lengths}
+        # What rides on a body has its place there: misdrawn, it would be another car.
+        links |= {(held, name) for of in topology.bodies.values() for held in of for name in topology.carried}
         off = max(
             abs(float(np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(drawn[a] - drawn[b])))
             for a, b in links

@@ -63,7 +63,9 @@ RULES: Mapping[str, Rule] = {
 class Differences(Kind):
     """Of the numbers of one or two orders below, as given; of ours where they are not given."""
 
-    name = "differences"
+    name, of_time, reach = "differences", True, 2
+    of_wrong = False
+    """Of numbers that disagree themselves, or of others: those of a wrong car are as good as its rates."""
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Each rule, of all rates that disagree."""
@@ -87,14 +89,13 @@ class Differences(Kind):
         if rows:
             yield Hypothesis(self.name, "second", "rates by second differences of positions", rows)
 
-    @staticmethod
-    def _source(row: Row, below: int, evidence: Evidence) -> Row | None:
+    def _source(self, row: Row, below: int, evidence: Evidence) -> Row | None:
         """The row that a row is so many time derivatives of."""
         for quantity in QUANTITIES:
             other = (quantity, row[1])
             alike = kind_of(other) == kind_of(row) and length_or_angle(other) == length_or_angle(row)
             if alike and order(other) == order(row) - below and other in evidence.given:
-                return other
+                return other if (other in evidence.wrong) == self.of_wrong else None
         return None
 
     def _twice(self, evidence: Evidence, row: Row, source: Row, rule: Rule, times: int) -> WouldBe:
@@ -107,7 +108,8 @@ class Differences(Kind):
         numbers, instants = evidence.given[source], evidence.times
         value, step = rule(numbers, instants), float(np.diff(instants).min())
         # What is subtracted is rounded once in the numbers, and so are the instants.
-        late = float(np.abs(instants).max()) / step * float(np.abs(value).max(initial=0.0))
+        latest = float(np.abs(evidence.scene.instants).max())
+        late = latest / step * float(np.abs(value).max(initial=0.0))
         rounding = 16.0 * EPS * (float(np.abs(numbers).max()) / step**times + late)
         return value, evidence.rounded(row) + rounding
 

@@ -14,7 +14,7 @@ from validate.diagnosis.kinds.axes import in_axes
 class Mirror(Kind):
     """Vectors are mirrored, turns go the other way, angles that count outboard stay as they are."""
 
-    name = "mirror"
+    name, reach = "mirror", 0
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The one of the whole car."""

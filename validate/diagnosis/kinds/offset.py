@@ -23,7 +23,8 @@ class Offset(Kind):
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Known values first."""
         placed = [row for row in evidence.wrong if order(row) == 0]
-        yield from self._relative(evidence)
+        if evidence.over_time:
+            yield from self._relative(evidence)
         if not placed:
             return
         first = {row: self._less(evidence, row, evidence.held[row][0]) for row in placed}
@@ -38,8 +39,8 @@ class Offset(Kind):
             vector = np.ndim(gap) == 1
             clear = np.abs(gap).max() > 8.0 * evidence.rounded(row).max()
             if np.isfinite(gap).all() and clear and len(evidence.times) > 2:
-                said = f"({', '.join(f'{c:.6g}' for c in gap)}) mm" if vector else f"{gap:.6g} rad"
-                words = f"a constant offset of {said}"
+                said = f"({', '.join(f'{c:.6g}' for c in gap)})" if vector else f"{gap:.6g}"
+                words = f"a constant offset of {said} {evidence.unit_of(row)}"
                 rows = {row: self._less(evidence, row, -gap)}
                 fitted = 3 if vector else 1
                 yield Hypothesis(self.name, (row, "constant"), words, rows, fitted, 1.0 + fitted)
@@ -64,7 +65,8 @@ class Offset(Kind):
             return
         noise = max(float(evidence.rounded(row).max()) for row in rows)
         shift[np.abs(shift) < noise] = 0.0
-        words = f"another origin: every point is shifted by ({', '.join(f'{c:.6g}' for c in shift)}) mm"
+        told = f"({', '.join(f'{c:.6g}' for c in shift)}) {evidence.unit_of(rows[0])}"
+        words = f"another origin: every point is shifted by {told}"
         moved = {row: self._less(evidence, row, -shift) for row in rows}
         fitted = int(np.count_nonzero(shift))
         if fitted:

@@ -14,14 +14,14 @@ from validate.diagnosis.hypothesis import Hypothesis, Kind, WouldBe
 class Sign(Kind):
     """Components along the user's axes, one, two or all; an angle as a whole."""
 
-    name, opens, closes = "sign", True, True
+    name, opens, closes, reach = "sign", True, True, 0
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """All seven of vectors, and one for each number of the car."""
         vectors = [row for row in evidence.wrong if kind_of(row) != "car"]
         for signs in product((1.0, -1.0), repeat=3):
             flipped = [axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0]
-            if flipped and vectors:
+            if flipped and vectors and evidence.wants(flipped.__repr__()):
                 rows: dict[Row, WouldBe] = {
                     row: (evidence.held[row] * np.array(signs), evidence.allowed[row]) for row in vectors
                 }

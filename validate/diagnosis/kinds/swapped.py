@@ -13,7 +13,7 @@ from validate.diagnosis.hypothesis import Hypothesis, Kind
 class Swapped(Kind):
     """Both ways, or one of them only."""
 
-    name = "swapped"
+    name, reach = "swapped", 0
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Names first, in all quantities together; then quantities."""

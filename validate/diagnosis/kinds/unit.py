@@ -47,13 +47,13 @@ UNITS = (
 class OtherUnit(Kind):
     """A factor that is known beforehand."""
 
-    name, opens, closes = "unit", True, True
+    name, opens, closes, reach = "unit", True, True, 0
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Each unit, of all rows that may have it."""
         for unit in UNITS:
             rows = {}
-            for row in evidence.wrong:
+            for row in evidence.wrong if evidence.wants(unit.words) else ():
                 if order(row) in unit.orders and unit.of in ("s", length_or_angle(row)):
                     factor = unit.factor ** order(row) if unit.of == "s" else unit.factor
                     rows[row] = (factor * evidence.held[row], factor * evidence.rounded(row))

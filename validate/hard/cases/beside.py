@@ -20,7 +20,7 @@ from validate.cars.macpherson import BESIDE
 from validate.cars.scene_content import scene_content
 from validate.hard.cars import BESIDE_CAR
 from validate.hard.case import RIGHT, Case, Expected, decades
-from validate.hard.trial import try_scene
+from validate.hard.trial import scene_case
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -157,13 +157,13 @@ def _case(
     values: tuple[float, ...] = EVERY,
     shrinking: bool = False,
 ) -> Case:
-    def examine(value: float) -> Any:
+    def scene(value: float) -> Mapping[str, Any]:
         # A knuckle that is steered by a short arm follows no more than that arm's own length.
         share = value if shrinking else 1.0
-        return try_scene(value, motion(points(value), 0.1 * share, 20.0 * share), SOLVERS)
+        return motion(points(value), 0.1 * share, 20.0 * share)
 
     right_from = expected.right_from
-    return Case(
+    return scene_case(
         name=name,
         group=GROUP,
         why=why,
@@ -173,7 +173,7 @@ def _case(
         behaviour="right within the bound"
         if expected == RIGHT
         else f"right within the bound, or refused with a reason; right from {right_from:g} up",
-        examine=examine,
+        scene=scene,
     )
 
 

@@ -12,6 +12,7 @@ import math
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import partial
+from typing import Any
 
 from pointcoord import Scene
 from validate.cars.scene_content import scene_content
@@ -59,10 +60,16 @@ def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tu
     return arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
 
 
+def content(overshoot: float, car: str = "paper") -> dict[str, Any]:
+    """Of the scene that asks for it."""
+    end = goal(overshoot, car)
+    return scene_content(CARS[car], end["arm_angle"], end["rack"])
+
+
 def examine(overshoot: float, car: str = "paper") -> Trial:
     """Ask every solver for a first instant that it cannot reach."""
     end = goal(overshoot, car)
-    scene = Scene.from_mapping(scene_content(CARS[car], end["arm_angle"], end["rack"]))
+    scene = Scene.from_mapping(content(overshoot, car))
     answers = []
     for name in SOLVERS:
         try:
@@ -110,4 +117,6 @@ def blocked_way(group: str, values: tuple[float, ...], car: str = "paper") -> Ca
         expected=dict.fromkeys(SOLVERS, RIGHT),
         behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
         examine=partial(examine, car=car),
+        content=partial(content, car=car),
+        without_pose=True,
     )

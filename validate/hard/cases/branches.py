@@ -24,7 +24,7 @@ from validate.hard.cases.counting import counting_cases, meeting
 from validate.hard.cases.near_points import assembled, drawn_angle, flat_upper_arm
 from validate.hard.cases.oriented import followed
 from validate.hard.last_values import last_value
-from validate.hard.trial import Facts, Tried, try_scene
+from validate.hard.trial import Facts, Tried, scene_case
 
 GROUP = "Branches"
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
@@ -119,12 +119,13 @@ def _case(
     expected: Expected,
     values: tuple[float, ...] = decades(),
     measure: Callable[[Tried], Facts] = followed,
+    also_answered: tuple[float, ...] = (),
 ) -> Case:
     behaviour = {
         REFUSED: "refused: the middle instant has no pose",
         RIGHT: "the branch of the drawing at every instant",
     }.get(expected, "the branch of the drawing, or a refusal")
-    return Case(
+    return scene_case(
         name=name,
         group=GROUP,
         why=why,
@@ -132,7 +133,9 @@ def _case(
         values=values,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour=behaviour,
-        examine=lambda value: try_scene(value, scene(value), SOLVERS, measure),
+        scene=scene,
+        measure=measure,
+        also_answered=also_answered,
     )
 
 
@@ -158,6 +161,7 @@ def _range_cases(suffix: str, car: str) -> tuple[Case, ...]:
                 partial(whole_range, driven=driven, car=car),
                 CLEAR,
                 FEW[2:] if suffix else FEW[1:],
+                also_answered=FEW[2:3] if suffix else (),
             )
             for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
         ),

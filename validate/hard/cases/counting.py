@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import astuple, replace
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -70,11 +71,16 @@ def beside_drawing(share: float, car: str) -> tuple[float, float]:
     return drawn["arm_angle"] - 0.2 * share, drawn["rack"] + 30.0 * share
 
 
+def posed(share: float, pose: Callable[[float, str], tuple[float, float]], car: str) -> dict[str, Any]:
+    """The scene of one pose."""
+    return scene_content(CARS[car], *pose(share, car))
+
+
 def counted(share: float, pose: Callable[[float, str], tuple[float, float]], car: str = "paper") -> Trial:
     """The assemblies of a pose near a singular one, beside what the solvers answer."""
     angle, rack = pose(share, car)
     there = CARS[car]
-    trial = try_scene(share, scene_content(there, angle, rack), SOLVERS, followed)
+    trial = try_scene(share, posed(share, pose, car), SOLVERS, followed)
     listed = count_assemblies(
         there.points,
         {"arm_angle": (angle, 0, 0), "rack": (rack, 0, 0)},
@@ -151,4 +157,5 @@ def _case(
         expected=dict.fromkeys(SOLVERS, allowed),
         behaviour="of all assemblies that a search finds, the one of the drawing",
         examine=partial(counted, pose=pose, car=EVERY[suffix]),
+        content=partial(posed, pose=pose, car=EVERY[suffix]),
     )

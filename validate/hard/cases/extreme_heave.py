@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -103,13 +104,18 @@ def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], added: Arra
     return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
+def heaved(value: float, every: tuple[Tried, ...], car: str) -> dict[str, Any]:
+    """The scene with one of these, counted from 1."""
+    return content(law(*every[int(value) - 1]), car)
+
+
 def heaving(every: tuple[Tried, ...], car: str) -> Callable[[float], Trial]:
     """Tries one of these, counted from 1, while the arm turns and the rack moves."""
 
     def examine(value: float) -> Trial:
         kind, place, number = every[int(value) - 1]
         heave = law(kind, place, number)
-        trial = displaced(try_scene(value, content(heave, car), SOLVERS), heave, car)
+        trial = displaced(try_scene(value, heaved(value, every, car), SOLVERS), heave, car)
         where = kind if place is None else f"{kind}.{place}"
         return replace(trial, facts={**trial.facts, "place": where, "number": f"{number:g}"})
 
@@ -118,16 +124,24 @@ def heaving(every: tuple[Tried, ...], car: str) -> Callable[[float], Trial]:
 
 def _case(name: str, why: str, every: tuple[Tried, ...], expected: Expected, suffix: str, car: str) -> Case:
     numbers = tuple(float(n) for n in range(1, len(every) + 1))
+    values = coarse(numbers) if suffix else numbers
     return Case(
         name=f"{name}{suffix}",
         group=GROUP,
         why=why,
         parameter="number of the place and what stands there",
-        values=coarse(numbers) if suffix else numbers,
+        values=values,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour="refused, by all" if expected == REFUSED else "right, or refused with a reason",
         examine=heaving(every, car),
+        content=None if expected == REFUSED else partial(heaved, every=every, car=car),
+        # A phase is taken modulo a turn, and what is small is as good as 0.
+        also_answered=tuple(v for v in values if expected != REFUSED and _is_harmless(*every[int(v) - 1])),
     )
+
+
+def _is_harmless(kind: str, place: str | int | None, number: float) -> bool:
+    return place == "phase" or abs(number) < 1.0
 
 
 CASES: tuple[Case, ...] = tuple(

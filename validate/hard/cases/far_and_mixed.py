@@ -26,7 +26,7 @@ from validate.hard.cars import CARS
 from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, coarse, decades
 from validate.hard.cases.near_points import assembled, drawn_angle, nearer
 from validate.hard.classify import judged_answer
-from validate.hard.trial import Tried, solved, try_scene
+from validate.hard.trial import Tried, scene_case, solved, try_scene
 
 Array = NDArray[np.float64]
 
@@ -72,9 +72,14 @@ def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     }
 
 
+def far_car(value: float, car: str = "paper") -> dict[str, Any]:
+    """The car moved by 1 mm over the parameter."""
+    return moved_car(1.0 / value, car)
+
+
 def far(value: float, car: str = "paper") -> Trial:
     """The moved car, each rate held to what the car at home may be off by."""
-    content = moved_car(1.0 / value, car)
+    content = far_car(value, car)
     found: list[Tried] = []
 
     def measure(tried: Tried) -> Mapping[str, float | str]:
@@ -169,7 +174,7 @@ def _mixed_case(
     shrinking: bool,
     car: str = "paper",
 ) -> Case:
-    return Case(
+    return scene_case(
         name=name,
         group=GROUP,
         why=why,
@@ -178,12 +183,12 @@ def _mixed_case(
         values=(1.0, 1e-3, 1e-6, 1e-12) if car == "wishbone" else (*decades(-4), 1e-6, 1e-9, 1e-12),
         expected=dict.fromkeys(SOLVERS, MIXED),
         behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
-        examine=lambda value: try_scene(value, mixed(value, points, shrinking, car), SOLVERS),
+        scene=lambda value: mixed(value, points, shrinking, car),
     )
 
 
 def _sizes(name: str, why: str, values: tuple[float, ...], car: str = "paper") -> Case:
-    return Case(
+    return scene_case(
         name=name,
         group=GROUP,
         why=why,
@@ -191,7 +196,7 @@ def _sizes(name: str, why: str, values: tuple[float, ...], car: str = "paper") -
         values=values,
         expected=dict.fromkeys(SOLVERS, RIGHT),
         behaviour="right at every size, 1e-3 mm to 1e6 mm",
-        examine=lambda value: try_scene(value, scaled_car(value, car), SOLVERS),
+        scene=partial(scaled_car, car=car),
     )
 
 
@@ -207,6 +212,7 @@ CASES: tuple[Case, ...] = (
         expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=far,
+        content=far_car,
     ),
     Case(
         name="far-from-the-origin-beside",
@@ -217,8 +223,9 @@ CASES: tuple[Case, ...] = (
         expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=partial(far, car="beside"),
+        content=partial(far_car, car="beside"),
     ),
-    Case(
+    scene_case(
         name="far-and-heaved-back",
         group=GROUP,
         why="Drawn far up and heaved back, a car comes to stand near the origin by two far coordinates.",
@@ -226,7 +233,7 @@ CASES: tuple[Case, ...] = (
         values=decades(-9),
         expected=dict.fromkeys(SOLVERS, RIGHT),
         behaviour="right within the bound, rates and angles as right as at home",
-        examine=lambda value: try_scene(value, heaved_back(value), SOLVERS),
+        scene=heaved_back,
     ),
     _sizes(
         "sizes-by-powers-of-two",
@@ -253,8 +260,9 @@ CASES: tuple[Case, ...] = (
         expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
         behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
         examine=partial(far, car="wishbone"),
+        content=partial(far_car, car="wishbone"),
     ),
-    Case(
+    scene_case(
         name="far-and-heaved-back-wishbone",
         group=GROUP,
         why="A double wishbone drawn far up and heaved back.",
@@ -262,7 +270,7 @@ CASES: tuple[Case, ...] = (
         values=coarse(decades(-9)),
         expected=dict.fromkeys(SOLVERS, RIGHT),
         behaviour="right within the bound, rates and angles as right as at home",
-        examine=lambda value: try_scene(value, heaved_back(value, "wishbone"), SOLVERS),
+        scene=partial(heaved_back, car="wishbone"),
     ),
     _sizes(
         "sizes-wishbone",

@@ -148,6 +148,7 @@ def law_cases(
     expected: Mapping[str, Expected] = OURS,
     measure: Measure | None = None,
     second: tuple[float, ...] | None = None,
+    also_answered: tuple[float, ...] = (),
 ) -> tuple[Case, ...]:
     """A case of this group for every suspension; see `trial.scene_case`.
 
@@ -155,6 +156,7 @@ def law_cases(
         values: tried of the first suspension.
         second: tried of the others; every fourth of the first one's if not given.
         scene: the content at a value, of a car.
+        also_answered: see `Case`.
     """
     return tuple(
         scene_case(
@@ -167,6 +169,7 @@ def law_cases(
             expected=expected,
             behaviour=behaviour,
             measure=measure,
+            also_answered=also_answered,
         )
         for suffix, car in EVERY.items()
     )
@@ -229,6 +232,7 @@ CASES: tuple[Case, ...] = (
         "by series right, or refused as too long; at its instants right",
         BY_STEPS,
         second=(1e3,),
+        also_answered=(1e2,),  # few enough swings for any solver
     ),
     *law_cases(
         "phase-of-many-turns",

@@ -21,7 +21,7 @@ from validate.cars.macpherson import LOWER, ROD_END, TOP
 from validate.cars.scene_content import scene_content
 from validate.hard.cars import CARS, PAPER_CAR, drawn_at
 from validate.hard.case import Case, Expected, decades
-from validate.hard.trial import try_scene
+from validate.hard.trial import scene_case
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -100,7 +100,7 @@ def _case(
         share = value if law == "shrinking" else 1.0
         return drawing(points(value), 0.1 * share, 20.0 * share, car)
 
-    return Case(
+    return scene_case(
         name=f"{name}-wishbone" if car == "wishbone" else name,
         group=GROUP,
         why=why,
@@ -108,7 +108,7 @@ def _case(
         values=values[::3] if car == "wishbone" else values,
         expected=dict.fromkeys(SOLVERS, SOLVED),
         behaviour=f"right within the bound, or refused with a reason; right from {RIGHT_FROM:g} up",
-        examine=lambda value: try_scene(value, scene(value), SOLVERS),
+        scene=scene,
     )
 
 

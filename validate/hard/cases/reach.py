@@ -80,22 +80,23 @@ class Drive:
             return self.end.reach
         return float(abs(Fraction(np.pi if self.ahead else 0.0) - self.end.value))
 
-    def scene(self, overshoot: float) -> Scene:
-        """The scene that asks for an overshoot, in parts of the room."""
+    def content(self, overshoot: float) -> dict[str, Any]:
+        """Of the scene that asks for an overshoot, in parts of the room."""
         goal = self.end.beyond(overshoot * self.room / self.end.reach)
         start = self.home[self.driven]
         laws: dict[str, Law] = dict(self.home)
         laws[self.driven] = (start, goal - start) if self.moving else goal
-        car = CARS[self.car]
-        return Scene.from_mapping(
-            scene_content(
-                car,
-                laws["arm_angle"],
-                laws["rack"],
-                stop=1.0 if self.moving else 0.0,
-                samples=SAMPLES if self.moving else 1,
-            )
+        return scene_content(
+            CARS[self.car],
+            laws["arm_angle"],
+            laws["rack"],
+            stop=1.0 if self.moving else 0.0,
+            samples=SAMPLES if self.moving else 1,
         )
+
+    def scene(self, overshoot: float) -> Scene:
+        """The scene that asks for an overshoot, in parts of the room."""
+        return Scene.from_mapping(self.content(overshoot))
 
 
 def examine(drive: Drive, overshoot: float) -> Trial:
@@ -227,6 +228,8 @@ def _case(drive: Drive, name: str, where: str, values: tuple[float, ...]) -> Cas
         ),
         examine=lambda overshoot: examine(drive, overshoot),
         unit=unit,
+        content=drive.content,
+        without_pose=True,
     )
 
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene
+from pointcoord import Motion
 from validate.curves.numbers import Number, numbers_of, usual
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers
 from validate.html.run import Run, Told
-from validate.html.section import Block, Section
+from validate.html.section import Block, Section, which
 
 Array = NDArray[np.float64]
 
@@ -22,23 +22,24 @@ MARKS = 25
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.told for block in _of_scene(one)]
+    blocks = [block for one in run.drawn for block in _of_scene(one, run.points)]
+    return [*which(run), *blocks] if blocks else []
 
 
-def _of_scene(one: Told) -> Iterator[Block]:
+def _of_scene(one: Told, points: int) -> Iterator[Block]:
     if one.scene is None or one.motion is None:
         return
     other = one.examined.outcomes[0].solutions[1] if one.examined.outcomes else None
     curves = usual(one.scene, numbers_of(one.scene), one.motion)
-    panels = tuple(_panel(across, up, one.scene, one.motion, other) for across, up in curves.pairs)
+    panels = tuple(_panel(across, up, one.motion, other, points) for across, up in curves.pairs)
     against = f"; dots: {other.formulation}" if other is not None else ""
     yield Plots(f"{one.examined.name}{against}", panels)
 
 
-def _panel(across: Number, up: Number, scene: Scene, motion: Motion, other: Solution | None) -> Panel:
+def _panel(across: Number, up: Number, motion: Motion, other: Solution | None, points: int) -> Panel:
     values = [_read(number, motion) for number in (across, up)]
     # Of a stretch of a curve the place farthest out is kept.
-    at = fewer(np.abs(values[0] - values[0].mean()))
+    at = fewer(np.abs(values[0] - values[0].mean()), points)
     traces: list[Mapping[str, Any]] = [_trace(values[0][at], values[1][at], "lines", OURS)]
     theirs = None if other is None else [_of_other(n, motion, other) for n in (across, up)]
     if theirs is not None and all(array is not None for array in theirs):

@@ -12,17 +12,32 @@ from validate.plain_text import shown
 
 
 def _blocks(run: Run) -> Sequence[Block]:
+    if run.head.kind == "cost":
+        # Where it was measured stands with the numbers; where the page is made tells nothing of them.
+        return []
     document = run.document
     told = {
         "command": document["command_line"],
         "program": " ".join(document["program"].values()),
-        "started": document["started"],
+        **({} if document["started"] is None else {"started": document["started"]}),
         "exit status": f"{document['exit_status']}, {document['verdict']}",
-        "differences": held_to(run.factor),
+        **dict(_settings(run)),
         **dict(_flat(document["machine"])),
     }
     rows = tuple((Cell(name), Cell(shown(value))) for name, value in told.items())
     return [Grid("What this page was made by.", ("what", "value"), rows)]
+
+
+def _settings(run: Run) -> Iterator[tuple[str, str]]:
+    pairs = dict.fromkeys(
+        f"{outcome.solutions[0].formulation} and {outcome.solutions[1].formulation}"
+        for one in run.told
+        for outcome in one.examined.outcomes
+    )
+    if pairs:
+        yield "compared", "; ".join(pairs)
+    if run.told:
+        yield "differences", held_to(run.factor)
 
 
 def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene
+from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
+from validate.closed_drawing import closed_drawing
 from validate.formulations.protocol import Solution
 from validate.html.run import Run, Told
-from validate.html.section import Block, Section
+from validate.html.section import Block, Cell, Grid, Section, which
 
 Array = NDArray[np.float64]
 
-# Instants of the drawing that moves, at most, and digits behind the point of its places, mm.
-FRAMES, DIGITS = 121, 2
+# Digits behind the point of places, mm.
+DIGITS = 2
+# mm; a drawing that closes comes back to less.
+ROUNDING = 1e-6
+CLOSING = (
+    "How far each point of the drawing moves until it closes at its own inputs, mm: links are as long as "
+    "drawn, and what does not fit moves. A large number is another car than the one drawn."
+)
 
 
 @dataclass(frozen=True)
@@ -40,10 +47,11 @@ class Spatial:
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.told for block in _of_scene(one)]
+    blocks = [block for one in run.drawn for block in _of_scene(one, run.frames)]
+    return [*which(run), *blocks, *_closing(run)]
 
 
-def _of_scene(one: Told) -> Iterator[Block]:
+def _of_scene(one: Told, frames: int) -> Iterator[Block]:
     if one.scene is None or one.motion is None or not one.examined.outcomes:
         return
     solutions = [
@@ -55,7 +63,7 @@ def _of_scene(one: Told) -> Iterator[Block]:
         return
     topology = one.scene.mechanism.topology
     count = len(one.motion.times)
-    at = np.arange(0, count, -(-count // FRAMES))
+    at = np.arange(0, count, -(-count // frames))
     moving = [_places(one.scene, one.motion, solution) for solution in solutions]
     points = [name for name in topology.points if all(name in places for places in moving)]
     number = {name: i for i, name in enumerate(points)}
@@ -72,6 +80,7 @@ def _of_scene(one: Told) -> Iterator[Block]:
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
         "axes": [right.tolist(), np.cross(right, up).tolist(), up.tolist()],
         "drawn": _rounded(np.stack([known[name] for name in points])),
+        "closed": _closed(one.scene, known, points),
         "models": [
             {
                 "name": solution.formulation,
@@ -81,6 +90,15 @@ def _of_scene(one: Told) -> Iterator[Block]:
         ],
     }
     yield Spatial(one.examined.name, _caption(one, solutions), json.dumps(data, allow_nan=False), len(at))
+
+
+def _closed(scene: Scene, known: Mapping[str, Array], points: Sequence[str]) -> Any:
+    """Where the points of the drawing are once it is closed; None of one that cannot be."""
+    try:
+        places = closed_drawing(scene).places
+    except PointcoordError:
+        return None
+    return _rounded(np.stack([places.get(name, known[name]) for name in points])) if places else None
 
 
 def _places(scene: Scene, motion: Motion, solution: Solution) -> dict[str, Array]:
@@ -95,6 +113,30 @@ def _places(scene: Scene, motion: Motion, solution: Solution) -> dict[str, Array
 
 def _rounded(places: Array) -> Any:
     return np.round(places, DIGITS).tolist()
+
+
+def _closing(run: Run) -> Iterator[Block]:
+    """How far the points of the drawings move until they close."""
+    told = [one for one in run.drawn if one.examined.closing is not None]
+    movements = {one.examined.name: _movements(one) for one in told}
+    points = list(dict.fromkeys(name for moved in movements.values() for name in moved))
+    rows = tuple(
+        (Cell(name), *(Cell(_size(moved[point]) if point in moved else "") for point in points))
+        for name, moved in movements.items()
+    )
+    if points:
+        yield Grid(CLOSING, ("scene", *points), rows)
+
+
+def _movements(one: Told) -> Mapping[str, float]:
+    closing = one.examined.closing or {}
+    movements: Mapping[str, float] = closing.get("movements", {})
+    return movements
+
+
+def _size(movement: float) -> str:
+    # Less is rounding, and says nothing of the drawing.
+    return f"{movement:.3g}" if movement > ROUNDING else "0"
 
 
 def _caption(one: Told, solutions: Sequence[Solution]) -> str:

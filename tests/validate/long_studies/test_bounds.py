@@ -6,28 +6,31 @@ from typing import Any
 import pytest
 from hypothesis import assume, given, settings, target
 from hypothesis import strategies as st
+from worked_out import worked_out
 
 from validate.cars.input_limits import Linkage
 from validate.cars.near_singular import approach, near_pose
 from validate.cars.registry import VARIANTS
 from validate.cars.strategies import cars
-from validate.reference import InfeasibleError, solve_reference
-from validate.studies.bounds import (
-    BoundStudy,
+from validate.exit_status import ExitStatus
+from validate.long_studies.bounds import (
+    BoundsStudy,
     Check,
+    FoundBounds,
     Refusal,
     bounds_data,
-    bounds_text,
+    bounds_parts,
     error_over_distance,
     error_over_rounding,
     fitted,
+    found_in,
     held_pose,
     looseness,
-    main,
     moving_instants,
     of_variant,
-    study,
 )
+from validate.output.terminal import text_of
+from validate.reference import InfeasibleError, solve_reference
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # A pose takes 40 ms, so the short profile searches briefly and the deep one as long as any.
@@ -78,7 +81,7 @@ def test_bounds_hold_between_the_ends_of_the_segments_of_a_motion(number: int) -
 
 @pytest.fixture(scope="module")
 def small() -> Any:
-    return study(60, seed=0, motions=5)
+    return found_in(worked_out(BoundsStudy(60, motions=5, seed=0)), seed=0)
 
 
 def test_bounds_are_loose_by_about_one_digit_and_errors_follow_the_condition_number(small: Any) -> None:
@@ -97,19 +100,19 @@ def test_every_pose_is_counted_once(small: Any) -> None:
     assert set(range(60)) <= set(held)
 
 
-def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
     from pointcoord.bounds import proof
 
     honest = proof._reported_bound
     monkeypatch.setattr(proof, "_reported_bound", lambda *a: honest(*a) * 1e-6)
-    assert main(["--poses", "5", "--motions", "0"]) == 1
-    assert "bounds below the error: 0" not in capsys.readouterr().out
+    study = BoundsStudy(5, motions=0)
+    findings = study.findings(worked_out(study))
+    assert findings.status == ExitStatus.DISAGREE
+    assert "bounds below the error: 0" not in text_of(findings.parts)
 
 
 def test_report_as_text_and_as_plain_data_say_the_same(small: Any) -> None:
-    text, data = bounds_text(small), bounds_data(small)
+    text, data = text_of(bounds_parts(small)), bounds_data(small)
     assert "bounds below the error: 0" in text
     for variant in VARIANTS:
         count = len(of_variant(small.held, variant))
@@ -162,4 +165,4 @@ def test_power_laws_are_fitted() -> None:
 
 def test_refusals_carry_their_reason() -> None:
     refusal = Refusal(3, VARIANTS[0], 1e-12, "pointcoord: AssemblyError; reference: answers")
-    assert refusal.reason in bounds_text(BoundStudy(0, (), (), (refusal,)))
+    assert refusal.reason in text_of(bounds_parts(FoundBounds(0, (), (), (refusal,))))

@@ -4,7 +4,7 @@ Two sets of random poses of every suspension (see `near_singular`), each reprodu
 close to the end of an input, and motions that run towards such an end, at random instants between. Each
 instant is proven alone and among many that are close to it; the lesser bound counts.
 
-    python -m validate.studies.bounds --poses 10000
+    pointcoord study bounds --poses 10000
 
 The error of a pose is its distance from the reference, whose own is below 1e-40 of the car. It must never
 exceed the bound:
@@ -19,14 +19,12 @@ double-logarithmic scales.
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,12 +35,9 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.registry import VARIANTS, Variant
 from validate.cars.scene_content import scene_content
-from validate.door import guarded
 from validate.exit_status import ExitStatus
-from validate.output.console import Console
-from validate.output.document import Head, write_json
-from validate.output.files import require_writable
-from validate.output.report import table
+from validate.long_studies.study import Findings, Kind, Number, Row
+from validate.output.terminal import Part, Table
 from validate.reference import InfeasibleError, Instant, NoReferenceError
 from validate.reference.exact import as_fraction
 
@@ -54,6 +49,12 @@ INSTANTS = 4  # per motion
 COMPANY = 63  # instants beside each
 CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
 LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
+HELD, MOVING = "held", "moving"
+# Of a check, in the order of its attributes.
+NUMBERS = (
+    *("distance", "instant", "condition", "size", "far"),
+    *("error", "bound", "carried_error", "carried_bound"),
+)
 FOLD = 1e-3  # nearer to the end than this part of the range, its fold is all that matters
 
 
@@ -112,7 +113,7 @@ class Refusal:
 
 
 @dataclass(frozen=True)
-class BoundStudy:
+class FoundBounds:
     """What a study found; `held` are poses at the end of an input, `moving` instants of motions."""
 
     seed: int
@@ -233,22 +234,77 @@ def _error(reference: Instant, name: str, place: Array) -> float:
     return max(float(abs(as_fraction(exact, name) - Fraction(float(found)))) for exact, found in pairs)
 
 
-def study(poses: int, seed: int, motions: int | None = None) -> BoundStudy:
-    """Hold poses and instants of motions against the reference.
+@dataclass(frozen=True)
+class BoundsStudy:
+    """Poses close to the end of an input, and instants of motions towards one, held against the reference.
 
-    Args:
+    A row of its records is a check or a refusal: the columns of `Check`, its variant called suspension, and
+    refusal, the reason of one. Part is held or moving.
+
+    Attributes:
         poses: how many cars are held close to the end of an input.
-        motions: how many motions run towards one; a twentieth of the poses unless given.
+        motions: how many motions run towards one.
+        seed: of both.
     """
-    results = [result for number in range(poses) for result in held_pose(near_pose(number, seed))]
-    count = poses // 20 if motions is None else motions
-    moved = [result for number in range(count) for result in moving_instants(number, seed)]
-    return BoundStudy(
-        seed=seed,
-        held=tuple(r for r in results if isinstance(r, Check)),
-        moving=tuple(r for r in moved if isinstance(r, Check)),
-        refusals=tuple(r for r in (*results, *moved) if isinstance(r, Refusal)),
-    )
+
+    poses: int
+    motions: int
+    seed: int = 0
+
+    name = "bounds"
+    noun = "pose"
+    chunk = 4
+    columns: ClassVar[Mapping[str, Kind]] = {
+        **dict.fromkeys(("suspension", "driven", "lock", "refusal"), "string"),
+        **dict.fromkeys(NUMBERS, "float64"),
+    }
+
+    @property
+    def settings(self) -> Mapping[str, str | int]:
+        """The seed."""
+        return {"seed": self.seed}
+
+    @property
+    def numbers(self) -> Sequence[Number]:
+        """One for each car that is held, and for each motion."""
+        held = (Number(HELD, number) for number in range(self.poses))
+        return [*held, *(Number(MOVING, number) for number in range(self.motions))]
+
+    def examine(self, number: Number) -> list[Row]:
+        """Hold a pose, or the instants of a motion, against the reference."""
+        if number.part == HELD:
+            found = held_pose(near_pose(number.number, self.seed))
+        else:
+            found = moving_instants(number.number, self.seed)
+        return [_row(one) for one in found]
+
+    def findings(self, rows: Sequence[Row]) -> Findings:
+        """Whether every bound holds, and how loose they are."""
+        found = found_in(rows, self.seed)
+        status = ExitStatus.DISAGREE if found.broken else ExitStatus.AGREE
+        return Findings(bounds_parts(found), bounds_data(found), status)
+
+
+def _row(one: Check | Refusal) -> Row:
+    if isinstance(one, Refusal):
+        return {"suspension": one.variant.words, "distance": one.distance, "refusal": one.reason}
+    names = ("driven", "lock", *NUMBERS)
+    return {"suspension": one.variant.words, **{name: getattr(one, name) for name in names}}
+
+
+def found_in(rows: Sequence[Row], seed: int) -> FoundBounds:
+    """What the rows of a study say."""
+    variants = {variant.words: variant for variant in VARIANTS}
+    checks: dict[str, list[Check]] = {HELD: [], MOVING: []}
+    refusals = []
+    for row in rows:
+        number, variant = row["number"], variants[row["suspension"]]
+        if row["refusal"] is not None:
+            refusals.append(Refusal(number, variant, row["distance"], row["refusal"]))
+            continue
+        given = {name: row[name] for name in ("driven", "lock", *NUMBERS)}
+        checks[row["part"]].append(Check(number=number, variant=variant, **given))
+    return FoundBounds(seed, tuple(checks[HELD]), tuple(checks[MOVING]), tuple(refusals))
 
 
 @dataclass(frozen=True)
@@ -309,27 +365,29 @@ def decades(checks: Sequence[Check]) -> list[tuple[int, list[Check]]]:
     return sorted(found.items())
 
 
-def bounds_text(study: BoundStudy) -> str:
+def bounds_parts(study: FoundBounds) -> tuple[Part, ...]:
     """The whole study."""
-    parts = [
+    sets = (
+        (study.held, "poses", ", held close to the end of an input"),
+        (study.moving, "instants of motions", " that run towards the end of an input"),
+    )
+    return (
         _summary(study),
+        "",
         *(
-            _set_text(f"{what} of cars ({variant.words}){how}", of_variant(checks, variant))
-            for checks, what, how in (
-                (study.held, "poses", ", held close to the end of an input"),
-                (study.moving, "instants of motions", " that run towards the end of an input"),
-            )
+            part
+            for checks, what, how in sets
             for variant in VARIANTS
+            for part in _set_parts(f"{what} of cars ({variant.words}){how}", of_variant(checks, variant))
         ),
         f"refused: {len(study.refusals)}",
         *(f"  {count}  {reason}" for reason, count in _reasons(study)),
         f"bounds below the error: {len(study.broken)}",
         *(f"  {_case(check)}" for check in study.broken),
-    ]
-    return "\n".join(parts)
+    )
 
 
-def _summary(study: BoundStudy) -> str:
+def _summary(study: FoundBounds) -> Table:
     """A row for each suspension and closure."""
     rows = []
     for variant in VARIANTS:
@@ -341,12 +399,12 @@ def _summary(study: BoundStudy) -> str:
         loose = f"{np.median(looseness(checks)['solved points']):.3g}" if checks else "-"
         rows.append((variant.words, *map(str, counts), share, loose))
     head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")
-    return table((*head, "largest error / bound", "median bound / error"), rows) + "\n"
+    return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 
-def _set_text(name: str, checks: Sequence[Check]) -> str:
+def _set_parts(name: str, checks: Sequence[Check]) -> tuple[Part, ...]:
     if not checks:
-        return f"{name}: none"
+        return (f"{name}: none",)
     by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
     rows = [
         (
@@ -370,20 +428,18 @@ def _set_text(name: str, checks: Sequence[Check]) -> str:
         for points, ratio in looseness(checks).items()
     ]
     worst, most = max(checks, key=lambda c: c.share), max(checks, key=lambda c: c.loss)
-    return "\n".join(
-        [
-            f"{len(checks)} {name}; medians, unless it says largest",
-            "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
-            table(head, rows),
-            table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), quantiles),
-            f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
-            f"scatter {by_rounding.scatter:.2f} decades",
-            f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
-            f"scatter {by_distance.scatter:.2f} decades",
-            f"nearest to its bound: {_case(worst)}",
-            f"largest loss: {_case(most)}",
-            "",
-        ]
+    return (
+        f"{len(checks)} {name}; medians, unless it says largest",
+        "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
+        Table(head, tuple(rows)),
+        Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(quantiles)),
+        f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
+        f"scatter {by_rounding.scatter:.2f} decades",
+        f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
+        f"scatter {by_distance.scatter:.2f} decades",
+        f"nearest to its bound: {_case(worst)}",
+        f"largest loss: {_case(most)}",
+        "",
     )
 
 
@@ -396,11 +452,11 @@ def _case(check: Check) -> str:
     )
 
 
-def _reasons(study: BoundStudy) -> list[tuple[str, int]]:
+def _reasons(study: FoundBounds) -> list[tuple[str, int]]:
     return Counter(refusal.reason for refusal in study.refusals).most_common()
 
 
-def bounds_data(study: BoundStudy) -> dict[str, Any]:
+def bounds_data(study: FoundBounds) -> dict[str, Any]:
     """The study as numbers, words, lists and mappings; None where a number is not finite."""
     return {
         "seed": study.seed,
@@ -436,31 +492,3 @@ def _plain(fields: dict[str, Any]) -> dict[str, Any]:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a study and print it; 0 if every bound holds, else 1."""
-    parser = argparse.ArgumentParser(prog="python -m validate.studies.bounds", description=study.__doc__)
-    parser.add_argument("--poses", type=int, default=10_000)
-    parser.add_argument("--motions", type=int)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", metavar="FILE", help="- for standard output, which is then all of it")
-    options = parser.parse_args(arguments)
-    return guarded(lambda console: _run(options, console), "validate.studies.bounds")
-
-
-def _run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    if options.json not in (None, "-"):
-        require_writable(options.json)
-    head = Head.of("bounds", ("python", "-m", "validate.studies.bounds", *sys.argv[1:]))
-    done = study(options.poses, options.seed, options.motions)
-    status = ExitStatus.DISAGREE if done.broken else ExitStatus.AGREE
-    if options.json:
-        write_json(options.json, head.document(bounds_data(done), status, True), console)
-    console.mute = options.json == "-"
-    console.say(bounds_text(done))
-    return status
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,33 +1,24 @@
-"""The deep run: every scene is counted once, and a kill at any moment loses nothing."""
+"""Random scenes through both models: every scene is counted once, and a planted fault is found."""
 
-import json
-import os
-import signal
-import subprocess
-import sys
-import time
-from dataclasses import replace
-from pathlib import Path
+import re
 
 import numpy as np
 import pytest
+from worked_out import worked_out
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import reference_solution
 from validate.adjudication.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 from validate.cars.random_cars import KINDS
-from validate.cars.random_scenes import SEED, RandomScene, random_scene
+from validate.cars.random_scenes import RandomScene, random_scene
 from validate.cars.registry import VARIANTS
+from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.studies import random_runs as deep
-from validate.studies.chunk_store import CHUNK, Chunk, Store, StoreError
-
-ROOT = Path(__file__).parents[3]
-
-
-def chunk(number: int, found: tuple[int, ...] = ()) -> Chunk:
-    return Chunk(number, {"double wishbone/regular/agreed": CHUNK}, {"position": (0.25, 7)}, found, 1.0)
+from validate.long_studies import random_runs as deep
+from validate.long_studies.random_runs import RandomStudy
+from validate.long_studies.study import Row
+from validate.output.terminal import text_of
 
 
 def test_a_number_names_one_scene() -> None:
@@ -66,19 +57,22 @@ def test_a_scene_that_is_close_to_a_lock_is_close_to_singular() -> None:
     assert max(conditions) > 1e5
 
 
-def test_every_scene_has_one_outcome(tmp_path: Path) -> None:
-    path = tmp_path / "store.jsonl"
-    store = Store(path, SEED)
-    done = deep.run_chunk(0, store, frozenset())
-    assert sum(done.outcomes.values()) == CHUNK
-    record = store.read()
-    assert record.chunks == {0: replace(done, seconds=record.chunks[0].seconds)}
-    assert sorted(record.findings) == list(done.found)
-    before = path.read_bytes()
-    deep.run_chunk(0, store, frozenset(record.findings))
-    added = path.read_bytes()[len(before) :]
-    assert b'"scene"' not in added, "a finding that is there is not written twice"
-    assert store.read().outcomes() == record.outcomes(), "a chunk done twice counts once"
+def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
+    study = RandomStudy(12)
+    rows = worked_out(study)
+    assert [row["number"] for row in rows] == list(range(12))
+    data = study.findings(rows).data
+    assert sum(counted["scenes"] for counted in data["outcomes"]) == data["scenes"] == 12
+    kept = {row["number"] for row in rows if row["scene"] is not None}
+    assert {one["number"] for one in data["written_down"]} == kept
+    for row in rows:
+        assert {"suspension", "kind", "outcome", "reason", "scene"} <= row.keys() - {None}
+        assert set(row) == {*RandomStudy.columns, "part", "number", "seconds", "worker"}
+        agreed = row["outcome"].startswith("agreed")
+        shares = [row[name] for name in row if name.startswith("share_")]
+        assert any(share is not None for share in shares) == agreed
+    for one in data["written_down"]:
+        assert Scene.from_mapping(one["scene"]) == random_scene(one["number"]).scene
 
 
 @pytest.mark.parametrize("model", ["pointcoord", "absolute"])
@@ -142,54 +136,6 @@ def test_a_refused_scene_is_told_apart_from_one_that_need_not_be() -> None:
     assert unanswered(with_arm((0.8, -over * stop / 2, over / 2))) == "no pose between the instants"
 
 
-def test_a_torn_line_is_ignored_and_its_chunk_is_done_again(tmp_path: Path) -> None:
-    path = tmp_path / "store.jsonl"
-    store = Store(path, SEED)
-    store.chunk(chunk(0))
-    whole = path.read_bytes()
-    store.chunk(chunk(1, (CHUNK,)))
-    line = path.read_bytes()[len(whole) :]
-    for kept in range(1, len(line) - 1):
-        path.write_bytes(whole + line[:kept])
-        assert list(store.read().chunks) == [0]
-        store.finding(2 * CHUNK, {"outcome": "agreed"})
-        store.chunk(chunk(2, (2 * CHUNK,)))
-        after = store.read()
-        assert list(after.chunks) == [0, 2], "what follows a torn line is read"
-        assert after.torn == (1 if line[:kept].strip() else 0)
-
-
-def test_a_chunk_without_its_findings_is_not_done(tmp_path: Path) -> None:
-    store = Store(tmp_path / "store.jsonl", SEED)
-    store.chunk(chunk(3, (3 * CHUNK + 4,)))
-    assert not store.read().chunks
-    store.finding(3 * CHUNK + 4, {"outcome": "disagreed"})
-    assert list(store.read().chunks) == [3]
-
-
-@pytest.mark.parametrize("line", ['{"other": 1}', "[1]", "7"])
-def test_a_file_of_something_else_is_refused(tmp_path: Path, line: str) -> None:
-    path = tmp_path / "store.jsonl"
-    path.write_text(line + "\n")
-    with pytest.raises(StoreError, match=r"line 1 .* give another file"):
-        Store(path, SEED).read()
-
-
-def test_results_of_another_recipe_are_not_mixed_in(tmp_path: Path) -> None:
-    path = tmp_path / "store.jsonl"
-    Store(path, SEED + 1).chunk(chunk(0))
-    with pytest.raises(StoreError, match="seed"):
-        Store(path, SEED).read()
-
-
-def test_results_of_another_method_are_not_mixed_in(tmp_path: Path) -> None:
-    path = tmp_path / "store.jsonl"
-    Store(path, SEED, "pointcoord-map").chunk(chunk(0))
-    assert Store(path, SEED, "pointcoord-map").read().chunks
-    with pytest.raises(StoreError, match=r"solved by pointcoord-map, not by pointcoord; give another file"):
-        Store(path, SEED).read()
-
-
 def test_scenes_can_be_solved_through_the_map_and_its_faults_are_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -210,55 +156,25 @@ def test_scenes_can_be_solved_through_the_map_and_its_faults_are_found(
     assert deep.examine(car).outcome.startswith("agreed")
 
 
-def test_the_status_says_whether_any_disagreed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "store.jsonl"
-    Store(path, SEED).chunk(chunk(0))
-    command = ["--count", str(CHUNK), "--store", str(path)]
-    assert deep.main(command) == 0
-    shown = capsys.readouterr().out
-    assert f"agreed             {CHUNK}" in shown.replace("  mechanisms", "\n")
-    assert "0.25" in shown
-    Store(path, SEED).chunk(
-        replace(chunk(0), outcomes={"macpherson, collinear/toggle/disagreed in wheel: absolute wrong": CHUNK})
-    )
-    assert deep.main(command) == 1
-    path.write_text("{}\n")
-    assert deep.main(command) == 2
-    assert len(capsys.readouterr().err.splitlines()) == 1
+def row(number: int, outcome: str, **more: float) -> Row:
+    texts = {"suspension": VARIANTS[0].words, "kind": KINDS[0], "outcome": outcome}
+    every = {"part": "scenes", "number": number, "seconds": 1.0, "worker": "here"}
+    return {**dict.fromkeys(RandomStudy.columns), **every, **texts, **more}
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_nothing_is_lost_or_done_twice_when_a_run_is_killed(tmp_path: Path, workers: int) -> None:
-    path = tmp_path / "store.jsonl"
-    program = [
-        sys.executable,
-        "-m",
-        "validate.studies.random_runs",
-        "--count",
-        str(2 * CHUNK),
-        "--store",
-        str(path),
-    ]
-    program += ["--workers", str(workers)]
-    for _ in range(2):
-        before = path.stat().st_size if path.exists() else 0
-        run = subprocess.Popen(program, start_new_session=True, stdout=subprocess.DEVNULL, cwd=ROOT)
-        # Killed as soon as something more is written down: in the middle of a chunk.
-        while run.poll() is None and (not path.exists() or path.stat().st_size == before):
-            time.sleep(0.005)
-        if run.poll() is None:
-            # The whole session, workers included, as when a machine goes down.
-            os.killpg(run.pid, signal.SIGKILL)
-        assert run.wait() in (-signal.SIGKILL, 0, 1)
-    last = subprocess.run(program, check=False, stdout=subprocess.DEVNULL, cwd=ROOT)
-    assert last.returncode in (0, 1)
-    lines = [json.loads(text) for text in path.read_text().split("\n") if text.endswith("}")]
-    assert sorted(line["chunk"] for line in lines if "chunk" in line) == [0, 1]
-    written = [line["scene"] for line in lines if "scene" in line]
-    assert len(written) == len(set(written))
-    record = Store(path, SEED).read()
-    assert sum(record.outcomes().values()) == 2 * CHUNK
-    if workers == 1:
-        again = deep.run_chunk(1, Store(tmp_path / "again.jsonl", SEED), frozenset())
-        assert record.chunks[1].outcomes == again.outcomes
-        assert record.chunks[1].found == again.found
+def test_the_status_says_whether_any_disagreed() -> None:
+    study = RandomStudy(2)
+    agreed = [row(0, "agreed", share_position=0.25), row(1, "agreed", share_position=0.125)]
+    findings = study.findings(agreed)
+    assert findings.status == ExitStatus.AGREE
+    assert re.search(r"^agreed +2 ", text_of(findings.parts), flags=re.M)
+    assert findings.data["largest_shares"] == [{"quantity": "position", "share": 0.25, "scene": 0}]
+    for outcome in (
+        "disagreed in wheel: absolute wrong",
+        "pointcoord fails: TypeError",
+        "agreed, the reference: pointcoord and absolute wrong",
+        "only absolute refuses, locked: answer wrong",
+    ):
+        wrong = study.findings([agreed[0], row(1, outcome)])
+        assert wrong.status == ExitStatus.DISAGREE
+        assert outcome in text_of(wrong.parts)

@@ -1,0 +1,208 @@
+"""The pytest plugin: a solver of one's own, tested in five lines.
+
+    import pytest
+    from my_solver import solve
+
+    @pytest.mark.suspension_scenes(hard=True)
+    def test_my_solver_is_right(scene, plain_scene, assert_agrees):
+        assert_agrees(solve(plain_scene(scene)), scene, accuracy=1e-6)
+
+and that it does not answer where there is no answer:
+
+    @pytest.mark.impossible_scenes()
+    def test_my_solver_refuses_what_cannot_be(scene, assert_refuses):
+        assert_refuses(solve, scene)
+
+pytest loads this module at each start where it is installed, whether a test needs it or not. So nothing but
+pytest is in it, and a project that has a package `validate` of its own keeps it: what validates a solver is
+looked up by its name when a fixture or a mark is used, as the program's first lines do (`__main__`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+import pytest
+
+if TYPE_CHECKING:
+    from pointcoord import Scene
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+ARGUMENT = "scene"
+MARKS = {
+    "suspension_scenes": (
+        "(*names, hard=False, suspension=None, closure=None, near=1e-3)",
+        "built-in scenes (all, without names), hard cases, paths, or scenes themselves; hard=True adds every "
+        "hard case that has an answer, as near to its singular place as `near` says, or None: at all values",
+    ),
+    "impossible_scenes": (
+        "(*names, suspension=None, closure=None, near=1e-3)",
+        "hard cases in which some instants have no pose (all, without names); see assert_refuses",
+    ),
+}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Say what the marks are for."""
+    for name, (arguments, words) in MARKS.items():
+        text = f"{name}{arguments}: run the test with each of these as its argument {ARGUMENT!r}: {words}."
+        config.addinivalue_line("markers", text)
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Run a marked test over its scenes."""
+    own = {mark.name for mark in metafunc.definition.own_markers}
+    marks = [mark for mark in metafunc.definition.iter_markers() if mark.name in MARKS]
+    # A mark of a class or a module is for those of its tests that take a scene.
+    if ARGUMENT not in metafunc.fixturenames:
+        marks = [mark for mark in marks if mark.name in own]
+    if not marks:
+        return
+    where = f"{metafunc.definition.nodeid}: {marks[0].name}"
+    if ARGUMENT not in metafunc.fixturenames:
+        raise pytest.UsageError(f"{where}: the test takes no argument {ARGUMENT!r}; add it")
+    found = scenes_of(where, marks)
+    metafunc.parametrize(ARGUMENT, list(found.values()), ids=list(found))
+
+
+def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
+    """What some marks stand for, by the names that the tests get.
+
+    Raises:
+        UsageError: one of them cannot be followed, or none of them leaves a scene.
+    """
+    try:
+        _require_ours()
+        from pointcoord import SceneError
+
+        scenes = import_module("validate.testing.scenes")
+    except ImportError as error:
+        raise pytest.UsageError(f"{where}: {_line(error)}") from None
+    made: dict[str, Callable[..., Mapping[str, Scene]]] = {
+        "suspension_scenes": scenes.scenes_to_try,
+        "impossible_scenes": scenes.impossible_scenes,
+    }
+    found: dict[str, Scene] = {}
+    for mark in marks:
+        try:
+            found |= made[mark.name](mark.args, **mark.kwargs)
+        except TypeError as error:
+            arguments = MARKS[mark.name][0]
+            problem = _line(error).partition("() ")[2] or _line(error)
+            raise pytest.UsageError(f"{where}: {problem}; it takes {arguments}") from None
+        except (SceneError, ValueError) as error:
+            raise pytest.UsageError(f"{where}: {_line(error)}") from None
+    if not found:
+        raise pytest.UsageError(f"{where}: no scene is as the mark says; leave `suspension` out")
+    return found
+
+
+@pytest.fixture(scope="session")
+def reference() -> Callable[[Scene | str], Any]:
+    """A scene's numbers in many digits, proven and rounded once: `reference("bounce").position["..."]`.
+
+    The fixture is a function of a scene, its name or its path. What each number may be off by is in
+    `.accuracy.claims`. A scene is solved once in a run.
+
+    Raises, when it is called:
+        SceneError: there is no such scene. NoReferenceError: an instant has no pose, or none can be proven.
+    """
+    _require_installed()
+    from pointcoord import Scene
+
+    reference_solution = import_module("validate.adjudication.reference_solution").reference_solution
+    solved: dict[str, Any] = {}
+
+    def solution(scene: Scene | str) -> Any:
+        taken = Scene.load(scene) if isinstance(scene, str) else scene
+        key = taken.model_dump_json()
+        if key not in solved:
+            solved[key] = reference_solution(taken)
+        return solved[key]
+
+    return _in_one_line(solution)
+
+
+@pytest.fixture(scope="session")
+def plain_scene() -> Callable[[Scene | str], dict[str, Any]]:
+    """What a solver is given: a scene as plain data (see `validate.solvers.plain`)."""
+    _require_installed()
+    from pointcoord import Scene
+
+    given_to_solver = import_module("validate.solvers.plain").given_to_solver
+
+    def plain(scene: Scene | str) -> dict[str, Any]:
+        given: dict[str, Any] = given_to_solver(Scene.load(scene) if isinstance(scene, str) else scene)
+        return given
+
+    return _in_one_line(plain)
+
+
+@pytest.fixture(scope="session")
+def assert_agrees() -> Callable[..., Any]:
+    """`validate.assert_agrees`; where some numbers are not tested and none disagrees, the test is skipped."""
+    _require_installed()
+    assertion = import_module("validate.testing.assertion")
+
+    def agrees(states: Mapping[str, Any], scene: Scene | str, *arguments: Any, **options: Any) -> Any:
+        try:
+            return assertion.assert_agrees(states, scene, *arguments, **options)
+        except assertion.NotTested as error:
+            reason = str(error)
+        pytest.skip(reason)
+
+    return _in_one_line(agrees)
+
+
+@pytest.fixture(scope="session")
+def assert_refuses() -> Callable[..., None]:
+    """`validate.assert_refuses`."""
+    _require_installed()
+    refuses: Callable[..., None] = import_module("validate.testing.assertion").assert_refuses
+    return _in_one_line(refuses)
+
+
+def _in_one_line(function: Callable[P, T]) -> Callable[P, T]:
+    """The function with what it says of its arguments told at the line of the test, not at one of ours."""
+    told_in_a_line = import_module("validate.testing.assertion").TOLD
+
+    def called(*arguments: P.args, **options: P.kwargs) -> T:
+        __tracebackhide__ = True
+        try:
+            return function(*arguments, **options)
+        except told_in_a_line as error:
+            told = error.with_traceback(None)
+        raise told from None
+
+    return called
+
+
+def _require_installed() -> None:
+    try:
+        _require_ours()
+    except ImportError as error:
+        reason = _line(error)
+    else:
+        return
+    pytest.fail(reason, pytrace=False)
+
+
+def _require_ours() -> None:
+    """Raise ImportError unless `validate` is ours and what it needs is installed."""
+    from pointcoord.__main__ import NAME, not_ours
+
+    try:
+        validate = import_module("validate")
+    except ImportError:
+        raise ImportError(not_ours()) from None
+    if getattr(validate, "DISTRIBUTION", None) != NAME:
+        raise ImportError(not_ours())
+    import_module("validate.testing.scenes")  # which needs all of the extra
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split())

@@ -1,0 +1,53 @@
+"""Files of curves as a test writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+from validate.measured.mapping import Measured, understood
+from validate.measured.reading import columns_of_text
+
+Array = NDArray[np.float64]
+
+
+def measured(text: str, scene: Scene, **content: object) -> Measured:
+    """A file whose independent columns are exact as written."""
+    first = text.splitlines()[0].split(",")
+    exact = {
+        name.partition(" ")[0]: {"printed": 0}
+        for name in first
+        if name.startswith(("input.", "travel.", "time"))
+    }
+    columns = dict(exact)
+    own = content.pop("columns", {})
+    assert isinstance(own, Mapping)
+    for name, part in own.items():
+        columns[name] = {**columns.get(name, {}), **part}
+    return understood(columns_of_text(text, "x.csv"), {"columns": columns, **content}, scene, "map.toml")
+
+
+def at_inputs(car: Scene, inputs: Mapping[str, Sequence[float]], samples: int) -> dict[str, dict[str, Array]]:
+    """A car's numbers, by a motion through inputs that go evenly from one value to another."""
+    content = car.model_dump(exclude_none=True) | {
+        "inputs": {name: {"polynomial": [a, b - a] if b != a else [a]} for name, (a, b) in inputs.items()},
+        "time": {"start": 0.0, "stop": 1.0, "samples": samples},
+    }
+    content.pop("points", None)
+    motion = simulate(Scene.from_mapping(content, "inputs"))
+    return {quantity: dict(part) for quantity, part in motion.numbers.items()}
+
+
+def table(columns: Mapping[str, Array], digits: int) -> str:
+    """Columns by their headings; independent ones with twelve digits."""
+    lines = [",".join(columns)]
+    for row in zip(*columns.values(), strict=True):
+        cells = (
+            f"{value:.12g}" if name.startswith(("input.", "travel.", "time")) else f"{value:.{digits}f}"
+            for name, value in zip(columns, row, strict=True)
+        )
+        lines.append(",".join(cells))
+    return "\n".join(lines)

@@ -1,0 +1,419 @@
+"""What the sections of a report say is what was computed, and what does not agree cannot be overlooked."""
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import made_rows
+import numpy as np
+import pytest
+
+import validate.html
+import validate.published
+from pointcoord import Scene
+from validate.cli import main
+from validate.comparison.examined import Examined, examine
+from validate.cost.report import Report
+from validate.html.data import data_files
+from validate.html.hard_cases import HardCases
+from validate.html.page import page
+from validate.html.plot import Plots
+from validate.html.run import FIRST, FURTHER, Run, Telling
+from validate.html.section import Grid, Paragraph
+from validate.html.sections.motion import Spatial
+from validate.output.document import Head, schema_text
+from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper
+from validate.published.tables import compare_published
+
+SCENES = Path(__file__).parents[3] / "pointcoord" / "scenes"
+NASTY = "<script>alert('x')</script><b onload=alert(1)>"
+
+
+class Read(HTMLParser):
+    """Cells of tables, plots and attributes of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.rows: list[list[tuple[str, str]]] = []
+        self.verdict = ("", "")
+        self.text = ""
+        self._into = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.tags.append((tag, given))
+        if tag == "tr":
+            self.rows.append([])
+        elif tag in ("th", "td"):
+            self.rows[-1].append((given.get("class") or "", ""))
+            self._into = "cell"
+        elif tag == "p" and given.get("role") == "status":
+            self.verdict = (given.get("class") or "", "")
+            self._into = "verdict"
+        elif tag in ("script", "style"):
+            self._into = "code"
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in ("th", "td", "p", "script", "style"):
+            self._into = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._into == "cell":
+            kind, text = self.rows[-1][-1]
+            self.rows[-1][-1] = (kind, text + data)
+        elif self._into == "verdict":
+            self.verdict = (self.verdict[0], self.verdict[1] + data)
+        if self._into != "code":
+            self.text += data
+
+    @property
+    def plots(self) -> dict[str, dict[str, Any]]:
+        """By what a screen reader says of them."""
+        return {
+            given["aria-label"] or "": json.loads(given["data-plot"] or "")
+            for _, given in self.tags
+            if "data-plot" in given
+        }
+
+    def of(self, name: str) -> list[list[tuple[str, str]]]:
+        """The rows of tables that begin with a name."""
+        return [row for row in self.rows if row and row[0][1].startswith(name)]
+
+
+def head(kind: str = "validate") -> Head:
+    return Head.of(kind, ("pointcoord", kind))
+
+
+def read(run: Run) -> Read:
+    return Read(page(run, {}))
+
+
+@pytest.fixture(scope="module")
+def wide() -> Examined:
+    """A scene of more instants than are drawn."""
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["time"] = content["time"] | {"samples": 301}
+    scene = Scene.from_mapping(content)
+    return examine("wide", scene, (("pointcoord", "absolute"), ("pointcoord-newton", "absolute")), False)
+
+
+def spoiled(examined: Examined) -> Examined:
+    outcomes = tuple(
+        replace(one, rows=(replace(one.rows[0], share=7.0, verdict="disagrees"), *one.rows[1:]))
+        for one in examined.outcomes
+    )
+    return replace(examined, outcomes=outcomes)
+
+
+def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_small(wide: Examined) -> None:
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["time"] = content["time"] | {"samples": 301}
+    scene, count = Scene.from_mapping(content), 400
+    telling = Telling(count)
+    for i in range(count):
+        name = f"a folder of mine/with a long name of a scene {i:03d}.toml"
+        if i % 50 == 20:
+            telling.add(Examined(name=name, problem=f"{name}: is broken at line {i}"), None)
+        else:
+            telling.add(replace(spoiled(wide) if i % 20 == 13 else wide, name=name), scene)
+    run = Run(head(), tuple(telling.told))
+    text = page(run, {})
+    assert len(text.encode()) < 8e6
+    drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
+    assert drawn == [*range(FIRST), *range(13, 13 + 20 * FURTHER, 20)]
+    # The numbers of the others are let go: hundreds of scenes fit into memory.
+    outcomes = [outcome for one in run.told if not one.drawn for outcome in one.examined.outcomes]
+    assert outcomes
+    assert not any(solution.numbers for outcome in outcomes for solution in outcome.solutions)
+    shown = Read(text)
+    assert f"Drawn are {FIRST + FURTHER} of {count} scenes" in shown.text
+    assert len([given for _, given in shown.tags if "data-motion" in given]) == FIRST + FURTHER
+    # What does not agree has its row and its reason, however far down it stands.
+    for i in (13, 393):
+        rows = shown.of(f"a folder of mine/with a long name of a scene {i:03d}.toml")
+        assert [cell for row in rows for cell in row if cell[0] == "disagrees" and "disagrees" in cell[1]]
+    (broken,) = shown.of("a folder of mine/with a long name of a scene 370.toml")
+    assert broken[1][0] == "not-tested"
+    assert "is broken at line 370" in broken[1][1]
+    assert all("not tested" in cell[1] for cell in broken[1:])
+    assert shown.verdict[0] == "verdict disagrees"
+    assert shown.verdict[1] == run.sentence
+    assert "and 10 more" in run.sentence
+    # The data have all of it.
+    assert len(run.document["scenes"]) == count
+    assert len(data_files(run)["comparisons.csv"].splitlines()) > count
+
+
+def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "off_by_a_bit.py").write_text(
+        "import numpy as np\n"
+        "def solve(given):\n"
+        "    x, y, z = given['points']['rack_centre']\n"
+        "    s = np.array(given['inputs']['rack']['position'])\n"
+        "    inner = np.stack([x + 0 * s, y - s, z + 0 * s], axis=1)\n"
+        "    inner[3, 1] += 1e-3\n"
+        "    return {'position': {'tie_rod_inner': inner}}\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    out = tmp_path / "out"
+    words = ["validate", "-q", "--solver", "off_by_a_bit:solve", "steer", "--report", str(out)]
+    assert main([*words, "--json", str(tmp_path / "run.json")]) == 1
+    document = json.loads((out / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    assert (document["exit_status"], document["verdict"]) == (1, "disagree")
+    same = json.loads((tmp_path / "run.json").read_text())
+    assert {k: v for k, v in same.items() if k != "written"} == {
+        k: v for k, v in document.items() if k != "written"
+    }
+    shown = Read((out / "index.html").read_text(encoding="utf-8"))
+    assert shown.verdict == ("verdict disagrees", "0 of 1 scene agrees; disagrees: steer.")
+    (row,) = shown.of("steer")[:1]
+    assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
+    assert "disagree in position of tie_rod_inner" in shown.text
+    assert [words for words in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
+
+
+def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> None:
+    text = (SCENES / "steer.toml").read_text().replace("[0.0, 150.0, 25.0]", "[0.0, 1500.0, 25.0]")
+    (tmp_path / "too far.toml").write_text(text)
+    (tmp_path / "broken.toml").write_text("no scene")
+    words = ["report", "-q", str(tmp_path / "out"), "--scenes-dir", str(tmp_path)]
+    assert main(words) == 2
+    shown = Read((tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
+    assert shown.verdict[0] == "verdict not-tested"
+    for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
+        row = next(row for row in shown.rows if row and row[0][1].endswith(name))
+        assert row[1][0] == "not-tested"
+        assert said in row[1][1]
+    with (tmp_path / "out" / "comparisons.csv").open(newline="") as stream:
+        assert not list(csv.DictReader(stream))
+
+
+def answer(outcome: str, error: float | None, value: float, name: str = "pointcoord") -> dict[str, Any]:
+    given = {"formulation": name, "outcome": outcome, "reason": "why", "error": error, "bound": 1e-9}
+    return given | {"share": None, "condition": None, "value": value}
+
+
+def hard_document(*answers: dict[str, Any], unexpected: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
+    values = [one["value"] for one in answers]
+    case = {
+        "name": "near-a-fold",
+        "group": NASTY,
+        "why": NASTY,
+        "parameter": NASTY,
+        "values": values,
+        "unit": f"mm{NASTY}",
+        "behaviour": "right",
+        "expected": {},
+        "seconds": 1.0,
+        "trials": [{"value": one["value"], "answers": [one], "facts": {}} for one in answers],
+        "unexpected": list(unexpected),
+    }
+    counts: dict[str, dict[str, int]] = {}
+    for one in answers:
+        of = counts.setdefault(one["formulation"], {})
+        of[one["outcome"]] = of.get(one["outcome"], 0) + 1
+    results = {"as_expected": not unexpected, "counts": counts, "cases": [case]}
+    return head("hard").document(results, None, complete=True)
+
+
+def test_hard_cases_are_drawn_as_errors_over_the_distance_and_a_wrong_one_is_told() -> None:
+    given = [answer("right", 1e-12 / value, value) for value in (1e-1, 1e-3, 1e-5)]
+    wrong = answer("wrong", 0.5, 1e-7)
+    refused = answer("refused", None, 1e-9)
+    document = hard_document(*given, wrong, refused, unexpected=[wrong])
+    run = Run(head("hard"), hard=HardCases.of(document))
+    assert run.status == 1
+    shown = read(run)
+    assert shown.verdict[0] == "verdict disagrees"
+    assert "near-a-fold" in shown.verdict[1]
+    assert any(
+        "disagrees" in kind and "wrong at 1e-07" in text for _, _, (kind, text), _ in shown.of("near-a-fold")
+    )
+    ((_, plot),) = shown.plots.items()
+    right, crosses, rings = plot["data"]
+    assert dict(zip(right["x"], right["y"], strict=True)) == {1e-1: 1e-11, 1e-3: 1e-9, 1e-5: 1e-7}
+    assert (crosses["x"], rings["x"], rings["y"]) == ([1e-9], [1e-7], [0.5])
+    assert crosses["y"][0] < 1e-11
+    assert {plot["layout"][name]["type"] for name in ("xaxis", "yaxis")} == {"log"}
+    # Plotly reads marks in its labels.
+    assert "<" not in json.dumps(plot)
+    assert not [given for _, given in shown.tags if "onload" in given]
+
+
+def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path: Path) -> None:
+    wrong = answer("wrong", 0.5, 1e-7)
+    for unexpected, status in (([], 0), ([wrong], 1)):
+        file = tmp_path / "hard.json"
+        file.write_text(json.dumps(hard_document(answer("right", 1e-12, 1e-1), unexpected=unexpected)))
+        out = tmp_path / f"out {status}"
+        assert main(["report", "-q", str(out), "steer", "--hard", str(file)]) == status
+        shown = Read((out / "index.html").read_text(encoding="utf-8"))
+        assert "Tried by `pointcoord hard`" in shown.text
+        assert shown.verdict[0] == ("verdict disagrees" if status else "verdict agrees")
+        assert json.loads((out / "results.json").read_text())["exit_status"] == status
+        assert json.loads((out / "hard.json").read_text()) == json.loads(file.read_text())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "is no JSON"),
+        ("[" * 100_000, "is no JSON"),
+        ("[]", "holds no hard cases"),
+        ('{"kind": "hard", "schema_version": 99}', "schema version 99"),
+        ('{"kind": "hard", "schema_version": 1, "complete": false}', "did not come to its end"),
+        ('{"kind": "hard", "schema_version": 1, "complete": true, "cases": [1]}', "is damaged"),
+    ],
+)
+def test_a_file_that_holds_no_hard_cases_is_refused_in_a_line(
+    text: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "hard.json").write_text(text)
+    assert main(["report", str(tmp_path / "out"), "steer", "--hard", str(tmp_path / "hard.json")]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> None:
+    rows = tuple(
+        made_rows.measured("bounce", way, setting, {"position": error}, solve, rates=0.0)
+        for way, setting, error, solve in (
+            ("series", "a", 1e-3, 1e-5),
+            ("series", "b", 1e-9, 5e-5),
+            (f"mine{NASTY}", "a", 1e-6, 2e-4),
+        )
+    )
+    report = Report("rows", None, "pointcoord cost", False, rows)
+    shown = read(Run(head("cost"), cost=report))
+    ((_, plot),) = shown.plots.items()
+    series, mine = plot["data"]
+    # Solving and output, in us.
+    assert series["x"] == pytest.approx([10.1, 50.1])
+    assert series["y"] == [1e-3, 1e-9]
+    assert mine["y"] == [1e-6]
+    assert "<" not in json.dumps(plot)
+    # Times are neither right nor wrong.
+    assert shown.verdict == ("", "")
+
+
+def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
+    tables = compare_published()
+    assert {one.table.name for one in tables} == {"lotus-bump", "lotus-steering"}
+    run = Run(head(), published=tables)
+    assert run.status == 0
+    shown = read(run)
+    for one in tables:
+        for line in one.table.files[0].read_text().splitlines()[1:]:
+            at, *numbers = line.split(",")
+            # The steering table's rack moves the other way than ours.
+            rows = shown.of(f"{-float(at) + 0.0 if one.table.note else float(at):g}")
+            found = [_begins(row[1:], numbers) for row in rows]
+            assert any(found), line
+        assert one.table.source in shown.text
+    bump = tables[0]
+    wrong = replace(bump, found=replace(bump.found, outcome=spoiled_outcome(bump.found.outcome)))
+    spoilt = Run(head(), published=(wrong,))
+    assert spoilt.status == 1
+    assert bump.table.title in spoilt.sentence
+    assert ("disagrees", "disagrees") in [(k, t[:9]) for row in read(spoilt).of("verdict") for k, t in row]
+
+
+def _begins(cells: Sequence[tuple[str, str]], numbers: Sequence[str]) -> bool:
+    return all(text.startswith(f"{float(n):g}") for (_, text), n in zip(cells, numbers, strict=False))
+
+
+def spoiled_outcome(outcome: Any) -> Any:
+    return replace(
+        outcome, rows=(replace(outcome.rows[0], share=3.0, verdict="disagrees"), *outcome.rows[1:])
+    )
+
+
+def test_the_figures_have_the_printed_rows_and_the_errata_their_numbers() -> None:
+    shown = read(Run(head(), paper=compare_with_paper()))
+    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots.items()}
+    for number, table in ((6, TABLE_2), (8, TABLE_3)):
+        curve, crosses = by_number[f"Figure {number}"]
+        assert list(zip(crosses["x"], crosses["y"], strict=True)) == [
+            (r.time, r.wheel_centre[2]) for r in table
+        ]
+        at = np.interp(crosses["x"], curve["x"], curve["y"])
+        # The tables differ from what Table 1 gives by up to some 13 mm.
+        assert 0.5 < np.abs(at - crosses["y"]).max() < 20.0
+    for number in (5, 7):
+        kingpin, camber = by_number[f"Figure {number}"]
+        assert (kingpin["name"], camber["name"]) == ("kingpin", "camber")
+        assert np.abs(np.diff(kingpin["y"])).max() < 5.0  # degrees, and smooth
+    errata = {row[0][1]: row[-1][1] for row in shown.rows if len(row) == 4 and row[0][1].isdigit()}
+    assert list(errata) == [str(i) for i in range(1, 10)]
+    # Found by hand from the printed numbers.
+    for number, said in (
+        ("1", "7.94 degrees"),
+        ("1", "16.8 mm"),
+        ("2", "3.60 mm"),
+        ("3", "6.1 degrees"),
+        ("7", "computed from 1.46"),
+        ("8", "rank 1, all three components rank 2"),
+    ):
+        assert said in errata[number]
+
+
+def test_what_a_page_is_made_of_is_installed_with_it() -> None:
+    templates = Path(validate.html.__file__).with_name("templates")
+    needed = {"page.html", "page.css"}
+    for block in (Grid, Paragraph, Plots, Spatial):
+        needed |= {block.template, *(name for name in block.scripts if name.endswith(".js"))}
+    assert needed <= {file.name for file in templates.iterdir()}
+    published = {file.suffix for file in Path(validate.published.__file__).parent.iterdir()}
+    assert {".csv", ".toml"} <= published
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["validate", "--data", "x.csv", "steer", "--report", "OUT"], "--report is about scenes"),
+        (["report", "OUT", "steer", "--data", "x.csv"], "of which there is no page"),
+        (["report", "OUT", "steer", "--cost", "no such file"], "--cost no such file"),
+        (["hard", "--list", "--report", "OUT"], "leave it out with --list"),
+        (["validate", "steer", "--report", ""], "--report '' names no folder"),
+    ],
+)
+def test_a_report_that_cannot_be_is_refused_in_a_line(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main([str(out) if word == "OUT" else word for word in words]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert not out.exists()
+
+
+def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:
+    assert main(["hard", "-q", "knuckle-in-line-wishbone", "--report", str(tmp_path)]) == 0
+    document = json.loads((tmp_path / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    assert (document["kind"], document["verdict"]) == ("hard", "agree")
+    shown = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
+    assert shown.verdict[0] == "verdict agrees"
+    assert "1 hard case at " in shown.verdict[1]
+    answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
+    with (tmp_path / "hard.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert [(one["formulation"], one["outcome"]) for one in lines] == [
+        (one["formulation"], one["outcome"]) for one in answers
+    ]
+    for line, one in zip(lines, answers, strict=True):
+        assert line["error"] == ("" if one["error"] is None else repr(one["error"]))

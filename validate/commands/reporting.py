@@ -1,0 +1,98 @@
+"""`--report DIR`: the page of a run, in a folder with its data."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from validate.commands.usage import UsageError
+from validate.output.console import Console
+from validate.plain_text import shown
+
+# What a page is made of is imported where one is made: most runs make none.
+if TYPE_CHECKING:
+    from validate.html.run import Run, Telling
+
+
+def add_report(parser: argparse.ArgumentParser) -> None:
+    """The option of a command whose results make a page."""
+    parser.add_argument(
+        "--report",
+        metavar="DIR",
+        help="write a page of HTML that needs no network, with its data, into a folder",
+    )
+
+
+def _nothing(run: Run) -> Run:
+    return run
+
+
+@dataclass(frozen=True)
+class Page:
+    """Where a page goes, and what it holds beside the run that it is of.
+
+    Attributes:
+        with_more: adds to a run what else is computed for its page.
+        option: that names the folder, with a space behind it.
+    """
+
+    folder: str
+    with_more: Callable[[Run], Run] = _nothing
+    option: str = "--report "
+
+    @property
+    def place(self) -> str:
+        """The page itself, for people."""
+        from validate.html.folder import PAGE
+
+        return shown(os.path.join(self.folder, PAGE))
+
+    def telling(self, count: int) -> Telling:
+        """What takes in so many scenes for the page."""
+        from validate.html.run import Telling
+
+        return Telling(count)
+
+    def require(self) -> None:
+        """Find out that there can be no page, before anything is solved.
+
+        Raises:
+            MissingPackage: a page needs the extra `report`.
+            UsageError: the folder has no name, or cannot be a report's.
+            OutputError: it cannot be written.
+        """
+        from validate.html.folder import NotOurs, require_folder
+        from validate.html.page import require_templates
+
+        if not self.folder.strip():
+            raise UsageError(
+                f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
+            )
+        require_templates()
+        try:
+            require_folder(self.folder)
+        except NotOurs as error:
+            raise UsageError(str(error)) from None
+
+    def write(self, run: Run, console: Console) -> Run:
+        """Write the page of a run.
+
+        Returns:
+            The run with what the page holds beside it.
+        Raises:
+            OutputError: it cannot be written.
+        """
+        from validate.html.folder import write_report
+
+        whole = self.with_more(run)
+        write_report(self.folder, whole)
+        console.written.append(f"{self.place} holds the report")
+        return whole
+
+
+def page_of(options: argparse.Namespace) -> Page | None:
+    """The page that `--report` asks for."""
+    return None if options.report is None else Page(options.report)

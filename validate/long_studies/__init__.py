@@ -1,0 +1,1 @@
+"""Studies of numbered work, recorded as Parquet and worked out by processes or clusters."""
