@@ -10,6 +10,7 @@ anything, nor have asked for anything but itself.
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -113,7 +114,7 @@ def page(report: Opened) -> Page:
     return report.page
 
 
-def settled(page: Page, folded: int = 2) -> None:
+def settled(page: Page, folded: int = 1) -> None:
     """Of each section so many that open are open, all plots drawn for the window as it is."""
     page.evaluate(
         """async (folded) => {
@@ -156,9 +157,7 @@ def test_the_page_is_there_after_few_seconds_of_work(report: Opened) -> None:
 
 
 def test_all_of_the_page_is_drawn_without_a_complaint_or_a_request(report: Opened) -> None:
-    for scheme in ("dark", "light"):
-        report.page.emulate_media(color_scheme=scheme)
-        settled(report.page)
+    settled(report.page)
     assert report.page.locator("[data-plot] .main-svg").count() > 20
     assert report.complaints == []
 
@@ -175,18 +174,26 @@ def test_the_verdict_is_that_of_the_data_beside_the_page(report: Opened) -> None
     assert data["verdict"] == "agree"
     shown = report.page.locator(".verdict")
     assert shown.count() == 1
-    assert shown.inner_text() == f"{len(agree)} of {len(scenes)} scenes agree."
+    first, *others = shown.inner_text().removesuffix(".").split("; ")
+    assert first == f"{len(agree)} of {len(scenes)} scenes agree"
+    # A run may have tried hard cases as well; nothing else is told of one that agrees.
+    hard = report.folder / "hard.json"
+    cases = len(json.loads(hard.read_text(encoding="utf-8"))["cases"]) if hard.exists() else 0
+    assert [re.sub(r" at \d+ values.*: ", ": ", one) for one in others] == (
+        [f"{cases} hard cases: all as expected"] if cases else []
+    )
     assert report.page.title() == f"pointcoord: {shown.inner_text()}"
     cells = report.page.locator("#agreement td").all_inner_texts()
     asked = [cell for cell in cells if cell != "not asked for"]
     assert all(cell.startswith("agrees") for cell in asked)
+    assert report.page.locator("#agreement td.agrees").count() == len(asked)
     pairs = [{row["quantity"] for row in one["rows"]} for scene in scenes for one in scene["comparisons"]]
     assert len(asked) >= sum(map(len, pairs)) > 10
 
 
 def test_the_files_that_the_page_names_lie_beside_it(report: Opened) -> None:
     links = report.page.locator("footer a").evaluate_all("all => all.map((a) => a.getAttribute('href'))")
-    assert len(links) == 2
+    assert len(links) >= 2
     assert all((report.folder / link).is_file() for link in links)
 
 
@@ -332,7 +339,7 @@ def test_the_arrow_keys_move_the_slider_by_an_instant_and_say_its_time(page: Pag
 def test_each_model_can_be_taken_away(page: Page) -> None:
     figure = page.locator(".spatial").first
     for name, stroke in (("pointcoord", "tube"), ("absolute", "thread"), ("the drawing", "drawn")):
-        box = figure.get_by_role("checkbox", name=name)
+        box = figure.get_by_role("checkbox", name=name, exact=True)
         lines = figure.locator(f"svg[role=application] .{stroke}").first
         assert lines.is_visible()
         box.uncheck()
@@ -550,7 +557,7 @@ def test_nothing_is_wider_than_the_window_and_no_label_is_cut(page: Page, size: 
 
 
 def test_paper_shows_all_of_it_in_ink_on_white_and_in_plots_no_wider_than_their_places(page: Page) -> None:
-    settled(page, 1)
+    settled(page)
     first = page.locator("details[open]").count()
     page.set_viewport_size(PAPER)
     page.emulate_media(media="print", color_scheme="dark")

@@ -27,7 +27,7 @@ from validate.ci.record import Record, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
-from validate.output.report import about, held_to
+from validate.output.report import about, held_to, when
 from validate.plain_text import shown
 
 
@@ -116,7 +116,7 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
     name = about(row.quantity, row.name)
     if row.verdict == "not given":
         return _Case(name, "skipped", row.verdict, f"not given: {why_undecided(row, outcome)}")
-    out = _numbers("difference", row.difference, "tolerance", row.tolerance, row.unit, row.instant, row.share)
+    out = _numbers("difference", row.difference, "tolerance", row.tolerance, row.unit, when(row), row.share)
     out = (*out, f"the tolerance rests on: {row.rests_on} ({row.part:.0%} of it)")
     if row.verdict == "not tested":
         return _Case(name, "skipped", row.verdict, f"not tested: {why_undecided(row, outcome)}", out)
@@ -124,19 +124,19 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         return _Case(name, out=out)
     message = (
         f"{row.first} and {row.second} disagree: the largest difference is {_told(row.difference, row.unit)} "
-        f"at {row.instant:.9g} s, the tolerance there {_told(row.tolerance, row.unit)}; "
+        f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
         f"{_times(row.share)}{_held(outcome.factor)}"
     )
     return _Case(name, "failure", row.verdict, message, out)
 
 
 def _numbers(
-    gap: str, difference: float, bound: str, tolerance: float, unit: str, instant: float, share: float
+    gap: str, difference: float, bound: str, tolerance: float, unit: str, instant: str, share: float
 ) -> tuple[str, ...]:
     return (
         f"{gap}: {_told(difference, unit)}",
         f"{bound}: {_told(tolerance, unit)}",
-        f"instant: {instant:.9g} s",
+        f"instant: {instant}",
         f"{gap} / {bound}: {share:.6g}" if math.isfinite(share) else f"{gap} / {bound}: none",
     )
 
@@ -194,7 +194,7 @@ def _moved(move: Move, factor: float) -> _Case:
         return _Case(
             name, "skipped", move.verdict, "gone: the baseline has such numbers, and this run has none"
         )
-    out = _numbers("moved", move.moved, "bound", move.bound, move.unit, move.instant, move.share)
+    out = _numbers("moved", move.moved, "bound", move.bound, move.unit, f"{move.instant:.9g} s", move.share)
     if move.verdict == "agrees":
         return _Case(name, out=out)
     if move.verdict == "not tested":

@@ -82,7 +82,7 @@ def _told(outcome: Outcome) -> Outcome:
 
 def _without_claims(accuracy: Accuracy) -> Accuracy:
     """What is left says whether the accuracy was stated, which decides what passes."""
-    return Accuracy(np.ones(0), blind=accuracy.blind)
+    return Accuracy(np.ones(0), blind=accuracy.blind, stated=accuracy.stated)
 
 
 def ends_the_run(examined: Examined, since: Since | None) -> bool:

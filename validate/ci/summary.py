@@ -14,7 +14,7 @@ from validate.ci.moves import told_apart, worst_moves
 from validate.ci.record import Record, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.exit_status import MEANINGS, ExitStatus
-from validate.output.report import about, heading, held_to
+from validate.output.report import about, heading, held_to, when
 from validate.plain_text import shown
 
 # A service shows no more than a megabyte of it (GitHub: 1 MiB a step); a line has some 200 characters.
@@ -150,7 +150,7 @@ def _disagreements(record: Record) -> Iterator[str]:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
             yield (
                 f"{_where(examined.name, outcome, row)}: {_told(row.difference, row.unit)} apart at "
-                f"{row.instant:.6g} s, tolerance there {_told(row.tolerance, row.unit)}; "
+                f"{markdown(when(row, 6))}, tolerance there {_told(row.tolerance, row.unit)}; "
                 f"{_beyond(row.share)}"
             )
 

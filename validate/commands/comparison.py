@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -12,7 +11,6 @@ from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
-from validate.ci.files import Files
 from validate.ci.moves import baseline_data, since_text
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
@@ -25,7 +23,7 @@ from validate.commands.usage import (
     add_timings,
     load_scene,
     name_of,
-    require_target,
+    result_files,
 )
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
@@ -251,7 +249,7 @@ def compare_scenes(
     pairs = _pairs(options)
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-    files = _files(options, names, console)
+    files = result_files(options, names, console)
     mute, console.mute = console.mute, console.mute or brief
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
@@ -341,39 +339,12 @@ def _require_solver_options(options: argparse.Namespace) -> None:
         raise UsageError("--in-process has no time limit; leave --solver-timeout out, or --in-process")
 
 
-def _files(options: argparse.Namespace, names: Sequence[str], console: Console) -> Files:
-    """Where results go, each to a place of its own; standard output is left to one that is to go there.
-
-    Raises:
-        UsageError: two of them, or a result and what is read, are the same file.
-        OutputError: standard output is closed and wanted.
-    """
-    texts = {"--json": options.json, "--junit": options.junit, "--summary": options.summary}
-    targets = {**texts, "--save-baseline": options.save_baseline}
-    given = {option: target for option, target in targets.items() if target is not None}
-    for option, target in given.items():
-        require_target(target, option, tuple(names))
-    if options.save_baseline == "-":
-        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
-    if options.baseline is not None:
-        # A baseline may take the place of the one that it was compared with.
-        given = {"--baseline": options.baseline, **given}
-    by_place: dict[str, str] = {}
-    for option, target in given.items():
-        place = target if target == "-" else os.path.realpath(target)
-        other = by_place.setdefault(place, option)
-        if other != option and {other, option} != {"--baseline", "--save-baseline"}:
-            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    console.quiet, console.mute = options.quiet, "-" in texts.values()
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
-    return Files(options.junit, options.summary, options.save_baseline)
-
-
 def _names(options: argparse.Namespace) -> list[str]:
     """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
     folder = [] if options.scenes_dir is None else list(scenes_below(options.scenes_dir))
-    return [*options.scenes, *folder] or list(DEFAULT_SCENES)
+    named = [*options.scenes, *folder] or list(DEFAULT_SCENES)
+    # A scene that is named again would say the same again, under the same name; standard input is refused.
+    return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:

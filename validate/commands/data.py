@@ -7,13 +7,14 @@ import math
 from typing import Any
 
 from pointcoord import Scene
+from validate.ci.record import Record
 from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.commands.usage import (
     STANDARD_INPUT,
     UsageError,
     load_scene,
     name_of,
-    require_target,
+    result_files,
     told_as,
 )
 from validate.comparison.examined import Examined
@@ -25,13 +26,10 @@ from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.plain_text import shown
 
-# What is not done for files: instants there may be travels, and seconds is what these say.
+# What is not done for files: there is one, and its instants may be travels, which a baseline does not know.
 OF_SCENES = (
     "--scenes-dir",
-    "--tolerance-factor",
     "--fail-fast",
-    "--junit",
-    "--summary",
     "--save-baseline",
     "--baseline",
     "--report",
@@ -55,31 +53,36 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     _require(options)
     (given,) = options.scenes
     files = tuple(file for file in (options.data, options.map) if file is not None)
-    require_target(options.json, "--json", (given, *files))
-    console.quiet, console.mute = options.quiet, options.json == "-"
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
+    targets = result_files(options, (given, *files), console)
+    targets.require_writable()
     journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
     done: list[dict[str, Any]] = []
     results = {
         "scenes": done,
         "printed_formulas": [],
         "printed_tables": None,
-        "tolerance_factor": 1.0,
+        "tolerance_factor": options.tolerance_factor,
         "not_run": [],
         "baseline": None,
     }
-    with journal.closing(lambda: results, lambda: done, lambda: f"{len(done)} of 1 scenes") as ending:
-        scene, name = load_scene(given), name_of(given)
+    name = name_of(given)
+    record = Record([name], options.tolerance_factor)
+    with (
+        journal.closing(lambda: results, lambda: done, lambda: f"{len(done)} of 1 scenes") as ending,
+        targets.closing(record, None, console),
+    ):
+        scene = load_scene(given)
         with told_as(name):
             measured = read_results(options.data, options.map, scene)
-            found = compare_results(measured, scene, name, options.accuracy or 0.0)
+            accuracy, factor = options.accuracy or 0.0, options.tolerance_factor
+            found = compare_results(measured, scene, name, accuracy, factor)
         examined = _examined(found, scene, name)
+        record.add(examined, None)
         done.append(report.examined_data(examined) | {"comparisons": [results_text.data_of(found)]})
         for warning in examined.warnings:
             console.warn(f"{name}: {warning}")
         console.say(results_text.text_of(found))
-        ending.status = examined.status
+        ending.status = record.ended = examined.status
     return ending.status
 
 
@@ -88,7 +91,7 @@ def _require(options: argparse.Namespace) -> None:
         raise UsageError("--data is compared with pointcoord; leave --first and --second out")
     for option in OF_SCENES:
         value = getattr(options, option.strip("-").replace("-", "_"))
-        if value not in (None, False, 1.0):
+        if value not in (None, False):
             raise UsageError(f"{option} is about scenes that are solved; leave it out with --data")
     if len(options.scenes) != 1:
         given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"

@@ -6,11 +6,12 @@ import argparse
 import os
 import stat
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from pointcoord import Scene, SceneError
+from validate.ci.files import Files
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable
 from validate.plain_text import shown
@@ -110,6 +111,37 @@ def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()
     for scene in scenes:
         if Path(target).is_file() and Path(scene).is_file() and os.path.samefile(target, scene):
             raise UsageError(f"{option} {target} would overwrite the scene; give another file")
+
+
+def result_files(options: argparse.Namespace, read: Sequence[str], console: Console) -> Files:
+    """Where results go, each to a place of its own; standard output is left to one that is to go there.
+
+    Args:
+        read: the scenes and files that are read.
+    Raises:
+        UsageError: two of them, or a result and what is read, are the same file.
+        OutputError: standard output is closed and wanted.
+    """
+    texts = {"--json": options.json, "--junit": options.junit, "--summary": options.summary}
+    targets = {**texts, "--save-baseline": options.save_baseline}
+    given = {option: target for option, target in targets.items() if target is not None}
+    for option, target in given.items():
+        require_target(target, option, tuple(read))
+    if options.save_baseline == "-":
+        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
+    if options.baseline is not None:
+        # A baseline may take the place of the one that it was compared with.
+        given = {"--baseline": options.baseline, **given}
+    by_place: dict[str, str] = {}
+    for option, target in given.items():
+        place = target if target == "-" else os.path.realpath(target)
+        other = by_place.setdefault(place, option)
+        if other != option and {other, option} != {"--baseline", "--save-baseline"}:
+            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
+    console.quiet, console.mute = options.quiet, "-" in texts.values()
+    if not console.quiet or console.mute:
+        console.require("use --quiet, or --quiet --json FILE")
+    return Files(options.junit, options.summary, options.save_baseline)
 
 
 def _is_standard_output(target: str) -> bool:

@@ -15,6 +15,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.messages import meant, shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
+from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.formulations.asked_numbers import asked_numbers
@@ -40,6 +41,7 @@ class Comparison:
         verdict: `not tested` where the tolerance rests on what one formulation claims of itself (see
             `tolerance`); `not given` where one of them gives no such numbers, and all numbers here are NaN.
         rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
+        place: where that is in a file of results, whose instants may be travels; empty of a scene's instants.
     """
 
     scene: str
@@ -55,6 +57,7 @@ class Comparison:
     verdict: Verdict
     rests_on: str
     part: float
+    place: str = ""
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,6 +70,7 @@ class Outcome:
             what they gave.
         missing: what one formulation does not give, a line each.
         factor: how many times the derived tolerance the differences were held to.
+        explanations: what would explain that they disagree, the best first, where it was looked for.
     """
 
     scene: str
@@ -75,6 +79,7 @@ class Outcome:
     notes: tuple[str, ...]
     missing: tuple[str, ...]
     factor: float = 1.0
+    explanations: tuple[Explanation, ...] = ()
 
     @property
     def agreed(self) -> bool:

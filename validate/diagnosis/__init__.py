@@ -1,5 +1,6 @@
 """What would explain that somebody's numbers disagree with ours."""
 
-from validate.diagnosis.explain import Explanation, explain, explain_outcome
+from validate.comparison.explanation import Explanation
+from validate.diagnosis.explain import explain, explain_evidence, explain_outcome
 
-__all__ = ["Explanation", "explain", "explain_outcome"]
+__all__ = ["Explanation", "explain", "explain_evidence", "explain_outcome"]

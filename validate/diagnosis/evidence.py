@@ -6,7 +6,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -87,6 +87,9 @@ class Evidence:
         allowed: how far a given number may be from the one that it is held to, likewise.
         wrong: the rows that disagree.
         only: keys of the faults that are to be looked at; None: all.
+        over_time: whether the instants are times; else rows of a file, of inputs or travels.
+        own: how far a given number may be off by itself, in its own unit, beside what is allowed.
+        known: where points are, (N, 3), beside the rows.
         in_our_units: whether the held numbers are; after another fault they may be in no unit that is known.
     """
 
@@ -99,6 +102,9 @@ class Evidence:
     solved: Solved
     only: frozenset[Hashable] | None = None
     in_our_units: bool = True
+    over_time: bool = True
+    own: Rows = field(default_factory=dict)
+    known: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -137,12 +143,13 @@ class Evidence:
     def at(self, instants: Sequence[int]) -> Evidence:
         """The same at fewer instants."""
         some = np.asarray(instants, dtype=np.intp)
-        given, held, allowed = (
+        given, held, allowed, own = (
             {row: array[some] for row, array in rows.items()}
-            for rows in (self.given, self.held, self.allowed)
+            for rows in (self.given, self.held, self.allowed, self.own)
         )
-        return Evidence(
-            self.scene, self.times[some], given, held, allowed, self.wrong, self.solved, self.only
+        known = {point: places[some] for point, places in self.known.items()}
+        return replace(
+            self, times=self.times[some], given=given, held=held, allowed=allowed, own=own, known=known
         )
 
     def unit_of(self, row: Row) -> str:
@@ -173,7 +180,7 @@ class Evidence:
             gap = np.abs(given - held)
             some.add(int(np.argmax(np.abs(held).max(axis=1))))
             kinds = most.setdefault(row if kind_of(row) == "car" else row[0], {})
-            allowed = self.allowed[row].reshape(count, -1)
+            allowed = (self.allowed[row] + self.own.get(row, 0.0)).reshape(count, -1)
             for what, of in (("gap", gap), ("share", gap / allowed), ("theirs", np.abs(given))):
                 worst = np.nan_to_num(of, nan=np.inf).max(axis=1)
                 at = int(np.argmax(worst))
@@ -194,7 +201,7 @@ class Evidence:
         if QUANTITIES[row[0]].unit == "rad":
             gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
         gap = np.where(np.isfinite(gap), gap, np.inf)
-        return float(np.max(gap / allowed, initial=0.0))
+        return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
         """What is allowed of numbers that were computed again, from the held ones or from the drawing.
@@ -230,7 +237,8 @@ class Evidence:
         distinct: dict[int, set[float]] = {}
         for row in rows:
             part = numbers[row].reshape(len(self.times), -1)
-            off = ~(np.abs(self.given[row] - self.held[row]) <= self.allowed[row]).reshape(part.shape)
+            allowed = self.allowed[row] + self.own.get(row, 0.0)
+            off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
             step = max(100.0 * float(self.allowed[row].max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
             for axis in range(part.shape[1]):
                 some = part[off[:, axis], axis]
@@ -262,10 +270,12 @@ class Evidence:
 
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
+        if point in self.known:
+            return self.known[point]
         for row, array in self.held.items():
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
-        motion = self.solved.motion
+        motion = self.solved.motion if self.over_time else None
         if motion is None:
             return None
         (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)

@@ -28,6 +28,7 @@ from pointcoord import PointcoordError, Scene
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Outcome
+from validate.comparison.explanation import Explanation
 from validate.diagnosis.evidence import Evidence, Row, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import kinds
@@ -46,25 +47,6 @@ SPARED = 10.0
 AHEAD = 64  # instants at the beginning, for kinds that look at neighbours
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """What would explain that numbers disagree.
-
-    Attributes:
-        words: which numbers, and what was done to them.
-        kind: of fault, as its file in `kinds` calls it; two kinds joined by "and".
-        quantities: whose numbers it explains: a quantity where it explains all that disagrees of it, else
-            quantity.name.
-        leftover: the largest difference that is left when the fault is undone / what it is held to; more
-            than 1 where it explains a part only.
-    """
-
-    words: str
-    kind: str
-    quantities: tuple[str, ...]
-    leftover: float
 
 
 @dataclass(frozen=True)
@@ -99,11 +81,15 @@ def explain(scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> 
     """
     if not outcome.disagreements:
         return ()
-    evidence = Evidence.of(scene, given, held, outcome)
+    return explain_evidence(Evidence.of(scene, given, held, outcome))
+
+
+def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
+    """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = list(_supposed(evidence, _quick()))
-    if _open(evidence, found, mostly=True) and _elsewhere(evidence):
+    if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
         deep = list(_supposed(evidence, [kind for kind in kinds() if kind.solves]))
         found += deep
         for one in _ranked(deep)[:1]:
@@ -149,6 +135,8 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
 def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
     """What the numbers carry of the faults of some kinds; the same fault of several quantities is one."""
     for kind in some:
+        if kind.of_time and not evidence.over_time:
+            continue
         here = evidence
         # A car that cannot be solved, or gives no such numbers, explains nothing.
         with suppress(PointcoordError):
@@ -241,7 +229,7 @@ def _decided(evidence: Evidence, rows: Sequence[Row], fitted: int) -> bool:
 
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
-    opening = [kind for kind in kinds() if kind.opens]
+    opening = [kind for kind in kinds() if kind.opens and (evidence.over_time or not kind.of_time)]
     closing = [kind for kind in kinds() if kind.closes]
     count = len(evidence.times)
     few = np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp))

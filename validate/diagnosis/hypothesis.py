@@ -49,6 +49,7 @@ class Kind(ABC):
         follows: kinds of first faults that it may be the second of; all if empty. One that has such is none
             by itself.
         last: whether it is tried only on what nothing else explains, because it says little.
+        of_time: whether it makes sense of numbers over time only, or of a car whose inputs are known.
         reach: how many instants to either side a number that it would give depends on; None: on all of them,
             as where something is fitted. Kinds of a reach are looked for at some instants first.
     """
@@ -59,6 +60,7 @@ class Kind(ABC):
     closes = False
     follows: tuple[str, ...] = ()
     last = False
+    of_time = False
     reach: int | None = None
 
     @abstractmethod

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from validate.fitting.fit import Fit
+from validate.fitting.words import counted
 from validate.plain_text import shown
 
 
@@ -18,9 +19,7 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
         first, last, _ = fit.rms(unit)
         before.append(f"# r.m.s. difference {first:.4g} {unit} before, {last:.4g} {unit} after.")
     if not fit.unique:
-        before.append(
-            f"# Not unique: {len(fit.unseen)} combinations of coordinates are not seen by the data."
-        )
+        before.append(f"# Not unique: the data do not see {counted(len(fit.unseen))} of coordinates.")
     before += [
         f"# {one} moved by {amount:+z.4f} mm, "
         + (

@@ -21,40 +21,46 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-from flint import ctx
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
+from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import per_second
-from validate.reference import Design
-from validate.reference.design import balls, values_only
-from validate.reference.drives import Drive
-from validate.reference.dual import Dual, slope_of
-from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import EFFECTS
-from validate.reference.exact import as_ball, as_fraction
-from validate.reference.in_doubles import (
-    ORDERS,
-    Constant,
-    changes_of,
-    floats_of_jet,
-    inverse_of,
-    jacobian_of,
-    known_in_doubles,
-    lift,
-    local_places,
-    newton_step,
-    order_of,
-    part_of,
-    unknown_jets_of,
-    with_slopes,
-)
-from validate.reference.jet import Jet
-from validate.reference.kinematics import body_turns
-from validate.reference.linkage import Known, Link
-from validate.reference.vectors import Vector, dot, minus, plus
+
+try:
+    from flint import ctx
+
+    from validate.reference import Design
+    from validate.reference.design import balls, values_only
+    from validate.reference.drives import Drive
+    from validate.reference.dual import Dual, slope_of
+    from validate.reference.effects.effect import Axes
+    from validate.reference.effects.registry import EFFECTS
+    from validate.reference.exact import as_ball, as_fraction
+    from validate.reference.in_doubles import (
+        ORDERS,
+        Constant,
+        changes_of,
+        floats_of_jet,
+        inverse_of,
+        jacobian_of,
+        known_in_doubles,
+        lift,
+        local_places,
+        newton_step,
+        order_of,
+        part_of,
+        unknown_jets_of,
+        with_slopes,
+    )
+    from validate.reference.jet import Jet
+    from validate.reference.kinematics import body_turns
+    from validate.reference.linkage import Known, Link
+    from validate.reference.vectors import Vector, dot, minus, plus
+except ImportError as error:
+    raise MissingPackage("validate.fitting", error) from None
 
 Array = NDArray[np.float64]
 # By coordinate, the points that move with it, each along an axis.

@@ -65,7 +65,7 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
         "coordinates.",
         f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it; any of "
-        "them may be added:",
+        "them may be added, to first order:",
     ]
     lines += [f"    {words}" for words in unseen_words(fit)]
     return "\n".join(lines)
@@ -92,10 +92,14 @@ def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
         )
     if not fit.unique:
         found.append(
-            f"the answer is not unique: {len(fit.unseen)} combinations of coordinates are "
-            "not seen by the data"
+            f"the answer is not unique: the data do not see {counted(len(fit.unseen))} of coordinates"
         )
     return tuple(found)
+
+
+def counted(number: int) -> str:
+    """So many combinations."""
+    return f"{number} combination{'' if number == 1 else 's'}"
 
 
 def unseen_words(fit: Fit) -> list[str]:

@@ -50,6 +50,7 @@ class Accuracy:
         blind: where the claims are what an accuracy makes that was stated beforehand, at which instants they
             say nothing, (N,); such claims may be as wide as they are, and elsewhere they test. None: how
             much they test is judged by their width (see `comparison.tolerance`).
+        stated: how exactly it says beforehand that it places points, mm, if it does.
     Raises:
         AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
             about no quantity that there is.
@@ -59,6 +60,7 @@ class Accuracy:
     claims: Numbers = field(default_factory=dict)
     proven: bool = False
     blind: NDArray[np.bool_] | None = None
+    stated: float | None = None
 
     def with_claims(self, claims: Numbers) -> Accuracy:
         """The same with other claims of some quantities."""

@@ -14,7 +14,7 @@ has in the file, no number of it could tell its curve from a level line: it is n
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,9 @@ from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
+from validate.diagnosis import Explanation, explain_evidence
+from validate.diagnosis.evidence import Evidence, Solved
+from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
@@ -47,12 +50,14 @@ class Held:
     Attributes:
         ours, tolerance: (N,), NaN where there is nothing to compare.
         swing: the part of the tolerance that the independent columns' rounding makes, (N,).
+        bound: the part that is our own proven bound, (N,).
     """
 
     series: Series
     ours: Array
     tolerance: Array
     swing: Array
+    bound: Array
 
     @property
     def gap(self) -> Array:
@@ -77,39 +82,105 @@ class DataOutcome:
     Attributes:
         outcome: its comparison as that of any two solutions; its instants are values of the independent
             column, in s, rad or mm, or numbers of rows from 0 on where several inputs are independent.
-        over: what these are, with their unit. places: what to call the row of each outcome's row.
+        over: what these are, with their unit.
+        explanations: what would explain that it disagrees, the best first.
+        accuracy: how far the file's numbers may be off beside their digits, in their columns' units.
         absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
             the outcome, so that it agrees where all that is given does.
     """
 
     outcome: Outcome
     over: str
-    places: tuple[str, ...]
     absent: tuple[str, ...]
+    explanations: tuple[Explanation, ...] = ()
+    accuracy: float = 0.0
 
 
-def compare_results(measured: Measured, scene: Scene, name: str, accuracy: float = 0.0) -> DataOutcome:
+def compare_results(
+    measured: Measured, scene: Scene, name: str, accuracy: float = 0.0, factor: float = 1.0
+) -> DataOutcome:
     """Compare a file with the scene's car, at the file's own values.
 
     Args:
         name: what to call the scene.
         accuracy: how far the file's numbers may be off beside their digits, each in its column's own unit;
             what a map says of a column goes before it.
+        factor: how many times the tolerance to hold differences to.
     Raises:
         ResultsError: no row can be reached, or nothing can be compared.
         PointcoordError: the scene cannot be solved.
     """
     held, ours, notes = _held(measured, scene, accuracy)
     solution = _solution(measured, held, measured.source)
-    rows, places = [], []
-    for quantity, part in _by_name(held).items():
-        for of, columns in part.items():
-            row, place = _row(name, measured, quantity, of, columns)
-            rows.append(row)
-            places.append(place)
+    rows = [
+        _row(name, measured, quantity, of, columns, factor)
+        for quantity, part in _by_name(held).items()
+        for of, columns in part.items()
+    ]
     lacking, absent = _lacking(scene, measured)
-    outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking)
-    return DataOutcome(outcome, _over(measured), tuple(places), absent)
+    outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking, factor)
+    return DataOutcome(
+        outcome, _over(measured), absent, _explained(scene, measured, held, ours, outcome, factor), accuracy
+    )
+
+
+def _explained(
+    scene: Scene,
+    measured: Measured,
+    held: Sequence[Held],
+    ours: Solution,
+    outcome: Outcome,
+    factor: float,
+) -> tuple[Explanation, ...]:
+    """What would explain that a file disagrees: of numbers of the car and of vectors that are given whole."""
+    wrong = {(row.quantity, row.name) for row in outcome.disagreements}
+    whole = {
+        (quantity, name): sorted(columns, key=lambda h: h.series.meaning.axis or 0)
+        for quantity, part in _by_name(held).items()
+        for name, columns in part.items()
+        if len(columns) == (1 if QUANTITIES[quantity].of == "car" else 3)
+        and any(np.isfinite(h.gap).any() for h in columns)
+    }
+    if not wrong & whole.keys():
+        return ()
+    told = np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0)
+
+    def of(number: Callable[[Held], Array]) -> dict[tuple[str, str], Array]:
+        stacked = {
+            row: np.stack([number(h)[told] for h in columns], axis=-1) for row, columns in whole.items()
+        }
+        return {row: a[:, 0] if QUANTITIES[row[0]].of == "car" else a for row, a in stacked.items()}
+
+    over_time = measured.independent[0].meaning.kind == TIME
+    times = _instants(measured)[told] if over_time else np.arange(float(told.sum()))
+    there = _on_the_grid(scene, times) if over_time else scene
+    evidence = Evidence(
+        scene=there,
+        times=times if there is scene else there.instants,
+        given=of(lambda h: h.series.values),
+        held=of(lambda h: h.ours),
+        allowed=of(lambda h: factor * (h.swing + h.bound) + SMALLEST),
+        wrong=tuple(row for row in whole if row in wrong),
+        solved=Solved(there),
+        over_time=over_time,
+        own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
+        known={} if over_time else {n: a[told] for n, a in ours.numbers[_PLACES].items()},
+    )
+    try:
+        return explain_evidence(evidence)
+    except MissingPackage:
+        # Laws in many digits are an extra that the verdict needs not.
+        return ()
+
+
+def _on_the_grid(scene: Scene, times: Array) -> Scene:
+    """The scene at a file's instants, where these are evenly apart: other cars are solved there."""
+    if len(times) < 2:
+        return scene
+    ends = {"start": float(times[0]), "stop": float(times[-1]), "samples": len(times)}
+    there = scene.model_copy(update={"time": scene.time.model_copy(update=ends)})
+    even = np.abs(there.instants - times).max() <= 1e-12 * float(np.ptp(times))
+    return there if times[-1] > times[0] and even else scene
 
 
 def as_solution(measured: Measured, scene: Scene, accuracy: float = 0.0) -> Solution:
@@ -157,7 +228,8 @@ def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held]
         ours = np.full(len(swing), np.nan) if mine is None else mine
         rounding = 4.0 * EPS * np.abs(s.values)
         allowed = s.off + swing + s.accuracy_or(accuracy) + rounding + (0.0 if bound is None else bound)
-        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing))
+        own = np.zeros(len(swing)) if bound is None else np.asarray(bound)
+        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, own))
     if unknown:
         names = ", ".join(shown(s.column) for s in unknown)
         notes.append(f"{names} is not tested: rates need a column of {TIME}")
@@ -277,17 +349,17 @@ def _over(measured: Measured) -> str:
 
 
 def _row(
-    scene: str, measured: Measured, quantity: str, name: str, columns: Sequence[Held]
-) -> tuple[Comparison, str]:
+    scene: str, measured: Measured, quantity: str, name: str, columns: Sequence[Held], factor: float
+) -> Comparison:
     """The comparison of a point, body or angle by the columns that are given of it."""
     unit = QUANTITIES[quantity].unit
     gaps = np.stack([h.gap for h in columns])
-    allowed = np.stack([h.tolerance for h in columns])
+    allowed = factor * np.stack([h.tolerance for h in columns])
     ends = (scene, measured.source, OURS, quantity, name, unit)
     compared = np.isfinite(gaps) & np.isfinite(allowed)
     if not compared.any():
         nan = math.nan
-        return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan), ""
+        return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan)
     shares = np.where(compared, gaps / (allowed + SMALLEST), -1.0)
     share = float(shares.max())
     # The largest difference; of a column that disagrees, the largest of those that are too large.
@@ -298,7 +370,7 @@ def _row(
         verdict = "disagrees"
     elif all(h.blind for h in columns):
         verdict = "not tested"
-    row = Comparison(
+    return Comparison(
         *ends,
         float(gaps[worst, when]),
         float(allowed[worst, when]),
@@ -307,8 +379,8 @@ def _row(
         verdict,
         measured.source,
         1.0,
+        measured.rows[when],
     )
-    return row, measured.rows[when]
 
 
 def _lacking(scene: Scene, measured: Measured) -> tuple[tuple[str, ...], tuple[str, ...]]:

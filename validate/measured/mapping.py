@@ -181,6 +181,13 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         lacking = int(np.isnan(s.values).sum())
         if lacking:
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
+    printed = [s.column for s in numbers if s.column in columns.fixed and not map.says_printed(s.column)]
+    if printed:
+        places = columns.fixed[printed[0]]
+        notes.append(
+            f"{', '.join(map_shown(printed))}: taken as written in full, as other columns are; if rounded to "
+            f"{places} decimals, say printed = {10.0**-places:g} of it in a map"
+        )
     return _without_repeats(
         Measured(
             columns.source,
@@ -296,6 +303,10 @@ class _Map:
         """Names of what can be compared, the car's own numbers first."""
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
+
+    def says_printed(self, column: str) -> bool:
+        """Whether the map says what the last digit of a column is."""
+        return "printed" in self._part("columns").get(column, {})
 
     @property
     def ignored(self) -> tuple[str, ...]:

@@ -17,7 +17,8 @@ import os
 import re
 import stat
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import field
 from importlib import import_module
 
 import numpy as np
@@ -52,6 +53,8 @@ class Columns:
         values: (columns, rows), NaN where there is none.
         steps: the unit of the last digit of each number, likewise; 0 where a number is written in full.
         rows: what to call each row, such as "line 7".
+        fixed: names of columns that look printed, with their decimals, in a file that is taken as written in
+            full because of others.
     """
 
     source: str
@@ -60,6 +63,7 @@ class Columns:
     values: Array
     steps: Array
     rows: tuple[str, ...]
+    fixed: Mapping[str, int] = field(default_factory=dict)
 
 
 def read_columns(path: str) -> Columns:
@@ -172,10 +176,9 @@ def columns_of_text(text: str, source: str) -> Columns:
         head = [row for row in named[-1:] if len(_joined(row)) == count]
     names, units = _names(head, count, source)
     numbers = _Numbers(source, names, delimiter)
-    values, steps = numbers.of([(number, row) for number, row in rows], count)
-    return _checked(
-        Columns(source, names, units, values, steps, tuple(f"line {number}" for number, _ in rows))
-    )
+    values, steps, fixed = numbers.of([(number, row) for number, row in rows], count)
+    lines_of = tuple(f"line {number}" for number, _ in rows)
+    return _checked(Columns(source, names, units, values, steps, lines_of, fixed))
 
 
 def _delimiter(lines: Sequence[str]) -> str:
@@ -283,7 +286,9 @@ class _Numbers:
     names: tuple[str, ...]
     delimiter: str
 
-    def of(self, rows: Sequence[tuple[int, Sequence[str]]], count: int) -> tuple[Array, Array]:
+    def of(
+        self, rows: Sequence[tuple[int, Sequence[str]]], count: int
+    ) -> tuple[Array, Array, Mapping[str, int]]:
         values = np.full((count, len(rows)), np.nan)
         decimals, digits = np.zeros(values.shape), np.zeros(values.shape)
         for i, (line, row) in enumerate(rows):
@@ -295,7 +300,23 @@ class _Numbers:
             for j, cell in enumerate(row[:count]):
                 if cell.lower() not in NOTHING:
                     values[j, i], decimals[j, i], digits[j, i] = self._number(cell, line, j)
-        return values, _steps(values, decimals, digits)
+        return values, _steps(values, decimals, digits), self._fixed(rows, values, decimals, digits)
+
+    def _fixed(
+        self,
+        rows: Sequence[tuple[int, Sequence[str]]],
+        values: Array,
+        decimals: Array,
+        digits: Array,
+    ) -> dict[str, int]:
+        """Columns that look printed beside others in full: of the same decimals, with zeros at the end."""
+        found = {}
+        for j, name in enumerate(self.names) if digits.max() >= DOUBLE else ():
+            told = decimals[j][np.isfinite(values[j])]
+            zeros = any(_plain(row[j], self.delimiter).endswith("0") for _, row in rows)
+            if digits[j].max() < DOUBLE and len({*told.tolist()}) == 1 and told[0] > 1 and zeros:
+                found[name] = int(told[0])
+        return found
 
     def _number(self, cell: str, line: int, column: int) -> tuple[float, int, int]:
         """A number, and how many decimals and significant digits it is written with."""

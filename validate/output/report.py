@@ -41,7 +41,12 @@ def _measured(row: Comparison) -> tuple[str, str, str, str]:
     if row.verdict == "not given":
         return "-", "-", "-", "-"
     difference, tolerance = (_with_unit(value, row.unit) for value in (row.difference, row.tolerance))
-    return difference, tolerance, f"{row.instant:.4g} s", row.rests_on
+    return difference, tolerance, when(row, 4), row.rests_on
+
+
+def when(row: Comparison, digits: int = 9) -> str:
+    """At which instant a row is worst, or where in a file of results."""
+    return row.place or f"{row.instant:.{digits}g} s"
 
 
 def heading(quantity: str, name: str) -> str:
@@ -108,8 +113,12 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
         ),
     ]
     told = (*outcome.missing, *outcome.notes)
-    explained = (f"  what would explain it: {one.words}" for one in explanations[:MOST_EXPLANATIONS])
-    return (*lines, *(f"  note: {note}" for note in told), *explained)
+    return (*lines, *(f"  note: {note}" for note in told), *explained_lines(explanations))
+
+
+def explained_lines(explanations: Sequence[Explanation]) -> list[str]:
+    """What would explain a disagreement, the likeliest first."""
+    return [f"  what would explain it: {one.words}" for one in explanations[:MOST_EXPLANATIONS]]
 
 
 def agreement_line(outcome: Outcome) -> str:
@@ -209,6 +218,9 @@ def outcome_data(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> 
         "instants": len(outcome.solutions[0].times),
         "agreed": outcome.passed,
         "tolerance_factor": outcome.factor,
+        "accuracy": next(
+            (s.accuracy.stated for s in outcome.solutions if s.accuracy.stated is not None), None
+        ),
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),

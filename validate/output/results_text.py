@@ -8,7 +8,7 @@ from typing import Any
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison
 from validate.measured.comparing import DataOutcome
-from validate.output.report import outcome_data, table, worst_rows
+from validate.output.report import explained_lines, outcome_data, table, worst_rows
 from validate.plain_text import shown
 
 HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
@@ -18,14 +18,14 @@ def text_of(found: DataOutcome) -> str:
     """The table of a file: of each quantity the worst, and a row for each that the file does not give."""
     outcome = found.outcome
     file, ours = (solution.formulation for solution in outcome.solutions)
-    place_of = dict(zip(outcome.rows, found.places, strict=True))
-    rows = [(*_name(row), *_measured(row), place_of[row], _verdict(row)) for row in worst_rows(outcome)]
+    rows = [(*_name(row), *_measured(row), row.place, _verdict(row)) for row in worst_rows(outcome)]
     rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
     over = shown(found.over)
     lines = [
         f"{outcome.scene}: {file} and {ours}, {len(outcome.solutions[0].times)} rows over {over}",
         table(HEAD, rows),
         *(f"  note: {note}" for note in outcome.notes),
+        *explained_lines(found.explanations),
         _sentence(found),
     ]
     return "\n".join(lines)
@@ -59,6 +59,5 @@ def _sentence(found: DataOutcome) -> str:
 
 def data_of(found: DataOutcome) -> dict[str, Any]:
     """The comparison as plain data; rows say where in the file they are worst."""
-    data = outcome_data(found.outcome)
-    rows = [row | {"place": place} for row, place in zip(data["rows"], found.places, strict=True)]
-    return data | {"rows": rows, "over": found.over, "not_given": list(found.absent)}
+    data = outcome_data(found.outcome, found.explanations)
+    return data | {"accuracy": found.accuracy, "over": found.over, "not_given": list(found.absent)}

@@ -46,7 +46,7 @@ class Apart:
     """A solver by its module and name there, in a child process.
 
     Attributes:
-        place: such as `package.module:Solver`. limit: s, that its import and each answer may take.
+        place: such as `package.module:Solver`. limit: s, that each answer may take; its import, once, LIMIT.
     """
 
     def __init__(self, place: str, with_traceback: bool = False, limit: float = LIMIT) -> None:
@@ -69,13 +69,13 @@ class Apart:
         """Wait until the child has imported the solver.
 
         Raises:
-            NoSolver: there is none, it cannot be imported, or that takes longer than the limit.
+            NoSolver: there is none, it cannot be imported, or that takes longer than LIMIT.
         """
         if self._found:
             return
         if self._child is None:
             self._child = _Child(self.place, self._with_traceback)
-        answer = self._said()
+        answer = self._said(max(self.limit, LIMIT))
         if isinstance(answer, str):
             what = f"the solver {shown(self.place)!r}"
             raise NoSolver(what, f"cannot be imported: {answer}", "mend the module")
@@ -97,7 +97,7 @@ class Apart:
             raise SolverFailed(f"made anew after it ended, it {error.problem}") from error
         assert self._child is not None  # it was found
         self._child.ask(given)
-        answer = self._said()
+        answer = self._said(self.limit)
         if isinstance(answer, str):
             raise SolverFailed(answer)
         kind, rest = answer
@@ -106,12 +106,12 @@ class Apart:
         found: Mapping[str, Any] = rest
         return found
 
-    def _said(self) -> tuple[str, Any] | str:
+    def _said(self, limit: float) -> tuple[str, Any] | str:
         """What the child says next; or in words why it will say nothing more, and then it is ended."""
         assert self._child is not None  # whoever asks has one
         answer: tuple[str, Any] | str = ""
         try:
-            answer = self._child.said(self.limit)
+            answer = self._child.said(limit)
         finally:
             # Ctrl-C while it works ends it too.
             if isinstance(answer, str):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
+from validate.diagnosis import explain_outcome
 from validate.formulations.protocol import Formulation
 from validate.solvers.plain import NoSolver, PlainSolver, as_function
 
@@ -23,6 +25,8 @@ def check(
         scene: or the name or path of one.
         accuracy: how exactly it places every point, mm, as it says itself.
         against: the name of a formulation, or one.
+    Returns:
+        The comparison, with what would explain that it disagrees in `explanations`.
     Raises:
         NoSolver: `solver` is none, or `accuracy` is no length above 0.
         FormulationError: the solver raises an error, or the other formulation refuses the scene.
@@ -36,7 +40,8 @@ def check(
     function = as_function(solver, "the solver")
     taken = Scene.load(scene) if isinstance(scene, str) else scene
     one = PlainSolver(_name_of(solver), function, required_accuracy(accuracy))
-    return compare(taken, one, against)
+    outcome = compare(taken, one, against)
+    return replace(outcome, explanations=explain_outcome(taken, outcome))
 
 
 def required_accuracy(accuracy: float) -> float:

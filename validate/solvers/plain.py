@@ -178,11 +178,11 @@ class PlainSolver:
         from validate.solvers.held import accuracy_for
 
         try:
-            return accuracy_for(scene, self.accuracy), ()
+            return replace(accuracy_for(scene, self.accuracy), stated=self.accuracy), ()
         except (FormulationError, SceneError, NoReferenceError) as error:
             every = np.ones(len(scene.instants), dtype=bool)
             note = f"no tolerance can be derived for {self.name}, so that nothing is tested: {error}"
-            return Accuracy(np.ones(len(every)), blind=every), (note,)
+            return Accuracy(np.ones(len(every)), blind=every, stated=self.accuracy), (note,)
 
     def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
         if INSTANTS not in answer:

@@ -32,17 +32,22 @@ class NotTested(AssertionError):
 
     Attributes:
         scene: its name. accuracy: as it was stated, mm. numbers: what is not tested, in words.
+        agree: how many others do.
     """
 
     def __init__(self, scene: str, accuracy: float, numbers: Sequence[str], agree: int) -> None:
         self.scene = scene
         self.accuracy = accuracy
         self.numbers = tuple(numbers)
+        self.agree = agree
         super().__init__(
             f"not tested in {scene!r}: {', '.join(numbers)}; an accuracy of {accuracy:g} mm says nothing of "
             f"them, for the scene is too near a singular pose for it ({agree} others agree); state a finer "
             "accuracy, or leave this scene out"
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.scene, self.accuracy, self.numbers, self.agree)
 
 
 def assert_agrees(

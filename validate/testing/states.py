@@ -36,6 +36,9 @@ class WrongStates(AssertionError):
         self.allowed = allowed
         super().__init__(f"the states: {what} {problem}; needed: {allowed}")
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.what, self.problem, self.allowed)
+
 
 def require_comparable(states: Mapping[str, Any], scene: Scene) -> None:
     """See that every number of states has the form of its kind.

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pointcoord.effects.angle import Angle
 from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
 from pointcoord.linkage.car_axes import CarAxes
 
@@ -74,3 +75,10 @@ def test_paper_formulas_for_the_left_wheel() -> None:
     # eqs. (16) and (17), in the quadrant where the arc tangent is its own branch
     assert KINGPIN.value(p5, p7, LEFT) == pytest.approx(np.arctan(10.0 / 60.0), abs=4 * EPS)
     assert CAMBER.value(p7, p10, LEFT) == pytest.approx(np.arctan(-5.0 / 90.0), abs=4 * EPS)
+
+
+def test_an_angle_that_names_no_limit_never_looks_misdrawn() -> None:
+    free = Angle("lean", "lean", "up", "wheel_axis", "up", "outboard")
+    # atan2 gives no more than pi.
+    assert free.steepest >= 180.0
+    assert free.steepest_by_default >= 180.0

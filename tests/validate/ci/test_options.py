@@ -183,6 +183,14 @@ def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
     assert names == ([first, wrong] if fault in ("disagrees", "moved") else [first])
 
 
+def test_a_scene_that_is_named_again_is_compared_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = short_scene(tmp_path, "a.toml")
+    assert main(["validate", scene, scene, "--scenes-dir", str(tmp_path), *PAIR]) == 0
+    assert "1 of 1 scenes agree" in capsys.readouterr().out
+
+
 def test_without_a_fault_every_scene_is_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
     assert main(["validate", *scenes, *PAIR, "--fail-fast"]) == 0

@@ -220,7 +220,16 @@ def test_two_faults_are_named_once_and_not_in_both_orders() -> None:
 def test_of_many_instants_the_diagnosis_is_that_of_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, held = solved("double-wishbone", 2 * MANY)
     random = np.random.default_rng(3)
-    planted = {name: plant(held) for name, (plant, _, _) in FAULTS.items() if "digits" not in name}
+    some = (
+        "sign of a component",
+        "axes",
+        "mirror",
+        "metres",
+        "differences",
+        "swapped rates",
+        "metres and sign",
+    )
+    planted = {name: FAULTS[name][0](held) for name in some}
     planted["noise"] = each(held, STATES, lambda v: v + 1e-3 * random.standard_normal(v.shape))
     planted["in part"] = each(
         held, ("velocity",), lambda v: -v + 1e-5 * np.abs(v).max() * random.standard_normal(v.shape)

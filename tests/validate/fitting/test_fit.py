@@ -14,6 +14,7 @@ from curve_files import at_inputs, measured, table
 from numpy.typing import NDArray
 
 from pointcoord import Scene, designs_of, simulate
+from validate import paper
 from validate.cli import main
 from validate.exit_status import ExitStatus
 from validate.fitting.curves import Curves
@@ -98,12 +99,15 @@ ALONG = ("rack_centre", "strut_rod_end")
 
 
 def paper_data() -> str:
-    axes = [f"position.wheel_centre.{axis} [mm]" for axis in "xyz"]
-    lines = [",".join(["input.arm_angle [deg]", "input.rack [mm]", *axes])]
-    for row in (*TABLE_2, *TABLE_3):
-        inputs = (row.input, 0.0) if row.table == 2 else (90.0, row.input)
-        lines.append(",".join([*map(repr, inputs), *(f"{place:g}" for place in row.wheel_centre)]))
-    return "\n".join(lines)
+    return (Path(paper.__file__).parent / "tables-2-and-3.csv").read_text(encoding="utf-8")
+
+
+def test_the_file_of_the_paper_s_tables_says_what_the_tables_say() -> None:
+    rows = [[float(cell) for cell in line.split(",")] for line in paper_data().splitlines()[1:]]
+    printed = [(r.input, 0.0, *r.wheel_centre) for r in TABLE_2] + [
+        (90.0, r.input, *r.wheel_centre) for r in TABLE_3
+    ]
+    assert rows == [list(row) for row in printed]
 
 
 @cache

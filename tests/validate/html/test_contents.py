@@ -129,6 +129,10 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     assert len(text.encode()) < 8e6
     drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
     assert drawn == [*range(FIRST), *range(13, 13 + 20 * FURTHER, 20)]
+    # The numbers of the others are let go: hundreds of scenes fit into memory.
+    outcomes = [outcome for one in run.told if not one.drawn for outcome in one.examined.outcomes]
+    assert outcomes
+    assert not any(solution.numbers for outcome in outcomes for solution in outcome.solutions)
     shown = Read(text)
     assert f"Drawn are {FIRST + FURTHER} of {count} scenes" in shown.text
     assert len([given for _, given in shown.tags if "data-motion" in given]) == FIRST + FURTHER
@@ -374,3 +378,42 @@ def test_what_a_page_is_made_of_is_installed_with_it() -> None:
     assert needed <= {file.name for file in templates.iterdir()}
     published = {file.suffix for file in Path(validate.published.__file__).parent.iterdir()}
     assert {".csv", ".toml"} <= published
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["validate", "--data", "x.csv", "steer", "--report", "OUT"], "--report is about scenes"),
+        (["report", "OUT", "steer", "--data", "x.csv"], "of which there is no page"),
+        (["report", "OUT", "steer", "--cost", "no such file"], "--cost no such file"),
+        (["hard", "--list", "--report", "OUT"], "leave it out with --list"),
+        (["validate", "steer", "--report", ""], "--report '' names no folder"),
+    ],
+)
+def test_a_report_that_cannot_be_is_refused_in_a_line(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main([str(out) if word == "OUT" else word for word in words]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert not out.exists()
+
+
+def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:
+    assert main(["hard", "-q", "knuckle-in-line-wishbone", "--report", str(tmp_path)]) == 0
+    document = json.loads((tmp_path / "results.json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    assert (document["kind"], document["verdict"]) == ("hard", "agree")
+    shown = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
+    assert shown.verdict[0] == "verdict agrees"
+    assert "1 hard case at " in shown.verdict[1]
+    answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
+    with (tmp_path / "hard.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert [(one["formulation"], one["outcome"]) for one in lines] == [
+        (one["formulation"], one["outcome"]) for one in answers
+    ]
+    for line, one in zip(lines, answers, strict=True):
+        assert line["error"] == ("" if one["error"] is None else repr(one["error"]))

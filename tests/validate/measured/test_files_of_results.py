@@ -1,7 +1,9 @@
 """`pointcoord validate --data` as its users meet it."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import jsonschema
 import numpy as np
@@ -142,7 +144,7 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
         (["--data", "none.csv", "steer"], "none.csv: cannot be read"),
         (["--data", "none.csv"], "no scene is given with --data"),
         (["--data", "none.csv", "steer", "--first", "absolute"], "leave --first and --second out"),
-        (["--data", "none.csv", "steer", "--junit", "x.xml"], "--junit is about scenes"),
+        (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline is about scenes"),
         (["--map", "none.toml", "steer"], "give it with --data FILE"),
     ],
 )
@@ -151,3 +153,113 @@ def test_a_wrong_command_is_one_line(words: list[str], told: str, capsys: pytest
     err = capsys.readouterr().err
     assert told in err
     assert len(err.splitlines()) == 1
+
+
+def curves_over_travel(change: Callable[[float], float]) -> str:
+    """Toe, changed on purpose, and camber of the double wishbone over its wheel's travel, deg and mm."""
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["inputs"]["rack"] = {"constant": 0.0}
+    content["time"]["samples"] = 41
+    motion = simulate(Scene.from_mapping(content, "bounce"))
+    place, wheel = motion.position["wheel_centre"], motion.wheel
+    rise = place[:, 2] - Scene.load("double-wishbone").mechanism.points["wheel_centre"][2]
+    lines = ["rise [mm],toe [deg],camber [deg]"]
+    for z, toe, camber in zip(rise, np.degrees(wheel["toe"]), np.degrees(wheel["camber"]), strict=True):
+        lines.append(f"{float(z)!r},{change(toe):.5f},{camber:.5f}")
+    return "\n".join(lines)
+
+
+MAP = """
+[columns]
+rise = { is = "travel.wheel_centre" }
+toe = { is = "wheel.toe", printed = 1e-5 }
+camber = { is = "wheel.camber", printed = 1e-5 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda toe: -toe, "toe: the other sign"),
+        (np.radians, "toe: degrees taken for radians and converted once more"),
+        (lambda toe: toe + 0.25, "toe: a constant offset of 0.004363"),
+    ],
+)
+def test_a_disagreement_over_travel_is_explained_and_stands_in_every_file(
+    change: Callable[[float], float],
+    words: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("map.toml").write_text(MAP, encoding="utf-8")
+    Path("bump.csv").write_text(curves_over_travel(change), encoding="utf-8")
+    files = ["--json", "x.json", "--junit", "x.xml", "--summary", "x.md"]
+    assert main(["validate", "--data", "bump.csv", "--map", "map.toml", "double-wishbone", *files]) == 1
+    out = capsys.readouterr().out
+    assert f"what would explain it: {words}" in out
+    content = json.loads(Path("x.json").read_text())
+    jsonschema.validate(content, json.loads(schema_text()))
+    (comparison,) = content["scenes"][0]["comparisons"]
+    first = comparison["explanations"][0]
+    assert first["words"].startswith(words)
+    assert first["leftover"] <= 1.0
+    (wrong,) = (row for row in comparison["rows"] if row["verdict"] == "disagrees")
+    assert wrong["place"].startswith("line ")
+    suite = ElementTree.parse("x.xml").getroot()
+    assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
+    (failure,) = suite.iter("failure")
+    assert f"at {wrong['place']}, the tolerance there" in str(failure.get("message"))
+    assert f"apart at {wrong['place']}, tolerance there" in Path("x.md").read_text()
+
+
+def test_a_file_over_time_of_a_misread_car_is_told_as_one(tmp_path: Path) -> None:
+    car = Scene.load("double-wishbone")
+    content = car.model_dump(exclude_none=True)
+    x, y, z = car.mechanism.points["tie_rod_outer"]
+    content["mechanism"]["points"]["tie_rod_outer"] = (x, y, z + 2.0)
+    motion = simulate(Scene.from_mapping(content, "misread"))
+    lines = ["time [s],camber [deg],toe [deg]"]
+    for t, camber, toe in zip(motion.times, motion.wheel["camber"], motion.wheel["toe"], strict=True):
+        lines.append(f"{t:.3f},{float(np.degrees(camber))!r},{float(np.degrees(toe))!r}")
+    columns = columns_of_text("\n".join(lines), "x.csv")
+    map = {"columns": {"time": {"printed": 0}, "camber": {}, "toe": {}}}
+    found = compare_results(understood(columns, map, car, "map"), car, "misread", accuracy=1e-6)
+    assert "tie_rod_outer.z drawn 2 mm too high" in found.explanations[0].words
+
+
+def test_a_column_that_looks_printed_beside_others_in_full_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "map.toml").write_text(MAP.replace(", printed = 1e-5", ""), encoding="utf-8")
+    (tmp_path / "x.csv").write_text(curves_over_travel(lambda toe: toe), encoding="utf-8")
+    files = ["--data", str(tmp_path / "x.csv"), "--map", str(tmp_path / "map.toml")]
+    assert main(["validate", *files, "double-wishbone"]) == 1
+    assert "if rounded to 5 decimals, say printed = 1e-05 of it in a map" in capsys.readouterr().out
+
+
+def test_a_factor_is_what_a_file_off_by_more_than_its_digits_needs(tmp_path: Path) -> None:
+    file, map = tmp_path / "x.csv", tmp_path / "map.toml"
+    map.write_text(MAP, encoding="utf-8")
+    file.write_text(curves_over_travel(lambda toe: toe + 8e-6), encoding="utf-8")
+    words = ["validate", "--data", str(file), "--map", str(map), "double-wishbone", "--quiet"]
+    assert main(words) == 1
+    assert main([*words, "--tolerance-factor", "3"]) == 0
+
+
+def test_the_same_file_gives_the_same_bytes(tmp_path: Path) -> None:
+    (tmp_path / "map.toml").write_text(MAP, encoding="utf-8")
+    (tmp_path / "x.csv").write_text(curves_over_travel(lambda toe: -toe), encoding="utf-8")
+    words = ["validate", "--data", str(tmp_path / "x.csv"), "--map", str(tmp_path / "map.toml")]
+    files = [tmp_path / name for name in ("x.json", "x.xml", "x.md")]
+    ends = [
+        word
+        for pair in zip(("--json", "--junit", "--summary"), [*map(str, files)], strict=True)
+        for word in pair
+    ]
+    found = []
+    for _ in range(2):
+        assert main([*words, "double-wishbone", "--quiet", *ends]) == 1
+        found.append([file.read_bytes() for file in files])
+    assert found[0] == found[1]

@@ -66,7 +66,7 @@ def test_two_units_more_in_the_last_digit_of_any_number_disagree(place: int, col
     assert found.outcome.disagreements
     assert verdicts(found) == {name: "disagrees" if name == ANGLES[column] else "agrees" for name in ANGLES}
     (row,) = found.outcome.disagreements
-    assert found.places[found.outcome.rows.index(row)] == f"line {place + 2}"
+    assert row.place == f"line {place + 2}"
 
 
 def test_travel_of_the_wheel_centre_is_another_table() -> None:

@@ -32,6 +32,7 @@ def test_sums_and_products_of_vectors_are_numpys() -> None:
     assert dot(A, B) == a @ b
     assert cross(A, B) == tuple(np.cross(a, b))
     assert squares(A) == a @ a
+    assert squares(A, B) == (a @ a) * (b @ b)
     assert squares(A, B, A) == (a @ a) ** 2 * (b @ b)
 
 

@@ -9,9 +9,10 @@ from plain_solvers import closed_form
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate import FormulationError, check
+from validate import FormulationError, check, compare
 from validate.cars.registry import SUSPENSIONS
 from validate.cars.scene_content import scene_content
+from validate.output import report
 from validate.solvers.plain import NoSolver, given_to_solver
 
 CAR = SUSPENSIONS["macpherson"].base["drawn"]
@@ -159,3 +160,15 @@ def test_against_another_formulation() -> None:
     outcome = check(closed_form, SCENE, against="absolute")
     assert outcome.passed
     assert outcome.solutions[1].formulation == "absolute"
+
+
+def test_a_disagreement_from_python_carries_what_would_explain_it() -> None:
+    outcome = check(lambda given: {"camber": np.degrees(RIGHT["wheel"]["camber"])}, SCENE)
+    assert [one.words for one in outcome.explanations] == ["camber: degrees for radians"]
+    assert check(closed_form, SCENE).explanations == ()
+
+
+def test_the_stated_accuracy_stands_beside_the_comparison() -> None:
+    outcome = check(closed_form, SCENE, accuracy=1e-4)
+    assert report.outcome_data(outcome)["accuracy"] == 1e-4
+    assert report.outcome_data(compare(SCENE, "pointcoord", "absolute"))["accuracy"] is None

@@ -9,8 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import pointcoord_pytest
-from pointcoord import built_in_scenes
+from pointcoord import built_in_scenes, pytest_plugin
 from validate import WrongStates, assert_refuses
 from validate.adjudication.reference_solution import reference_solution
 from validate.hard.case import Case
@@ -25,7 +24,7 @@ def mark(name: str, *names: object, **options: object) -> SimpleNamespace:
 
 
 ROOT = Path(__file__).parents[3]
-OURS = ("-p", "pointcoord_pytest", "-p", "no:cacheprovider", "-p", "no:xdist", "--strict-markers")
+OURS = ("-p", "pointcoord.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:xdist", "--strict-markers")
 
 
 def run(folder: Path, text: str, *options: str) -> "subprocess.CompletedProcess[str]":
@@ -118,7 +117,7 @@ def test_one(scene):
 )
 def test_a_mark_that_cannot_be_followed_is_told_in_a_line(marked: SimpleNamespace, words: str) -> None:
     with pytest.raises(pytest.UsageError) as caught:
-        pointcoord_pytest.scenes_of("test_it.py::test_one", [marked])
+        pytest_plugin.scenes_of("test_it.py::test_one", [marked])
     said = str(caught.value)
     assert said.startswith("test_it.py::test_one: ")
     assert words in said

@@ -27,7 +27,7 @@ KEPT, ELSEWHERE = 1e-5, 1e-4
 class Branch(Kind):
     """From the first instant on, or from where the given numbers leave ours."""
 
-    name, solves = "branch", True
+    name, solves, of_time = "branch", True, True
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The one of the whole car."""

@@ -63,7 +63,7 @@ RULES: Mapping[str, Rule] = {
 class Differences(Kind):
     """Of the numbers of one or two orders below, as given; of ours where they are not given."""
 
-    name, reach = "differences", 2
+    name, of_time, reach = "differences", True, 2
     of_wrong = False
     """Of numbers that disagree themselves, or of others: those of a wrong car are as good as its rates."""
 

@@ -27,6 +27,8 @@ LIKELIEST = 4  # of each number of coordinates
 ITERATIONS = 6
 # How many times what the best choice leaves another may leave.
 POORER = 30.0
+# Of the car's size: what is read wrongly by more is another car, and whether it closes takes long to find.
+FARTHEST = 0.1
 # What least squares may leave of the difference, and be worth a try.
 PROMISING = 0.5
 TOO: Mapping[Direction, str] = {
@@ -42,7 +44,7 @@ TOO: Mapping[Direction, str] = {
 class Hardpoint(Kind):
     """Up to three coordinates of the drawing."""
 
-    name, solves = "hardpoint", True
+    name, solves, of_time = "hardpoint", True, True
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The likeliest, with more coordinates only where fewer do not do."""
@@ -63,7 +65,7 @@ class Hardpoint(Kind):
         usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
         names, slopes = [n for n, use in zip(names, usable, strict=True) if use], slopes[usable]
         gap = theirs - ours
-        for tried in _likeliest(names, slopes, gap):
+        for tried in _likeliest(names, slopes, gap, _farthest(scene)):
             done = False
             for chosen, amounts in _refined(scene, looked, theirs, tried).items():
                 numbers = _solved(evidence.solved.fine, chosen, amounts)
@@ -108,6 +110,11 @@ def _fewer(evidence: Evidence) -> tuple[Scene, NDArray[np.intp]] | None:
     )
 
 
+def _farthest(scene: Scene) -> float:
+    """The largest amount that a coordinate is supposed to be off by, mm."""
+    return FARTHEST * float(np.ptp([*scene.mechanism.points.values()], axis=0).max())
+
+
 def _read(scene: Scene, offsets: dict[str, Array], rows: Sequence[Row]) -> Array:
     """Numbers of rows of several designs, (designs, numbers); NaN of designs that cannot be solved."""
     found = sweep(scene, offsets=offsets)
@@ -121,7 +128,9 @@ def _slopes(scene: Scene, names: Sequence[str], rows: Sequence[Row]) -> Array:
     return (read[: len(names)] - read[len(names) :]) / (2.0 * STEP)
 
 
-def _likeliest(names: Sequence[str], slopes: Array, gap: Array) -> Iterator[dict[Names, Array]]:
+def _likeliest(
+    names: Sequence[str], slopes: Array, gap: Array, farthest: float
+) -> Iterator[dict[Names, Array]]:
     """By the coordinates that are chosen, their amounts by least squares; one, two, three coordinates."""
     products, right, whole = slopes @ slopes.T, slopes @ gap, float(gap @ gap)
     places = range(len(names))
@@ -144,7 +153,7 @@ def _likeliest(names: Sequence[str], slopes: Array, gap: Array) -> Iterator[dict
         yield {
             tuple(names[i] for i in some): amounts
             for rest, some, amounts in left[:LIKELIEST]
-            if rest <= PROMISING**2 * whole
+            if rest <= PROMISING**2 * whole and np.abs(amounts).max() <= farthest
         }
 
 
@@ -186,6 +195,9 @@ def _refined(
             rests[chosen] = float(np.linalg.norm(theirs - here))
             change = np.linalg.lstsq(((more - less) / (2.0 * STEP)).T, theirs - here, rcond=None)[0]
             amounts[chosen] = amounts[chosen] + change
+            if np.abs(amounts[chosen]).max() > _farthest(scene):
+                del amounts[chosen], rests[chosen]
+                continue
             if np.abs(change).max() > 1e-10 * (1.0 + np.abs(amounts[chosen]).max()):
                 still.append(chosen)
         # Once designs are solved at their amounts, those that miss by much more than the best are out.

@@ -23,7 +23,8 @@ class Offset(Kind):
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Known values first."""
         placed = [row for row in evidence.wrong if order(row) == 0]
-        yield from self._relative(evidence)
+        if evidence.over_time:
+            yield from self._relative(evidence)
         if not placed:
             return
         first = {row: self._less(evidence, row, evidence.held[row][0]) for row in placed}

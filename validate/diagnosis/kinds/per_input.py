@@ -15,7 +15,7 @@ from validate.formulations.input_rates import rates
 class PerInput(Kind):
     """Where one input moves and never stops: with more, a rate has more than one part."""
 
-    name, opens, reach = "per input", True, 0
+    name, opens, of_time, reach = "per input", True, True, 0
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Of the one input that moves."""

@@ -21,7 +21,7 @@ FEW = 256  # instants that a shift is found from first
 class TimeShift(Kind):
     """Their numbers at t are ours at t + s: s from the grid of instants, then by least squares."""
 
-    name, solves = "time shift", True
+    name, solves, of_time = "time shift", True, True
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The one of the whole car."""

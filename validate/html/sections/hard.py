@@ -40,9 +40,10 @@ def _told(hard: HardCases, of_this_run: bool) -> Iterator[Block]:
     cases.sort(key=lambda case: not case.unexpected)
     chosen = {case.name for case in cases[:MOST]}
     for group in dict.fromkeys(case.group for case in hard.cases):
-        panels = [_panel(case) for case in hard.cases if case.group == group and case.name in chosen]
-        if panels:
-            yield Plots(group, tuple(panels))
+        drawn = [case for case in hard.cases if case.group == group and case.name in chosen]
+        if drawn:
+            wrong = any(case.unexpected for case in drawn)
+            yield Plots(group, tuple(map(_panel, drawn)), at_once=wrong)
     if len(cases) > MOST:
         yield Paragraph(f"{len(cases) - MOST} more cases that go by decades are in the table and not drawn.")
     yield Grid("Every case.", ("case", "why it is hard", "verdict", "answers"), tuple(map(_row, hard.cases)))

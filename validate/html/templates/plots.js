@@ -3,7 +3,7 @@
   const dark = matchMedia("(prefers-color-scheme: dark)");
   // A finger that moves over a plot moves the page.
   const finger = matchMedia("(pointer: coarse)");
-  const PRINTED = { width: 320, height: 200 }, LETTER = 6.2;
+  const PRINTED = { width: 320, height: 200 }, LETTER = 6.2, ROW = 19;
   const places = document.querySelectorAll("[data-plot]");
   // Those near the window, and for what each was drawn last.
   const near = new Set(), drawn = new Map();
@@ -36,16 +36,28 @@
     return count > 1.5 ? { dtick: Math.ceil(count / 6), tickfont: { size: 9 } } : {};
   }
 
+  // Pixels that the lines of a legend need beyond the first: it stands above its plot, in columns as wide as
+  // its longest name.
+  function beyondOne(data, width) {
+    const names = data.filter((trace) => trace.name && trace.showlegend !== false).map((trace) => trace.name.length);
+    const columns = Math.max(1, Math.floor((width - 60) / (LETTER * Math.max(0, ...names) + 50)));
+    return ROW * Math.max(0, Math.ceil(names.length / columns) - 1);
+  }
+
   function draw(place) {
     const { data, layout } = JSON.parse(place.dataset.plot);
+    const wide = printing ? PRINTED.width : place.clientWidth;
+    const beyond = layout.showlegend === false ? 0 : beyondOne(data, wide);
+    place.style.setProperty("--beyond", `${beyond}px`);
     const ink = colour("--ink"), line = colour("--line");
-    const { width, height } = printing ? PRINTED : { width: place.clientWidth, height: place.clientHeight };
+    const { width, height } = printing ? { ...PRINTED, height: PRINTED.height + beyond }
+      : { width: wide, height: place.clientHeight };
     for (const name of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
       const axis = layout[name], across = name[0] === "x";
       Object.assign(axis, { gridcolor: line, zerolinecolor: line, linecolor: line, fixedrange: finger.matches });
       if (axis.type === "log") Object.assign(axis, decades(numbers(data, name[0])));
       if (axis.title) {
-        const room = across ? width - 80 : height - 60;
+        const room = across ? width - 80 : height - beyond - 60;
         Object.assign(axis.title, { text: folded(axis.title.text, room / LETTER), standoff: 8, font: { size: 11 } });
       }
     }

@@ -43,6 +43,7 @@ ATTRIBUTES = {"up": "outboard", "outboard": "forward", "forward": "up"}
 
 # Parts of the grammar that say something to people or to Python, and no mathematics.
 WORDS = ("fstring", "decorator")
+OF_TYPES = ("TYPE_CHECKING", "Literal[")
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ def _of_piece(piece: str) -> Iterator[tuple[str, str, str, str, range]]:
         pairs = list(zip(lines, plain.split("\n"), strict=True))
         row = next(i for i, (before, after) in enumerate(pairs) if before != after)
         before, after = (part.strip() for part in pairs[row])
-        if "TYPE_CHECKING" not in before:
+        if not any(word in before for word in OF_TYPES):
             yield functions.get(row + 1, ""), before, after, text, statements.get(line, range(line, line + 1))
 
 

@@ -13,22 +13,21 @@ and that it does not answer where there is no answer:
     def test_my_solver_refuses_what_cannot_be(scene, assert_refuses):
         assert_refuses(solve, scene)
 
-pytest loads this package at each start where it is installed, whether a test needs it or not. So it is one
-of its own, with nothing but pytest in it: whatever else is needed is imported when a fixture or a mark is
-used, and a project that has a package `validate` of its own keeps it.
+pytest loads this module at each start where it is installed, whether a test needs it or not. So nothing but
+pytest is in it, and a project that has a package `validate` of its own keeps it: what validates a solver is
+looked up by its name when a fixture or a mark is used, as the program's first lines do (`__main__`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import pytest
 
 if TYPE_CHECKING:
     from pointcoord import Scene
-    from validate.comparison.compare import Outcome
-    from validate.formulations.protocol import Solution
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -79,12 +78,13 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
     try:
         _require_ours()
         from pointcoord import SceneError
-        from validate.testing.scenes import impossible_scenes, scenes_to_try
+
+        scenes = import_module("validate.testing.scenes")
     except ImportError as error:
         raise pytest.UsageError(f"{where}: {_line(error)}") from None
     made: dict[str, Callable[..., Mapping[str, Scene]]] = {
-        "suspension_scenes": scenes_to_try,
-        "impossible_scenes": impossible_scenes,
+        "suspension_scenes": scenes.scenes_to_try,
+        "impossible_scenes": scenes.impossible_scenes,
     }
     found: dict[str, Scene] = {}
     for mark in marks:
@@ -102,7 +102,7 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
 
 
 @pytest.fixture(scope="session")
-def reference() -> Callable[[Scene | str], Solution]:
+def reference() -> Callable[[Scene | str], Any]:
     """A scene's numbers in many digits, proven and rounded once: `reference("bounce").position["..."]`.
 
     The fixture is a function of a scene, its name or its path. What each number may be off by is in
@@ -113,11 +113,11 @@ def reference() -> Callable[[Scene | str], Solution]:
     """
     _require_installed()
     from pointcoord import Scene
-    from validate.adjudication.reference_solution import reference_solution
 
-    solved: dict[str, Solution] = {}
+    reference_solution = import_module("validate.adjudication.reference_solution").reference_solution
+    solved: dict[str, Any] = {}
 
-    def solution(scene: Scene | str) -> Solution:
+    def solution(scene: Scene | str) -> Any:
         taken = Scene.load(scene) if isinstance(scene, str) else scene
         key = taken.model_dump_json()
         if key not in solved:
@@ -132,21 +132,23 @@ def plain_scene() -> Callable[[Scene | str], dict[str, Any]]:
     """What a solver is given: a scene as plain data (see `validate.solvers.plain`)."""
     _require_installed()
     from pointcoord import Scene
-    from validate.solvers.plain import given_to_solver
+
+    given_to_solver = import_module("validate.solvers.plain").given_to_solver
 
     def plain(scene: Scene | str) -> dict[str, Any]:
-        return given_to_solver(Scene.load(scene) if isinstance(scene, str) else scene)
+        given: dict[str, Any] = given_to_solver(Scene.load(scene) if isinstance(scene, str) else scene)
+        return given
 
     return _in_one_line(plain)
 
 
 @pytest.fixture(scope="session")
-def assert_agrees() -> Callable[..., Outcome]:
+def assert_agrees() -> Callable[..., Any]:
     """`validate.assert_agrees`; where some numbers are not tested and none disagrees, the test is skipped."""
     _require_installed()
-    from validate.testing import assertion
+    assertion = import_module("validate.testing.assertion")
 
-    def agrees(states: Mapping[str, Any], scene: Scene | str, *arguments: Any, **options: Any) -> Outcome:
+    def agrees(states: Mapping[str, Any], scene: Scene | str, *arguments: Any, **options: Any) -> Any:
         try:
             return assertion.assert_agrees(states, scene, *arguments, **options)
         except assertion.NotTested as error:
@@ -160,20 +162,19 @@ def assert_agrees() -> Callable[..., Outcome]:
 def assert_refuses() -> Callable[..., None]:
     """`validate.assert_refuses`."""
     _require_installed()
-    from validate.testing.assertion import assert_refuses
-
-    return _in_one_line(assert_refuses)
+    refuses: Callable[..., None] = import_module("validate.testing.assertion").assert_refuses
+    return _in_one_line(refuses)
 
 
 def _in_one_line(function: Callable[P, T]) -> Callable[P, T]:
     """The function with what it says of its arguments told at the line of the test, not at one of ours."""
-    from validate.testing.assertion import TOLD
+    told_in_a_line = import_module("validate.testing.assertion").TOLD
 
     def called(*arguments: P.args, **options: P.kwargs) -> T:
         __tracebackhide__ = True
         try:
             return function(*arguments, **options)
-        except TOLD as error:
+        except told_in_a_line as error:
             told = error.with_traceback(None)
         raise told from None
 
@@ -195,12 +196,12 @@ def _require_ours() -> None:
     from pointcoord.__main__ import NAME, not_ours
 
     try:
-        import validate
+        validate = import_module("validate")
     except ImportError:
         raise ImportError(not_ours()) from None
     if getattr(validate, "DISTRIBUTION", None) != NAME:
         raise ImportError(not_ours())
-    import validate.testing.scenes  # which needs all of the extra
+    import_module("validate.testing.scenes")  # which needs all of the extra
 
 
 def _line(error: Exception) -> str:

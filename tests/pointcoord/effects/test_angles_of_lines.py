@@ -1,0 +1,104 @@
+"""What the angles of a car's lines are drawn, doubted and proven as, of lines that are placed by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.wheel_angles import CAMBER, KINGPIN, WHEEL_ANGLES
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.numerics.enclosure import Enclosed
+
+UP, RIGHT = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+AXES = CarAxes(UP, RIGHT, RIGHT)
+LOW = np.array([5.0, 600.0, 200.0])
+
+
+def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
+    """A linkage whose wheel turns about inner - centre, steered about low - high."""
+    own = {"inner", "centre", "low", "high"}
+    lines = {"wheel_axis": ("inner", "centre"), "steering_axis": ("low", "high")}
+    return SimpleNamespace(**lines, stand_ins=stand_ins, points=own)
+
+
+def drawn(camber: float, kingpin: float) -> dict[str, np.ndarray]:
+    """Of a right wheel, deg."""
+    c, k = np.radians([camber, kingpin])
+    return {
+        "inner": LOW,
+        "centre": LOW + 80.0 * np.array([0.1, np.cos(c), -np.sin(c)]),
+        "low": LOW,
+        "high": LOW + 300.0 * np.array([0.1, -np.sin(k), np.cos(k)]),
+    }
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("stand_ins", "camber", "kingpin"),
+    [
+        ({}, 45.0, 45.0),
+        # The wheel's axis starts at a point that stands in for its own.
+        ({"axis": "inner"}, 10.0, 45.0),
+        ({"axis": "low"}, 45.0, 45.0),
+        # It has its own.
+        ({"inner": "inner"}, 45.0, 45.0),
+    ],
+)
+def test_lines_look_misdrawn_beyond_their_limits_only(
+    stand_ins: dict[str, str], camber: float, kingpin: float, sign: float
+) -> None:
+    for steeper in (False, True):
+        by = 0.5 if steeper else -0.5
+        points = drawn(sign * (camber + by), sign * (kingpin + by))
+        doubts = WHEEL_ANGLES.doubts(topology(stand_ins), points, AXES, {})
+        assert [bool(doubt.where) for doubt in doubts] == [steeper, steeper]
+    told = {"wheel_axis": np.array(True)}
+    doubts = WHEEL_ANGLES.doubts(topology(stand_ins), points, AXES, told)
+    assert [bool(doubt.where) for doubt in doubts] == [False, True]
+    wrong = WHEEL_ANGLES.doubts(topology(stand_ins), drawn(89.5, 90.5), AXES, {})
+    assert ["swapped" in doubt.words(()) for doubt in wrong] == [False, True]
+
+
+def test_angles_are_of_positions_and_their_errors_of_the_places_that_are_enclosed() -> None:
+    points, moving = drawn(3.0, 8.0), {name: np.full(3, 7.0) for name in drawn(0.0, 0.0)}
+    mechanism = SimpleNamespace(topology=topology({}))
+    poses = SimpleNamespace(states=[points, moving, moving], mechanism=mechanism, axes=AXES)
+    (found,) = WHEEL_ANGLES.evaluate(poses).values()
+    assert {name: float(np.degrees(value)) for name, value in found.items()} == pytest.approx(
+        {CAMBER.name: 3.0, KINGPIN.name: 8.0}
+    )
+    enclosed = [{name: Enclosed.of(place) for name, place in state.items()} for state in (points, moving)]
+    numbers = {"wheel": {name: value + 1e-3 for name, value in found.items()}}
+    known = SimpleNamespace(points=enclosed, mechanism=mechanism, axes=AXES)
+    (errors,) = WHEEL_ANGLES.errors(known, numbers).values()
+    for name in found:
+        assert errors[name][0] == pytest.approx(1e-3, rel=1e-5)
+
+
+def test_only_what_is_measured_from_the_front_or_the_rear_is_lengthwise() -> None:
+    def lean(sine: str, cosine: str) -> Angle:
+        return Angle(sine, f"{sine} {cosine}", "", "wheel_axis", sine, cosine)
+
+    some = (("forward", "up"), ("rearward", "up"), ("up", "forward"), ("up", "outboard"), ("down", "inboard"))
+    effect = type(WHEEL_ANGLES).of("some", "", *(lean(*pair) for pair in some))
+    assert effect.lengthwise == ("forward up", "rearward up", "up forward")
+    assert effect.derivative == 0
+    assert [quantity.name for quantity in effect.quantities] == ["wheel"]
+
+
+def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing() -> None:
+    apart = {name: tuple(place.tolist()) for name, place in drawn(3.0, 8.0).items()}
+    together = apart | {"centre": apart["inner"]}
+    missing = topology({"axis": "inner"})
+    assert WHEEL_ANGLES.refusal(missing, apart) == ""
+    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together)
+    assert WHEEL_ANGLES.refusal(topology({}), together) == ""
+    assert WHEEL_ANGLES.refusal(topology({"axis": "elsewhere"}), together) == ""
+
+
+def test_an_angle_without_a_limit_may_be_half_a_turn() -> None:
+    effect = type(WHEEL_ANGLES).of("some", "", Angle("some", "some", "", "wheel_axis", "up", "outboard"))
+    points = {"inner": LOW, "centre": LOW - 80.0 * RIGHT}
+    (doubt,) = effect.doubts(topology({}), points, AXES, {})
+    assert not doubt.where
