@@ -265,13 +265,13 @@ def test_a_baseline_may_take_the_place_of_the_one_it_was_compared_with(tmp_path:
 
 
 def test_what_was_there_stays_whole_when_the_disk_is_full(tmp_path: Path) -> None:
-    scene = short_scene(tmp_path)
+    scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
     for option, name in (("--junit", "x.xml"), ("--summary", "x.md"), ("--save-baseline", "x.npz")):
         target = tmp_path / name
         target.write_text("before")
         script = 'ulimit -f 1; trap "" XFSZ; exec "$@"'
         done: subprocess.CompletedProcess[str] = in_shell(
-            script, "validate", scene, scene, "steer", "-q", option, str(target)
+            script, "validate", *scenes, "steer", "-q", option, str(target)
         )
         assert done.returncode == 4, done.stderr
         (line,) = complaints(done.stderr)
