@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from hypothesis import HealthCheck, Phase, find, given, seed, settings
 from hypothesis import strategies as st
 
 from pointcoord import Scene, simulate
-from validate.cars.accepted import REACH
+from validate.cars.accepted import REACH, is_accepted
 from validate.cars.input_limits import DRIVEN, Linkage
 from validate.cars.registry import VARIANTS, Variant
 from validate.cars.scene_content import car_of
@@ -106,6 +107,14 @@ def test_places_are_in_millimetres_that_can_be_read(mechanism: dict[str, object]
 def test_cars_are_of_the_kind_that_is_asked_for(mechanism: dict[str, object]) -> None:
     assert (mechanism["type"], mechanism["closure"]) == ("macpherson", "drawn")
     assert REACH > 20
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.words)
+def test_a_car_whose_points_coincide_is_drawn_back_and_no_error(variant: Variant) -> None:
+    points = variant.base.points
+    assert is_accepted(variant.base)
+    for moved, onto in (("lower_ball_joint", "lower_arm_front"), ("lower_arm_rear", "lower_arm_front")):
+        assert not is_accepted(replace(variant.base, points={**points, moved: points[onto]}))
 
 
 def test_a_kind_that_there_is_not_is_told_in_a_line() -> None:

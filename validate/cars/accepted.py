@@ -166,7 +166,7 @@ def _cars(draw: st.DrawFn, suspension: str | None, closure: str | None, reach: i
         moved = {n: np.trunc(move / 2**halved) for n, move in moves.items()} if halved < HALVED else {}
         car = _moved(base, moved, rod, slid)
         car = turned(other_side(car) if mirror else car, turn)
-        if _is_accepted(car):
+        if is_accepted(car):
             return car
     raise AssertionError("pointcoord refuses a base car")  # it solves them, see the tests
 
@@ -181,15 +181,17 @@ def _moved(base: Car, moves: Mapping[str, np.ndarray], rod: float, slid: float) 
     return base.drawn_as(points)
 
 
-def _is_accepted(car: Car) -> bool:
+def is_accepted(car: Car) -> bool:
     """Whether the car is sound, and pointcoord reads it and solves it at its own drawing."""
     try:
-        linkage = Linkage.of(car)
-        if not linkage.sound:
-            return False
+        # Points that coincide make no number, which is not sound.
+        with np.errstate(all="ignore"):
+            linkage = Linkage.of(car)
+            if not linkage.sound:
+                return False
         home = linkage.home
         simulate(Scene.from_mapping(scene_content(car, home["arm_angle"], home["rack"])))
-    except (PointcoordError, ValueError):
+    except (PointcoordError, ValueError, ArithmeticError):
         return False
     return True
 

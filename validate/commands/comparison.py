@@ -342,7 +342,9 @@ def _require_solver_options(options: argparse.Namespace) -> None:
 def _names(options: argparse.Namespace) -> list[str]:
     """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
     folder = [] if options.scenes_dir is None else list(scenes_below(options.scenes_dir))
-    return [*options.scenes, *folder] or list(DEFAULT_SCENES)
+    named = [*options.scenes, *folder] or list(DEFAULT_SCENES)
+    # A scene that is named again would say the same again, under the same name; standard input is refused.
+    return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:

@@ -253,7 +253,7 @@ class BoundsStudy:
 
     name = "bounds"
     noun = "pose"
-    chunk = 4
+    chunk = 8
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys(("suspension", "driven", "lock", "refusal"), "string"),
         **dict.fromkeys(NUMBERS, "float64"),

@@ -184,7 +184,7 @@ class RandomStudy:
 
     name = "random"
     noun = "scene"
-    chunk = 2
+    chunk = 4
     columns: ClassVar[Mapping[str, Kind]] = {
         **dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene"), "string"),
         **{f"share_{quantity}": "float64" for quantity in SHARED},

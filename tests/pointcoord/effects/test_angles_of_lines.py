@@ -95,3 +95,10 @@ def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing(
     assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together)
     assert WHEEL_ANGLES.refusal(topology({}), together) == ""
     assert WHEEL_ANGLES.refusal(topology({"axis": "elsewhere"}), together) == ""
+
+
+def test_an_angle_without_a_limit_may_be_half_a_turn() -> None:
+    effect = type(WHEEL_ANGLES).of("some", "", Angle("some", "some", "", "wheel_axis", "up", "outboard"))
+    points = {"inner": LOW, "centre": LOW - 80.0 * RIGHT}
+    (doubt,) = effect.doubts(topology({}), points, AXES, {})
+    assert not doubt.where

@@ -40,16 +40,18 @@ def test_a_proven_error_is_what_the_worst_line_in_its_box_is_off(length: float) 
 
 
 @pytest.mark.parametrize("off", [-0.4, -0.01, 0.3])
-def test_a_wrong_angle_is_proven_wrong_by_as_much(off: float) -> None:
-    proven, expected = errors(3.0, 4.0, float(np.arctan2(3.0, 4.0)) + off)
+@pytest.mark.parametrize("line", [(3.0, 4.0), (5.0, 1.0), (5.0, -1.0), (1.0, -5.0)])
+def test_a_wrong_angle_is_proven_wrong_by_as_much(off: float, line: tuple[float, float]) -> None:
+    proven, expected = errors(*line, float(np.arctan2(*line)) + off)
     # The arc of a sine x is taken as x + x^3, of which a sixth is needed.
     assert abs(off) < proven <= abs(off) * (1.0 + off**2)
     assert expected < 8.0 * EPS
 
 
 @pytest.mark.parametrize("off", [np.pi, np.pi - 0.1, 3.4, 1.0, -1.0])
-def test_of_an_angle_that_points_elsewhere_nothing_is_proven(off: float) -> None:
-    proven, expected = errors(3.0, 4.0, float(np.arctan2(3.0, 4.0)) + off)
+@pytest.mark.parametrize("length", [0.125, 1.0])
+def test_of_an_angle_that_points_elsewhere_nothing_is_proven(off: float, length: float) -> None:
+    proven, expected = errors(3.0 * length, 4.0 * length, float(np.arctan2(3.0, 4.0)) + off)
     assert proven == np.pi
     # What a plain evaluation loses does not depend on what was found.
     assert expected < 8.0 * EPS
@@ -85,4 +87,4 @@ def test_of_an_exact_line_the_functions_rounding_is_proven_twice() -> None:
     found = float(np.arctan2(1.0, 1.0)) + 1e-16
     left = abs(float(Fraction(float(np.cos(found))) - Fraction(float(np.sin(found)))))
     wanted = (left + 2.0 * 2.0 * UNIT) / np.sqrt(2.0)
-    assert errors(1.0, 1.0, found)[PROVEN] == pytest.approx(wanted, rel=1e-6)
+    assert errors(1.0, 1.0, found)[PROVEN] / EPS == pytest.approx(wanted / EPS, rel=1e-6)

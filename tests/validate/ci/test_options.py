@@ -183,6 +183,14 @@ def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
     assert names == ([first, wrong] if fault in ("disagrees", "moved") else [first])
 
 
+def test_a_scene_that_is_named_again_is_compared_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = short_scene(tmp_path, "a.toml")
+    assert main(["validate", scene, scene, "--scenes-dir", str(tmp_path), *PAIR]) == 0
+    assert "1 of 1 scenes agree" in capsys.readouterr().out
+
+
 def test_without_a_fault_every_scene_is_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
     assert main(["validate", *scenes, *PAIR, "--fail-fast"]) == 0
@@ -257,13 +265,13 @@ def test_a_baseline_may_take_the_place_of_the_one_it_was_compared_with(tmp_path:
 
 
 def test_what_was_there_stays_whole_when_the_disk_is_full(tmp_path: Path) -> None:
-    scene = short_scene(tmp_path)
+    scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
     for option, name in (("--junit", "x.xml"), ("--summary", "x.md"), ("--save-baseline", "x.npz")):
         target = tmp_path / name
         target.write_text("before")
         script = 'ulimit -f 1; trap "" XFSZ; exec "$@"'
         done: subprocess.CompletedProcess[str] = in_shell(
-            script, "validate", scene, scene, "steer", "-q", option, str(target)
+            script, "validate", *scenes, "steer", "-q", option, str(target)
         )
         assert done.returncode == 4, done.stderr
         (line,) = complaints(done.stderr)

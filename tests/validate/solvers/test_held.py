@@ -13,7 +13,8 @@ from validate.cars.scene_content import scene_content
 from validate.comparison.compare import Outcome
 from validate.solvers.held import claims_for
 
-CARS = [SUSPENSIONS[name].base["drawn"] for name in SUSPENSIONS]
+# Every closure of each: the closed form has a collinear strut's axis through the ball joint.
+CARS = [car for suspension in SUSPENSIONS.values() for car in suspension.base.values()]
 MOVING = {"arm_angle": (1.6, 0.12, -0.3), "rack": (4.0, -25.0, 40.0), "heave": (0.0, 30.0, -20.0)}
 
 
@@ -30,14 +31,14 @@ def by_quantity(outcome: Outcome) -> dict[str, float]:
     return shares
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_a_right_solver_agrees_in_everything_down_to_nearly_rounding(car) -> None:
     for accuracy in (1e-3, 1e-6, 1e-10):
         outcome = check(closed_form, moving(car), accuracy)
         assert {row.verdict for row in outcome.rows} == {"agrees"}, by_quantity(outcome)
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 @pytest.mark.parametrize("seed", range(4))
 def test_a_solver_is_held_to_what_it_states(car, seed: int) -> None:
     scene, solver = moving(car), less_exact(1e-3, seed)
@@ -47,10 +48,18 @@ def test_a_solver_is_held_to_what_it_states(car, seed: int) -> None:
     assert not broken.passed
     assert all(share > 1.0 for share in by_quantity(broken).values())
     # The tolerance is that of this accuracy and of no far larger one: every quantity uses up a part of it.
-    assert all(share > 2e-3 for share in by_quantity(kept).values()), by_quantity(kept)
+    # The kingpin of a collinear strut is the line to strut_lower, and a shorter one turns by more: that is
+    # allowed, but a car whose points are in line does not do it.
+    shorter = 1.0
+    if car.closure == "collinear":
+        ball, lower, top = (np.array(car.points[n]) for n in ("lower_ball_joint", "strut_lower", "strut_top"))
+        shorter = float(np.linalg.norm(lower - ball) / np.linalg.norm(top - ball))
+    least = {"kingpin": 2e-3 * shorter, "caster": 2e-3 * shorter}
+    shares = by_quantity(kept)
+    assert all(share > least.get(name, 2e-3) for name, share in shares.items()), (shorter, shares)
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_a_tolerance_is_a_multiple_of_the_accuracy(car) -> None:
     scene = moving(car)
     fine, coarse = (claims_for(scene, accuracy) for accuracy in (1e-8, 1e-6))
@@ -69,7 +78,7 @@ def near_the_end(car, distance: float) -> Scene:
     return Scene.from_mapping(scene_content(car, home["arm_angle"], (rack, 1.0)), "near")
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
     wide = {}
     for distance in (1e-3, 1e-5, 1e-7):
@@ -83,14 +92,14 @@ def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
         np.testing.assert_allclose(grown, [0.5, 1.5, 2.5], atol=0.2)
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 @pytest.mark.parametrize("seed", range(3))
 def test_near_a_fold_who_keeps_the_accuracy_agrees(car, seed: int) -> None:
     outcome = check(less_exact(1e-6, seed), near_the_end(car, 1e-5), 1e-6)
     assert outcome.passed, by_quantity(outcome)
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: car.suspension)
+@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
     outcome = check(closed_form, near_the_end(car, 1e-7), 1e-2)
     assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}

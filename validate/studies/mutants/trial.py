@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
 SHARED = ""  # the name under which what is not one test's alone is counted
 
-# A trial may take so many times the processor time that its tests took unchanged, and some seconds more; and
-# on the clock of a busy machine so many times that.
+# A trial may take so many times the processor time that its tests took unchanged, that of starting, and some
+# seconds more; and on the clock of a busy machine so many times that.
 PATIENCE, CLOCK = 4.0, 20.0
 MEMORY = 8 << 30  # bytes; a change may ask for an array of any size
 
@@ -183,7 +183,7 @@ def _of_first_file(tests: Sequence[str], baseline: Baseline, first: bool) -> lis
 
 def _limit(tests: Iterable[str], baseline: Baseline, grace: float) -> float:
     """How much processor time some tests may take, s."""
-    return grace + PATIENCE * (baseline.seconds[SHARED] + sum(baseline.seconds[test] for test in tests))
+    return grace + baseline.seconds[SHARED] + PATIENCE * sum(baseline.seconds[test] for test in tests)
 
 
 OUT_OF_TIME = "out of time"
