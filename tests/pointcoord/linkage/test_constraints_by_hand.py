@@ -138,7 +138,8 @@ def test_the_normal_is_the_product_of_the_edges() -> None:
 
 def test_links_know_the_squares_of_their_lengths_to_their_doubt() -> None:
     rng = np.random.default_rng(3)
-    cars = {name: rng.uniform(-1.0, 1.0, (20, 3)) for name in "abc"}
+    # Of very different sizes, so that the differences are rounded too.
+    cars = {name: rng.uniform(-1.0, 1.0, (20, 3)) * 10.0 ** rng.uniform(-4.0, 0.0, (20, 3)) for name in "abc"}
     links = (Link("a", "b"), Link("b", "c"))
     (placed,) = Link.placed_together(links, LAYOUT, Drawing(cars, np.ones(20)))
     assert placed.places == (LAYOUT.squared_length("a", "b"), LAYOUT.squared_length("b", "c"))
@@ -157,7 +158,7 @@ def test_of_several_links_the_one_without_length_is_named() -> None:
     good = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(1.0, 1.0, 1.0))
     bad = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
     links = (Link("a", "b"), Link("b", "c"))
-    for car in (bad, both_and(good, bad)):
+    for car in (bad, both_and(good, bad), both_and(bad, good)):
         with pytest.raises(MechanismError, match="b - c has no length"):
             Link.placed_together(links, LAYOUT, car)
     worse = drawing(a=(3.0, 4.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
