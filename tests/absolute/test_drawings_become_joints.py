@@ -1,17 +1,20 @@
 """What a drawing becomes: joint frames, lines, inputs and signs, in numbers known by hand."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from struts import TABLE
+from wishbones import LOTUS
 
 import absolute
 from absolute.description import Axis, Carried, Joint, Model
 from absolute.drawing import Drawing
 from absolute.errors import DescriptionError
 from absolute.rows import OFFSETS, RIGHT_ANGLES, SENSES, frame_about, joint_frames, rows_of
+from absolute.suspensions import suspension_of
+from absolute.suspensions.suspension import Drawn, Suspension
 
 Points = Mapping[str, tuple[float, float, float]]
 EPS = np.finfo(float).eps
@@ -19,6 +22,8 @@ EPS = np.finfo(float).eps
 # Freedoms that a joint leaves its two bodies.
 FREEDOMS = {"spherical": 3, "universal": 2, "cylindrical": 2, "revolute": 1, "prismatic": 1}
 X, Y, Z = np.eye(3)
+LOWER = ("lower_arm_front", "lower_arm_rear")
+UPPER = ("upper_arm_front", "upper_arm_rear")
 POINTS = {"o": (0.0, 0.0, 0.0), "a": (3.0, 0.0, 0.0), "b": (0.0, 4.0, 0.0), "c": (0.0, 0.0, -5.0)}
 
 
@@ -137,6 +142,57 @@ def test_directions_at_no_right_angle_are_refused_with_their_angle(lean: float, 
         absolute.macpherson(TABLE, right=(0.0, 1.0, lean))
 
 
+def test_lines_against_each_other_are_180_degrees_apart_however_they_are_rounded() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        x, y, z = rng.normal(size=3).tolist()
+        model = lines_of((x, y, z), (-x, -y, -z), "revolute")
+        with pytest.raises(DescriptionError, match=r"drawn 180\.0 degrees apart"):
+            rows_of(model, Drawing(model))
+
+
+def test_a_double_wishbone_turns_its_arms_about_their_own_pivots() -> None:
+    model = suspension_of("double_wishbone")(LOTUS)
+    assert set(model.bodies["chassis"]) == {*LOWER, *UPPER, "rack_centre"}
+    for arm, pivots in (("lower_arm", LOWER), ("upper_arm", UPPER)):
+        assert model.joints[f"{arm}_pivot"].on_second == Axis(*pivots)
+        assert set(pivots) < set(model.bodies[arm])
+    angle = model.inputs["arm_angle"]
+    assert (angle.axis.through, angle.point) == (LOWER[0], "lower_ball_joint")
+    assert angle.factor == pytest.approx(
+        np.linalg.norm(np.subtract(LOTUS["lower_ball_joint"], LOTUS[LOWER[0]])), rel=4 * EPS
+    )
+
+
+def test_directions_are_told_by_name_and_checked_by_name() -> None:
+    build: Callable[..., Model] = absolute.macpherson
+    assert build(points=TABLE).corner == build(TABLE).corner
+    with pytest.raises(TypeError):
+        build(TABLE, (0.0, 0.0, 1.0))
+    for name in ("up", "right"):
+        with pytest.raises(DescriptionError, match=f"^{name}") as caught:
+            build(TABLE, **{name: (0.0, 1.0)})
+        assert caught.value.name == name
+
+
+def test_of_several_points_that_are_missing_the_first_is_named() -> None:
+    points = {name: place for name, place in TABLE.items() if name not in ("strut_top", "tie_rod_inner")}
+    with pytest.raises(DescriptionError, match=r"missing: \['strut_top', 'tie_rod_inner'\]") as caught:
+        absolute.macpherson(points)
+    assert caught.value.name == "strut_top"
+
+
+def test_points_that_may_be_left_out_come_last_also_where_a_body_has_no_others() -> None:
+    every = Suspension(
+        "a rod", {"rod": ("end", "start"), "ground": ("o",)}, {"end": "start"}, (), (), _nothing
+    )
+    assert every.points == ("start", "o", "end")
+
+
+def _nothing(drawn: Drawn) -> Model:
+    raise NotImplementedError
+
+
 def test_inputs_are_as_drawn() -> None:
     model = absolute.macpherson({**TABLE, "lower_ball_joint": (282.0, -8.0, -6.0)})
     angle, rack = model.inputs["arm_angle"], model.inputs["rack"]
@@ -147,10 +203,10 @@ def test_inputs_are_as_drawn() -> None:
     assert (rack.axis.through, rack.point) == ("rack_centre", "tie_rod_inner")
 
 
-@pytest.mark.parametrize("direction", [X, Y, Z])
-def test_the_cross_at_the_rack_has_pins_square_to_the_tie_rod(direction: np.ndarray) -> None:
+@pytest.mark.parametrize("direction", [(9, 0, 1), (9, 1, 0), (0, 9, 1), (1, 9, 0), (0, 1, 9), (1, 0, 9)])
+def test_the_cross_at_the_rack_has_pins_square_to_the_tie_rod(direction: tuple[int, ...]) -> None:
     inner = np.array(TABLE["tie_rod_inner"])
-    outer = inner + 100.0 * direction + 0.01 * np.array([1.0, 2.0, 3.0])
+    outer = inner + 20.0 * np.array(direction)
     model = absolute.macpherson({**TABLE, "tie_rod_outer": tuple(outer.tolist())})
     cross = model.joints["tie_rod_inner_cross"]
     of_rack, of_rod = (np.array(axis.toward) for axis in (cross.on_first, cross.on_second))
