@@ -104,3 +104,22 @@ def test_rates_of_a_thin_body_lose_digits_once_and_not_twice(thin: float) -> Non
         found, _ = body_rates(points, np.cross(omega, points), np.zeros((3, 3)))
         # Points and velocities up to 4 are rounded, three of each, and enter as 1 / (0.8 thin) at most.
         assert np.abs(found - omega).max() <= 16 * 4 * EPS / (0.8 * thin)
+
+
+def test_a_needle_a_millionth_as_thick_as_long_turns_as_its_points_do() -> None:
+    # Whole numbers, so that points, velocities and what is asked for are exact.
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        start, end = rng.integers(-(2**22), 2**22, (2, 3))
+        points = np.array([start, end, (start + end) // 2 + rng.integers(-12, 13, 3)]).astype(float)
+        length = np.linalg.norm(points[1] - points[0])
+        height = np.linalg.norm(np.cross(points[1] - points[0], points[2] - points[0])) / length
+        if height < 1e-6 * length:
+            continue
+        omega = rng.integers(-9, 10, 3).astype(float)
+        v = np.cross(omega, points)
+        found, _ = body_rates(points, v, np.cross(omega, v))
+        # The means of three are rounded, by EPS |p| of points and EPS |omega| |p| of velocities, each in two
+        # components; over the height that is how far the needle turns about itself.
+        turn = 4.0 * EPS * np.abs(points).max() * np.abs(omega).max() / height
+        assert np.abs(found - omega).max() <= turn

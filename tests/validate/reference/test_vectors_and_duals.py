@@ -72,6 +72,12 @@ def test_sine_and_cosine_turn_into_each_other() -> None:
     assert cosine.slope.overlaps(-3 * (arb(1) / 2).sin())
 
 
+def test_a_root_changes_by_half_its_share() -> None:
+    root = Dual(arb(9), arb(5)).sqrt()
+    assert root.value == 3
+    assert root.slope.overlaps(arb(5) / 6)
+
+
 def test_arrays_leave_sums_and_products_to_the_dual() -> None:
     array = np.array([1.0, 2.0])
     assert isinstance(array * Dual(X, DX), Dual)

@@ -1,0 +1,189 @@
+"""What each kind of constraint reads off a drawing, in numbers known by hand."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody, scaled_axis
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_line import FARTHEST, OnLine
+from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.quadratic import quadratic_map
+
+Array = NDArray[np.float64]
+U = 2.0**-53
+
+BODY = Normal("n", "a", "b", "c")
+AXIS = AxisInBody("axis", "a", "b", BODY)
+HELD = HeldOnAxis("c", "b", AXIS, "held")
+SLIDES = OnAxis("b", "a", "axis", "place")
+LINE = OnLine("c", "a", "b", "ratio")
+RACK = Rack("a", "o", "e", "travel")
+LAYOUT = Layout(
+    moving=("a", "b", "c"),
+    ratios=("place", "ratio"),
+    chassis=("o",),
+    directions=("e",),
+    driven=("travel",),
+    squared_lengths=(("a", "b"), ("b", "c")),
+    vectors=("n", "axis"),
+    constants=(*AXIS.constants, *HELD.constants),
+)
+
+
+def drawing(**points: tuple[float, float, float]) -> Drawing:
+    return Drawing({name: np.array(place) for name, place in points.items()}, np.array(1.0))
+
+
+def both_and(car: Drawing, other: Drawing) -> Drawing:
+    """Both cars, and then the first again, in one drawing."""
+    vectors = {name: np.stack([place, other.vectors[name], place]) for name, place in car.vectors.items()}
+    return Drawing(vectors, np.stack([car.unit, other.unit, car.unit]))
+
+
+def value(kind: Constraint, car: Drawing) -> Array:
+    """What a kind with one coordinate of its own reads off."""
+    (placed,) = kind.placed(LAYOUT, car)
+    assert len(placed.places) == placed.values.shape[-1] == 1
+    return np.asarray(placed.values[..., 0])
+
+
+# An axis of length 11, whose direction is brought to 11 / 16.
+LONG = {"a": (1.0, -1.0, 4.0), "b": (3.0, -7.0, 13.0)}
+
+
+def test_a_direction_is_brought_between_a_half_and_one() -> None:
+    high, low = scaled_axis(drawing(**LONG), "a", "b")
+    assert (high * 16.0).tolist() == [2.0, -6.0, 9.0]
+    assert (low == 0.0).all()
+
+
+def test_a_point_that_slides_stands_where_it_is_drawn_on_its_axis() -> None:
+    one, other = drawing(**LONG), drawing(a=(1.0, 2.0, 3.0), b=(1.0, 2.0, 3.0 + 5.0))
+    assert value(SLIDES, one) == 16.0
+    assert value(SLIDES, other) == 8.0
+    assert value(SLIDES, both_and(one, other)).tolist() == [16.0, 8.0, 16.0]
+
+
+@pytest.mark.parametrize(
+    ("off", "place"),
+    [
+        ((6.0, -18.0, 27.0), 48.0),
+        ((-6.0, 18.0, -27.0), -48.0),
+        ((3.0, 1.0, 0.0), np.sqrt(10.0) * 16.0 / 11.0),  # straight beside the end: 6 - 6 + 0
+        ((10.0, 4.0, 0.0), -np.sqrt(116.0) * 16.0 / 11.0),  # 20 - 24 + 0, behind it
+        ((0.0, 0.0, 0.0), 0.0),
+    ],
+)
+def test_a_point_is_held_at_its_distance_to_the_side_where_it_is_drawn(
+    off: tuple[float, float, float], place: float
+) -> None:
+    x, y, z = np.add(LONG["b"], off).tolist()
+    if place < 0.0 and off[2] == 0.0:
+        assert np.dot(off, (2.0, -6.0, 9.0)) < 0.0
+    (placed,) = HELD.placed(LAYOUT, drawing(**LONG, c=(x, y, z)))
+    assert placed.values[0] == pytest.approx(place, rel=4 * U, abs=0.0)
+    assert np.isfinite(placed.lacks).all()
+    assert np.abs(placed.lacks).max() <= 5 * U * abs(place)
+    assert np.max(placed.doubt) <= 1e3 * U**2 * abs(place)
+
+
+def test_a_point_on_a_line_stands_at_its_foot() -> None:
+    one = drawing(a=(1.0, 2.0, 3.0), b=(3.0, 3.0, 5.0), c=(1.0 + 3.0, 2.0, 3.0 + 6.0))
+    other = drawing(a=(0.0, 1.0, 0.0), b=(4.0, 1.0, 0.0), c=(-6.0, 9.0, 7.0))
+    # (3, 0, 6) . (2, 1, 2) = 18 over 9, and -24 over 16
+    assert value(LINE, one) == 2.0
+    assert value(LINE, other) == -1.5
+    assert value(LINE, both_and(one, other)).tolist() == [2.0, -1.5, 2.0]
+    with pytest.raises(MechanismError, match="a - b has no length"):
+        LINE.placed(LAYOUT, both_and(one, drawing(a=(0.0, 1.0, 0.0), b=(0.0, 1.0, 0.0), c=(1.0, 1.0, 1.0))))
+
+
+def test_a_line_is_left_at_235_of_its_lengths() -> None:
+    # A turn by 1 rad takes 0.036 R^2 proven steps, and a path may have 2000.
+    assert 0.036 * FARTHEST**2 <= 2000.0 < 0.036 * (FARTHEST + 1.0) ** 2
+    near = {"a": (0.0, 0.0, 0.0), "b": (2.0, 0.0, 0.0)}
+    for sign in (1.0, -1.0):
+        LINE.placed(LAYOUT, drawing(**near, c=(2.0 * sign * FARTHEST, 5.0, 0.0)))
+        far, fine = (
+            replace(drawing(**near, c=end), unit=np.array(100.0))
+            for end in ((sign * 500.0, 5.0, 0.0), (1.0, 1.0, 1.0))
+        )
+        for car in (far, both_and(fine, far)):
+            with pytest.raises(MechanismError) as caught:
+                LINE.placed(LAYOUT, car)
+            # Times 100 mm: 2 apart, 500 along, and 500 / 235 = 2.13
+            for words in ("200 mm apart", "5e+04 mm along", "250 times as far", "most 235 times", "2.1e+02"):
+                assert words in str(caught.value)
+
+
+def test_the_normal_is_the_product_of_the_edges() -> None:
+    car = drawing(a=(1.0, 1.0, 1.0), b=(3.0, 1.0, 1.0), c=(8.0, 4.0, 1.0))
+    (placed,) = BODY.placed(LAYOUT, car)
+    assert placed.places == LAYOUT.vector("n")
+    assert placed.values.tolist() == [0.0, 0.0, 6.0]
+
+
+def test_links_know_the_squares_of_their_lengths_to_their_doubt() -> None:
+    rng = np.random.default_rng(3)
+    # Of very different sizes, so that the differences are rounded too.
+    cars = {name: rng.uniform(-1.0, 1.0, (20, 3)) * 10.0 ** rng.uniform(-4.0, 0.0, (20, 3)) for name in "abc"}
+    links = (Link("a", "b"), Link("b", "c"))
+    (placed,) = Link.placed_together(links, LAYOUT, Drawing(cars, np.ones(20)))
+    assert placed.places == (LAYOUT.squared_length("a", "b"), LAYOUT.squared_length("b", "c"))
+    lacks, doubt = np.asarray(placed.lacks), np.asarray(placed.doubt)
+    for i in range(20):
+        for j, (start, end) in enumerate((("a", "b"), ("b", "c"))):
+            parts = zip(cars[start][i].tolist(), cars[end][i].tolist(), strict=True)
+            exact = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in parts)
+            found = Fraction(float(placed.values[i, j])) + Fraction(float(lacks[i, j]))
+            assert abs(found - exact) <= Fraction(float(doubt[i, j]))
+            assert abs(lacks[i, j]) <= 5 * U * exact
+            assert doubt[i, j] <= 1e3 * U**2 * exact
+
+
+def test_of_several_links_the_one_without_length_is_named() -> None:
+    good = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(1.0, 1.0, 1.0))
+    bad = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
+    links = (Link("a", "b"), Link("b", "c"))
+    for car in (bad, both_and(good, bad), both_and(bad, good)):
+        with pytest.raises(MechanismError, match="b - c has no length"):
+            Link.placed_together(links, LAYOUT, car)
+    worse = drawing(a=(3.0, 4.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
+    with pytest.raises(MechanismError, match="a - b has no length"):
+        Link.placed_together(links, LAYOUT, worse)
+
+
+LENGTHS: Mapping[Constraint, Array] = {kind: np.array([2.0, -3.0, 6.0]) for kind in (RACK, LINE, HELD)}
+
+
+@pytest.mark.parametrize("kind", LENGTHS, ids=lambda kind: type(kind).__name__)
+def test_the_rows_of_a_distance_are_that_distance(kind: Constraint) -> None:
+    """Where a kind says that its rows are a distance, a point moved off by 7 mm misses by 7 mm."""
+    assert kind.is_length
+    y = np.random.default_rng(4).normal(size=LAYOUT.size)
+    y[LAYOUT.zero], y[LAYOUT.one] = 0.0, 1.0
+    moved = y.copy()
+    moved[list(LAYOUT.vector("a" if kind is RACK else "c"))] += LENGTHS[kind]
+    system = quadratic_map(kind.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
+    assert np.linalg.norm(system.residual(moved) - system.residual(y)) == pytest.approx(7.0, rel=1e-13)
+
+
+def test_a_motion_ends_at_links_and_slides_and_bodies_join_nothing() -> None:
+    every = (BODY, AXIS, HELD, SLIDES, LINE, RACK, Link("a", "b"), Rise("a", "o", "e", "travel"))
+    assert [kind for kind in every if kind.may_lock] == [SLIDES, Link("a", "b")]
+    assert [kind for kind in every if kind.holds_a_body] == [BODY, AXIS]
+    assert [kind for kind in every if kind.is_length] == [HELD, LINE, RACK]
+    assert [kind for kind in every if kind.aligned] == [LINE]
