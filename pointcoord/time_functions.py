@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 SMALL_ANGLE = 2.0**-27
 # Instants up to which a polynomial takes less time one by one, in Python's own numbers.
 FEW = 16
+# Splitting larger coefficients overflows: they are taken together, where no warning comes of it.
+MODERATE = 1e200
 # Two pi and what its double lacks; the rest is below the radius.
 TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
@@ -103,7 +105,7 @@ class Polynomial:
         t = np.asarray(instants, dtype=float)
         if t.ndim == 0:
             return self._series_of_one(float(t), order)
-        if t.ndim == 1 and 0 < len(t) <= FEW:
+        if t.ndim == 1 and 0 < len(t) <= FEW and self._moderate:
             return np.array([self._series_of_one(each, order) for each in t.tolist()])
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
@@ -136,6 +138,11 @@ class Polynomial:
             high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
             self._shifts[k] = high.tolist(), low.tolist()
         return self._shifts[k]
+
+    @cached_property
+    def _moderate(self) -> bool:
+        """Whether no coefficient is so large that splitting it overflows, whatever multiplies it."""
+        return max(map(abs, self.coefficients), default=0.0) < MODERATE
 
     @cached_property
     def _shifts(self) -> dict[int, tuple[list[float], list[float]]]:

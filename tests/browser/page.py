@@ -34,7 +34,7 @@ PHONE = {"width": 390, "height": 844}
 # A4 without margins of 15 mm, at 96 pixels an inch.
 PAPER = {"width": 680, "height": 1009}
 # Seconds of work of the page's own process until all of it is there: time on a clock would measure what
-# else the machine does. 1.8 s were seen, and the script of plotly takes most of them.
+# else the machine does. 2.2 s were seen, and the script of plotly takes most of them.
 LOAD = 8.0
 # The guidelines for accessible content (WCAG 2.2, 1.4.3 and 1.4.11) on text and on lines.
 TEXT, LINES = 4.5, 3.0

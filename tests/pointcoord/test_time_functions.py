@@ -1,5 +1,6 @@
 """Inputs as power series, against evaluations that share nothing with them."""
 
+import warnings
 from fractions import Fraction
 from math import comb, factorial
 
@@ -274,3 +275,11 @@ def test_the_cosine_of_one_series_is_that_of_a_batch(terms: list[float], zeros: 
     for k in range(1, len(angle)):
         size = np.append(size, rates[1 : k + 1] @ size[::-1] / k)
     assert (np.abs(one - batch) <= 8 * len(angle) * np.finfo(float).eps * size).all()
+
+
+@pytest.mark.parametrize("size", [1e306, 1e308, -1e308])
+def test_few_instants_of_a_huge_law_are_those_of_many_and_warn_of_nothing(size: float) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        few, many = (Polynomial((1.0, size, size)).series(np.full(count, 0.2), 2) for count in (1, FEW + 1))
+    assert np.array_equal(few[0], many[0], equal_nan=True)

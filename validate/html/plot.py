@@ -80,4 +80,4 @@ def fewer(weight: Array, most: int) -> Sequence[int]:
 
 def plain(text: str) -> str:
     """Words from a file as a label: plotly reads some HTML, and these are no marks of it."""
-    return re.sub(r"[^\w .,:;()/^+=-]", "?", text)
+    return re.sub(r"[^\w .,:;()[\]/^+=-]", "?", text)
