@@ -11,6 +11,7 @@ from flint import arb
 from reference_cars import CARS, ReferenceCar
 
 from validate.reference.candidates import choices_of, choices_of_table, every_candidate
+from validate.reference.errors import NotDecidedError
 from validate.reference.linkage import Known
 from validate.reference.vectors import minus
 
@@ -84,3 +85,11 @@ def test_a_candidate_whose_closures_are_met_is_an_assembly(known: tuple[str, Kno
             assert all(arb(x).contains(0) for x in minus(again[point], place))
     design = CARS[name].design
     assert choices_of_table(design.table, design.up, linkage) in [candidate.choices for candidate in met]
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.1])
+def test_a_side_that_may_be_either_is_not_decided(known: tuple[str, Known], radius: float) -> None:
+    _, given = known
+    anywhere = {name: (arb(0, radius),) * 3 for name in given.linkage.points}
+    with pytest.raises(NotDecidedError, match="the sign of the arm choice"):
+        choices_of(anywhere, given)
