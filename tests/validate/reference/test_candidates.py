@@ -2,18 +2,53 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
+from fractions import Fraction
+from typing import Any
 
 import pytest
 from flint import arb
-from reference_cars import CARS
+from reference_cars import CARS, ReferenceCar
 
 from validate.reference.candidates import choices_of, choices_of_table, every_candidate
+from validate.reference.errors import NotDecidedError
 from validate.reference.linkage import Known
 from validate.reference.vectors import minus
 
 # Choices that an assembly can have: the side of a drawn strut's rod is the drawing's.
 POSSIBLE = {"strut as drawn": 8, "collinear strut": 16, "double wishbone": 8}
+
+
+# A strut as drawn whose axis passes the ball joint farther off than the strut top is at this arm angle.
+LOW = {
+    **CARS["strut as drawn"].points,
+    "strut_top": (1350, -720, 260),
+    "strut_lower": (1350, -660, 160),
+    "strut_rod_end": (1350, -690, 210),
+}
+# Inputs at which a closure cannot be met, and the choice that it would leave.
+BEYOND = [
+    (CARS["strut as drawn"], {"arm_angle": 3}, "arm", "arm"),
+    (CARS["strut as drawn"], {"rack": 600}, "tie_rod", "tie"),
+    (replace(CARS["strut as drawn"], points=LOW), {"arm_angle": Fraction(1415, 1000)}, "strut", "strut"),
+    (CARS["collinear strut"], {"rack": 200}, "tie_rod", "tie"),
+    (CARS["double wishbone"], {"arm_angle": Fraction(23, 10)}, "upper_arm", "upper_arm"),
+]
+
+
+@pytest.mark.parametrize(("car", "inputs", "closure", "choice"), BEYOND)
+def test_where_a_closure_cannot_be_met_its_two_answers_are_the_one_that_comes_nearest(
+    car: ReferenceCar, inputs: dict[str, Any], closure: str, choice: str
+) -> None:
+    every = {candidate.choices: candidate for candidate in every_candidate(car.known(**inputs))}
+    missed = [choices for choices in every if every[choices].gaps[closure] > 0]
+    assert missed
+    for choices in missed:
+        other = replace(choices, **{choice: -getattr(choices, choice)})
+        for name, place in every[choices].points.items():
+            for one, two in zip(place, every[other].points[name], strict=True):
+                assert one.overlaps(two)
+                assert one.rad() < 1e-6
 
 
 @pytest.fixture(params=CARS)
@@ -50,3 +85,11 @@ def test_a_candidate_whose_closures_are_met_is_an_assembly(known: tuple[str, Kno
             assert all(arb(x).contains(0) for x in minus(again[point], place))
     design = CARS[name].design
     assert choices_of_table(design.table, design.up, linkage) in [candidate.choices for candidate in met]
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.1])
+def test_a_side_that_may_be_either_is_not_decided(known: tuple[str, Known], radius: float) -> None:
+    _, given = known
+    anywhere = {name: (arb(0, radius),) * 3 for name in given.linkage.points}
+    with pytest.raises(NotDecidedError, match="the sign of the arm choice"):
+        choices_of(anywhere, given)

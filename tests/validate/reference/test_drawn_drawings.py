@@ -10,7 +10,8 @@ from off_axis_cars import BASE
 from reference_cars import OFF_AXIS as POINTS
 
 from validate.reference import AmbiguousAssemblyError, BadInputError, closed_drawing, solve_reference
-from validate.reference.vectors import minus, plus, times
+from validate.reference.design import Design
+from validate.reference.vectors import cross, dot, minus, plus, times
 
 STILL = {"arm_angle": (1.5, 0, 0), "rack": (230, 0, 0)}
 
@@ -82,3 +83,20 @@ def test_a_side_that_is_clear_only_in_exact_numbers_is_taken_when_asked_for() ->
     assert sorted(signs) == [-1, 1]
     with pytest.raises(AmbiguousAssemblyError, match="tie choice"):
         closed_drawing({**POINTS, "tie_rod_outer": middle}, closure="drawn", clearness=0)
+
+
+@pytest.mark.parametrize("apart", [Fraction(1, 10**30), Fraction(1, 3), Fraction(90), Fraction(700)])
+def test_the_axis_of_the_knuckle_is_as_long_as_the_mechanism_however_far_apart_it_is_drawn(
+    apart: Fraction,
+) -> None:
+    top, bottom = POINTS["strut_top"], POINTS["strut_lower"]
+    way = minus(bottom, top)
+    share = apart / max(abs(x) for x in way)
+    points = {**POINTS, "strut_lower": plus(top, times(way, share))}
+    axis = Design.from_points(points, (0, 0, 1), (0, 1, 0), "left", "drawn", "macpherson").knuckle[
+        "strut_top"
+    ]
+    # In units of the mechanism; the largest component to a power of two.
+    assert Fraction(1, 2) <= max(abs(x) for x in axis) <= 2
+    assert cross(axis, way) == (0, 0, 0)
+    assert dot(axis, way) < 0
