@@ -9,6 +9,7 @@ where it agrees.
 | agrees | a case that passes |
 | disagrees, moved since the baseline | `failure` |
 | not tested, not given, new or gone since the baseline, not run | `skipped`, with the reason |
+| what is given and cannot be used, or tells nothing | `error` |
 | a scene that cannot be read, is refused, or fails; another car than in the baseline | `error` |
 
 The elements, attributes and their order are those of the schema `junit-10.xsd` of Jenkins' xUnit plugin. It
@@ -23,12 +24,14 @@ from xml.etree import ElementTree
 
 from pointcoord.data_classes import dataclass
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record, why_undecided
+from validate.ci.record import Record, fault_of, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
 from validate.output.report import about, held_to, when
 from validate.plain_text import shown
+
+UNUSABLE = "cannot be used"
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ def _suites(record: Record) -> Iterator[Suite]:
                 "instants": str(len(outcome.solutions[0].times)),
                 **factor,
             }
-            cases = [_compared(row, outcome) for row in outcome.rows]
+            cases = [*(_compared(row, outcome) for row in outcome.rows), *_unusable(outcome)]
             yield f"{examined.name}: {first} and {second}", properties, cases
         if faults := [*_faults(examined)]:
             yield examined.name, {"scene": examined.name}, faults
@@ -114,6 +117,8 @@ def _add_suite(
 
 def _compared(row: Comparison, outcome: Outcome) -> _Case:
     name = about(row.quantity, row.name)
+    if fault := fault_of(row, outcome):
+        return _Case(name, "error", UNUSABLE, f"{UNUSABLE}: {fault}")
     if row.verdict == "not given":
         return _Case(name, "skipped", row.verdict, f"not given: {why_undecided(row, outcome)}")
     out = _numbers("difference", row.difference, "tolerance", row.tolerance, row.unit, when(row), row.share)
@@ -128,6 +133,15 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         f"{_times(row.share)}{_held(outcome.factor)}"
     )
     return _Case(name, "failure", row.verdict, message, out)
+
+
+def _unusable(outcome: Outcome) -> Iterator[_Case]:
+    """What is given of no number that is asked for; and why nothing is said, where no case says it."""
+    told = {fault_of(row, outcome) for row in outcome.rows}
+    rest = [fault for fault in outcome.faults if fault not in told]
+    yield from (_Case(f"what is given, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
+    if outcome.why_no_verdict and not outcome.faults:
+        yield _Case("verdict", "error", "no verdict", f"no verdict: {outcome.why_no_verdict}")
 
 
 def _numbers(

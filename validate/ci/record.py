@@ -91,9 +91,17 @@ def ends_the_run(examined: Examined, since: Since | None) -> bool:
     return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved))
 
 
+def fault_of(row: Comparison, outcome: Outcome) -> str:
+    """What is wrong with what was given of a row, if it cannot be used; else empty."""
+    about_it = f": {QUANTITIES[row.quantity].words} of {row.name} "
+    return next((fault for fault in outcome.faults if about_it in fault), "")
+
+
 def why_undecided(row: Comparison, outcome: Outcome) -> str:
     """The reason of a row that says nothing: who does not give it, or what makes its tolerance too wide."""
     words = QUANTITIES[row.quantity].words
+    if fault := fault_of(row, outcome):
+        return fault
     if row.verdict == "not given":
         found = [line for line in outcome.missing if _is_about(line, words, row)]
         where = f"{about(row.quantity, row.name)} is given at no instant of the scene"

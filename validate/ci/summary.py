@@ -163,8 +163,10 @@ def _undecided(record: Record) -> Iterator[str]:
             reason = f"{row.verdict}: {why_undecided(row, outcome)}"
             found.setdefault(reason, []).append(about(row.quantity, row.name))
         pair = " and ".join(solution.formulation for solution in outcome.solutions)
+        where = f"scene {markdown(examined.name)}, {markdown(pair)}"
+        told = [outcome.why_no_verdict, *(f"cannot be used: {fault}" for fault in outcome.faults)]
+        yield from (f"{where}: {markdown(line)}" for line in told if line)
         for reason, whats in found.items():
-            where = f"scene {markdown(examined.name)}, {markdown(pair)}"
             yield f"{where}: {markdown(', '.join(whats))}: {markdown(reason)}"
 
 

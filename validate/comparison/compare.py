@@ -42,6 +42,7 @@ class Comparison:
             `tolerance`); `not given` where one of them gives no such numbers, and all numbers here are NaN.
         rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
         place: where that is in a file of results, whose instants may be travels; empty of a scene's instants.
+        telling: whether it would disagree if a solver gave back what it was given, where that is decided.
     """
 
     scene: str
@@ -58,6 +59,7 @@ class Comparison:
     rests_on: str
     part: float
     place: str = ""
+    telling: bool = True
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,6 +71,7 @@ class Outcome:
         notes: what the formulations said themselves of numbers without meaning, and what is wrong with
             what they gave.
         missing: what one formulation does not give, a line each.
+        faults: what one gives that cannot be used, a line each, which are among the notes too.
         factor: how many times the derived tolerance the differences were held to.
         explanations: what would explain that they disagree, the best first, where it was looked for.
     """
@@ -80,6 +83,7 @@ class Outcome:
     missing: tuple[str, ...]
     factor: float = 1.0
     explanations: tuple[Explanation, ...] = ()
+    faults: tuple[str, ...] = ()
 
     @property
     def agreed(self) -> bool:
@@ -93,10 +97,25 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Whether every row agrees; of a solver with a stated accuracy: something, and nothing disagrees."""
+        """Whether every row agrees; of a solver with a stated accuracy: something that tells, and nothing
+        disagrees. What cannot be used of what is given is no agreement either way.
+        """
+        if self.faults or not self.stated:
+            return self.agreed and not self.faults
+        return not self.disagreements and any(row.verdict == "agrees" and row.telling for row in self.rows)
+
+    @property
+    def why_no_verdict(self) -> str:
+        """Why it neither passes nor disagrees, in words; empty where it does, or where the rows say it."""
+        if self.passed or self.disagreements:
+            return ""
+        if self.faults:
+            return "something that is given cannot be used"
         if not self.stated:
-            return self.agreed
-        return not self.disagreements and any(row.verdict == "agrees" for row in self.rows)
+            return ""
+        if any(row.verdict == "agrees" for row in self.rows):
+            return "whatever agrees is what the solver was given: points that stay where they are drawn"
+        return "no number that is given is tested"
 
     @property
     def disagreements(self) -> tuple[Comparison, ...]:
@@ -174,7 +193,8 @@ def compare_solutions(
     instants = scene.instants
     first, second = given(one, instants), given(two, instants)
     both = first.found & second.found
-    notes = tuple(dict.fromkeys((*one.notes, *two.notes, *first.notes, *second.notes)))
+    faults = tuple(dict.fromkeys((*first.faults, *second.faults)))
+    notes = tuple(dict.fromkeys((*one.notes, *two.notes, *first.notes, *second.notes, *faults)))
     first, second = first.at(both), second.at(both)
     rows: list[Comparison] = []
     missing: list[str] = []
@@ -183,7 +203,7 @@ def compare_solutions(
         missing += _missing(quantity, parts, first, second)
         sides = (_Side.of(first, quantity), _Side.of(second, quantity))
         rows += _rows(name, quantity, parts, sides, instants[both], factor)
-    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor)
+    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
 def _parts(quantity: str, asked: Sequence[str], one: Given, two: Given) -> list[str]:

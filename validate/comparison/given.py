@@ -29,7 +29,7 @@ class Given:
         claims: how far each may be off, likewise; a name is missing where nothing is claimed of it.
         condition: condition number at each instant.
         blind: see `Accuracy.blind`.
-        notes: what was left out, and why.
+        notes: what the user should know of it. faults: what cannot be used and is left out, and why.
     """
 
     formulation: str
@@ -39,6 +39,7 @@ class Given:
     condition: Array
     notes: tuple[str, ...]
     blind: NDArray[np.bool_] | None = None
+    faults: tuple[str, ...] = ()
 
     def at(self, instants: NDArray[np.bool_]) -> Given:
         """The same at fewer instants, a part of those that are found."""
@@ -53,7 +54,9 @@ class Given:
             for arrays in (self.numbers, self.claims)
         )
         blind = None if self.blind is None else self.blind[rows]
-        return Given(self.formulation, instants, numbers, claims, self.condition[rows], self.notes, blind)
+        return Given(
+            self.formulation, instants, numbers, claims, self.condition[rows], self.notes, blind, self.faults
+        )
 
 
 def given(solution: Solution, instants: Array) -> Given:
@@ -62,7 +65,7 @@ def given(solution: Solution, instants: Array) -> Given:
     Raises:
         FormulationError: it does not say at which instants its numbers are, or nothing of its accuracy.
     """
-    who, notes = solution.formulation, []
+    who, notes, faults = solution.formulation, list[str](), [*solution.faults]
     if not isinstance(solution.accuracy, Accuracy):
         problem = f"its accuracy is a {type(solution.accuracy).__name__}; needed: an Accuracy"
         raise FormulationError(who, TypeError(problem))
@@ -77,18 +80,18 @@ def given(solution: Solution, instants: Array) -> Given:
         )
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
     claims: Arrays = {quantity: {} for quantity in QUANTITIES}
-    for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", notes).items():
+    for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", faults).items():
         if quantity not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             notes.append(f"{who}: {quantity!r} is no quantity and is left out; there are: {known}")
             continue
         words, shape = QUANTITIES[quantity].words, shape_of(quantity, len(times))
         claimed = solution.accuracy.claims.get(quantity, {})
-        for name, raw in _by_name(given_part, f"{who}: {words}", notes).items():
+        for name, raw in _by_name(given_part, f"{who}: {words}", faults).items():
             what = f"{who}: {words} of {name}"
             array = _shaped(raw, shape)
             if isinstance(array, str):
-                notes.append(f"{what} {array}; it is left out")
+                faults.append(f"{what} {array}; it is left out")
                 continue
             finite = np.isfinite(array)
             wrong = 0 if finite.all() else int(np.sum(~finite.reshape(len(array), -1).all(axis=-1)))
@@ -106,7 +109,7 @@ def given(solution: Solution, instants: Array) -> Given:
         notes.append(f"{who}: its condition number {condition}; 1 is taken")
         condition = np.ones_like(times)
     blind = None if solution.accuracy.blind is None else solution.accuracy.blind[places]
-    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind)
+    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind, tuple(faults))
 
 
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:
@@ -119,11 +122,11 @@ def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[n
     return found, order[np.searchsorted(times, instants[found], side="left", sorter=order)]
 
 
-def _by_name(part: object, what: str, notes: list[str]) -> Mapping[str, object]:
+def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]:
     """A mapping as it is; what is none is told and empty."""
     if isinstance(part, Mapping):
         return part
-    notes.append(f"{what} given as a {type(part).__name__}; needed: arrays by name")
+    faults.append(f"{what} given as {type(part).__name__}; needed: arrays by name")
     return {}
 
 
@@ -141,6 +144,8 @@ def _real(raw: object) -> Array | str:
         array = np.asarray(raw)
     except (ValueError, TypeError) as error:
         return f"is no array ({error})"
+    if isinstance(raw, np.ma.MaskedArray) and (masked := int(np.sum(raw.mask))):
+        return f"has {masked} masked entries; needed: numbers, NaN where there are none"
     if array.dtype.kind not in "iuf":
         return f"is of type {array.dtype}; needed: real numbers"
-    return array.astype(float, copy=False)
+    return np.asarray(array, dtype=float)

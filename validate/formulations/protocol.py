@@ -111,6 +111,7 @@ class Solution:
             point, body or angle. What the scene does not ask for may be left out.
         accuracy: how far each number may be off; what is not claimed of a number cannot be tested.
         notes: what the formulation itself says of numbers that have no meaning.
+        faults: what it gives that cannot be used, and why, a line each.
     """
 
     formulation: str
@@ -118,6 +119,7 @@ class Solution:
     numbers: Numbers
     accuracy: Accuracy
     notes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
     def with_numbers(self, numbers: Numbers) -> Solution:
         """The same with other numbers of some quantities."""

@@ -112,8 +112,19 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
             ("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows
         ),
     ]
-    told = (*outcome.missing, *outcome.notes)
-    return (*lines, *(f"  note: {note}" for note in told), *explained_lines(explanations))
+    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
+    return (
+        *lines,
+        *verdict_lines(outcome),
+        *(f"  note: {note}" for note in told),
+        *explained_lines(explanations),
+    )
+
+
+def verdict_lines(outcome: Outcome) -> list[str]:
+    """What cannot be used, and why there is no verdict where the rows do not say it."""
+    why = [f"  no verdict: {outcome.why_no_verdict}"] if outcome.why_no_verdict else []
+    return [*why, *(f"  cannot be used: {fault}" for fault in outcome.faults)]
 
 
 def explained_lines(explanations: Sequence[Explanation]) -> list[str]:
@@ -224,6 +235,8 @@ def outcome_data(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> 
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),
+        "unusable": list(outcome.faults),
+        "why_no_verdict": outcome.why_no_verdict,
         "explanations": [asdict(one) for one in explanations],
     }
 

@@ -239,8 +239,8 @@ def _plain(answer: Any) -> Any:
     """An answer without classes that only its own process knows: other libraries' arrays become numpy's."""
     if isinstance(answer, Mapping):
         return {key if type(key) in BUILTIN else str(key): _plain(part) for key, part in answer.items()}
-    if type(answer) in BUILTIN:
-        return answer
+    if type(answer) in BUILTIN or isinstance(answer, np.ma.MaskedArray):
+        return answer  # what is masked is to be told
     try:
         array = np.asarray(answer)
         if array.dtype != object:

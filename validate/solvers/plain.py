@@ -38,6 +38,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.messages import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
+from validate.solvers.names import known_names, misspelt
 
 Array = NDArray[np.float64]
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
@@ -167,10 +168,12 @@ class PlainSolver:
             raise FormulationError(self.name, SolverFailed(said(error), raised_at(error))) from error
         if not isinstance(answer, Mapping):
             raise FormulationError(self.name, SolverFailed(no_mapping(answer)))
-        numbers, notes = _numbers(self.name, answer, asked_numbers(scene))
+        numbers, notes, faults = _numbers(self.name, answer, scene)
         times = self._times(answer, scene)
         accuracy, untold = self._accuracy(scene)
-        return Solution(self.name, times, numbers, _at(accuracy, scene.instants, times), (*notes, *untold))
+        return Solution(
+            self.name, times, numbers, _at(accuracy, scene.instants, times), (*notes, *untold), faults
+        )
 
     def _accuracy(self, scene: Scene) -> tuple[Accuracy, tuple[str, ...]]:
         """What is claimed at the scene's instants; nothing, and why, of a scene without a reference."""
@@ -202,12 +205,15 @@ class PlainSolver:
 
 
 def _numbers(
-    who: str, answer: Mapping[str, Any], asked: Mapping[str, tuple[str, ...]]
-) -> tuple[dict[str, dict[str, Any]], tuple[str, ...]]:
-    """What was asked for, of all that was answered, and a line for everything else."""
+    who: str, answer: Mapping[str, Any], scene: Scene
+) -> tuple[dict[str, dict[str, Any]], tuple[str, ...], tuple[str, ...]]:
+    """What was asked for, of all that was answered; a line for what was not; one for what cannot be used."""
+    asked, known = asked_numbers(scene), known_names(scene)
+    every = (*known, *(name for q, names in known.items() if QUANTITIES[q].of == "car" for name in names))
     of_the_car = {n: q for q, names in asked.items() if QUANTITIES[q].of == "car" for n in names}
     found: dict[str, dict[str, Any]] = {}
     notes: list[str] = []
+    faults: list[str] = []
     for key, part in answer.items():
         if key in of_the_car:
             found.setdefault(of_the_car[key], {})[key] = part
@@ -217,12 +223,16 @@ def _numbers(
                     found.setdefault(key, {})[name] = array
                 else:
                     what = f"{QUANTITIES[key].words} of {shown(name)}"
-                    notes.append(_left_out(who, what, name, asked[key]))
+                    told = faults if misspelt(name, known[key]) else notes
+                    told.append(_left_out(who, what, name, asked[key]))
         elif key in asked:
-            notes.append(f"{who}: {key} is a {type(part).__name__}; needed: arrays by name; it is left out")
+            faults.append(
+                f"{who}: {key} is of type {type(part).__name__}; needed: arrays by name; it is left out"
+            )
         elif key != INSTANTS:
-            notes.append(_left_out(who, shown(key), key, (*asked, *of_the_car)))
-    return found, tuple(notes)
+            told = faults if misspelt(key, every) else notes
+            told.append(_left_out(who, shown(key), key, (*asked, *of_the_car)))
+    return found, tuple(notes), tuple(faults)
 
 
 def _left_out(who: str, what: str, name: object, there: Iterable[str]) -> str:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.messages import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
+from validate.solvers.names import known_names, misspelt
 from validate.solvers.plain import INSTANTS
 
 Array = NDArray[np.float64]
-ALIKE = 0.8  # of their letters, of names of which one is the other misspelt: "iterations" is no acceleration
 FORM = "an array for each name, such as {'position': {'wheel_centre': [[x, y, z], ...]}}"
 
 
@@ -48,7 +47,7 @@ def require_comparable(states: Mapping[str, Any], scene: Scene) -> None:
     Raises:
         WrongStates: one has another shape, no numbers, or a name that is misspelt.
     """
-    known = _names(scene)
+    known = known_names(scene)
     alone = {name: q for q, names in known.items() if QUANTITIES[q].of == "car" for name in names}
     count = len(scene.instants)
     if INSTANTS in states and np.ndim(states[INSTANTS]) == 1:
@@ -61,10 +60,10 @@ def require_comparable(states: Mapping[str, Any], scene: Scene) -> None:
                 if name in known[key]:
                     what = f"{key} of {name}"
                     _require_array(what, array, shape_of(key, count))
-                elif hint := _misspelt(name, known[key]):
+                elif hint := misspelt(name, known[key]):
                     problem = f"is of no {QUANTITIES[key].of} that there is{hint}"
                     raise WrongStates(f"{key} of {shown(name)}", problem, ", ".join(known[key]))
-        elif key != INSTANTS and (hint := _misspelt(key, (*QUANTITIES, *alone))):
+        elif key != INSTANTS and (hint := misspelt(key, (*QUANTITIES, *alone))):
             raise WrongStates(shown(key), f"is no quantity{hint}", ", ".join((*QUANTITIES, *alone)))
 
 
@@ -93,7 +92,7 @@ def require_given(states: Mapping[str, Any], scene: Scene, needed: Collection[st
 
 def numbers_of(states: Mapping[str, Any], scene: Scene) -> tuple[Array, list[Array]]:
     """The instants of comparable states, (N,), and every array of theirs, (N, 3) or (N,)."""
-    known = _names(scene)
+    known = known_names(scene)
     alone = {name for q, names in known.items() if QUANTITIES[q].of == "car" for name in names}
     found = [
         np.asarray(array, dtype=float)
@@ -102,24 +101,6 @@ def numbers_of(states: Mapping[str, Any], scene: Scene) -> tuple[Array, list[Arr
         if name in (known[key] if key in QUANTITIES else alone)
     ]
     return np.asarray(states.get(INSTANTS, scene.instants), dtype=float), found
-
-
-def _misspelt(name: object, known: Collection[str]) -> str:
-    """What a name was to be, in words that follow it; empty of what may be something else."""
-    near = get_close_matches(str(name).lower(), known, n=1, cutoff=ALIKE)
-    return f" (did you mean {near[0]!r}?)" if near else ""
-
-
-def _names(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """By quantity, every name that a number of it can have, whether the scene asks for it or not."""
-    topology = scene.mechanism.topology
-    every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
-    asked = asked_numbers(scene)
-    found = {q: tuple(dict.fromkeys((*asked.get(q, ()), *every[kind.of]))) for q, kind in QUANTITIES.items()}
-    for effect in EFFECTS.values():
-        for quantity, names in effect.gives_numbers.items():
-            found[quantity] = tuple(dict.fromkeys((*found[quantity], *(names or ()))))
-    return found
 
 
 def _by_name(quantity: str, part: object) -> Iterator[tuple[str, object]]:
@@ -134,6 +115,8 @@ def _require_array(what: str, raw: object, shape: tuple[int, ...]) -> None:
         array = np.asarray(raw)
     except (ValueError, TypeError) as error:
         raise WrongStates(what, f"is no array ({error})", form) from None
+    if isinstance(raw, np.ma.MaskedArray) and (masked := int(np.sum(raw.mask))):
+        raise WrongStates(what, f"has {masked} masked entries", "numbers, NaN where there are none")
     if array.dtype.kind not in "iuf":
         raise WrongStates(what, f"is of type {array.dtype}", "real numbers")
     if array.shape != shape:

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import plain_solvers
 import pytest
@@ -245,12 +246,41 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
     (solvers / "own_solvers" / "odd_ones.py").write_text(text, encoding="utf-8")
     told = []
     for extra in ([], ["--in-process"]):
-        assert run("own_solvers.odd_ones:solve", "off-axis-strut.toml", *extra) == 0
+        assert run("own_solvers.odd_ones:solve", "off-axis-strut.toml", *extra) == 3
         out = capfd.readouterr().out
         assert "agrees" in next(line for line in out.splitlines() if line.startswith("position"))
         told.append(out)
     assert told[0] == told[1]
-    assert "velocity is a Odd" in told[0]
+    assert "velocity is of type Odd" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("part", "said", "case"),
+    [
+        ("{'toe': a['toe'][1:]}", "toe has the shape (4,); needed: (5,)", "toe"),
+        (
+            "{'cambre': a['camber']}",
+            "'cambre', which the scene does not ask for (did you mean 'camber'?)",
+            "",
+        ),
+        ("{'toe': __import__('numpy').ma.masked_less(a['toe'], 9)}", "toe has 5 masked entries", "toe"),
+    ],
+)
+def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_test_results(
+    solvers: Path, capfd: pytest.CaptureFixture[str], part: str, said: str, case: str
+) -> None:
+    text = RIGHT.replace("return closed_form(given)", 'a = closed_form(given)["wheel"]')
+    (solvers / "own_solvers" / "partly.py").write_text(
+        f"{text}    return {{'camber': a['camber'], **{part}}}\n", encoding="utf-8"
+    )
+    tests = solvers / "tests.xml"
+    assert run("own_solvers.partly:solve", "off-axis-strut.toml", "--junit", str(tests)) == 3
+    out = capfd.readouterr().out
+    assert f"  cannot be used: own_solvers.partly:solve{' ' if not case else ': wheel angle of '}" in out
+    assert said in out
+    assert "0 of 1 scenes agree" in out
+    (error,) = ElementTree.parse(tests).getroot().iter("error")
+    assert said in error.get("message", "")
 
 
 @pytest.mark.parametrize(

@@ -79,8 +79,8 @@ def test_a_misspelt_point_is_told_what_was_meant() -> None:
     ("numbers", "said"),
     [
         ({"speed": {"wheel_centre": WHEEL}}, "mine: 'speed' is no quantity and is left out; there are: pos"),
-        ({"position": [WHEEL]}, "mine: position given as a list; needed: arrays by name"),
-        ([WHEEL], "mine: its numbers given as a list; needed: arrays by name"),
+        ({"position": [WHEEL]}, "mine: position given as list; needed: arrays by name"),
+        ([WHEEL], "mine: its numbers given as list; needed: arrays by name"),
         (
             {"wheel": {"camber": WHEEL}},
             f"wheel angle of camber has the shape ({COUNT}, 3); needed: ({COUNT},)",

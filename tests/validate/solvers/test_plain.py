@@ -124,13 +124,54 @@ def test_a_number_that_is_none_disagrees() -> None:
         ({"position": {"wheel_center": 1}}, "position of 'wheel_center'"),
         ({"position": {"wheel_center": 1}}, "(did you mean 'wheel_centre'?)"),
         ({"wheel": {"Camber": 1}}, "(did you mean 'camber'?)"),
-        ({"position": [1.0]}, "position is a list; needed: arrays by name"),
+        ({"position": [1.0]}, "position is of type list; needed: arrays by name"),
         ({"position": {"wheel_centre": "here"}}, "needed: real numbers"),
         ({3: 4}, "gives 3, which the scene does not ask for; it is left out; asked for: position"),
     ],
 )
 def test_what_is_left_out_is_told(answer: dict[Any, Any], said: str) -> None:
     assert said in "\n".join(check(lambda given: answer, SCENE).notes)
+
+
+UNUSABLE = {
+    "transposed": {"position": {"wheel_centre": RIGHT["position"]["wheel_centre"].T}},
+    "one instant less": {"toe": RIGHT["wheel"]["toe"][1:]},
+    "words": {"toe": [str(x) for x in RIGHT["wheel"]["toe"]]},
+    "nothing in its place": {"toe": None},
+    "complex": {"toe": RIGHT["wheel"]["toe"] + 0j},
+    "no mapping": {"velocity": 3.0},
+    "a misspelt quantity": {"velocty": {}},
+    "a misspelt angle": {"cambre": RIGHT["wheel"]["camber"]},
+    "a misspelt point": {"position": {"wheel_center": RIGHT["position"]["wheel_centre"]}},
+    "masked": {"toe": np.ma.masked_array(RIGHT["wheel"]["toe"], mask=[1, 0, 0, 0, 0])},
+}
+
+
+@pytest.mark.parametrize("part", UNUSABLE.values(), ids=list(UNUSABLE))
+def test_what_is_given_and_cannot_be_used_is_no_agreement_whatever_agrees_beside_it(
+    part: dict[str, Any],
+) -> None:
+    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"], **part}, SCENE)
+    assert ("camber", "agrees") in {(row.name, row.verdict) for row in outcome.rows}
+    assert not outcome.passed
+    assert len(outcome.faults) == 1
+    wrong = check(lambda given: {"camber": -RIGHT["wheel"]["camber"], **part}, SCENE)
+    assert {row.name for row in wrong.disagreements} == {"camber"}
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        {"velocity": {}},
+        {"iterations": 4},
+        {"position": {"a_point_of_mine": 1}},
+        {"toe": np.ma.masked_array(RIGHT["wheel"]["toe"], mask=False)},
+    ],
+)
+def test_what_is_not_given_or_is_something_else_is_no_fault(part: dict[str, Any]) -> None:
+    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"], **part}, SCENE)
+    assert outcome.passed
+    assert not outcome.faults
 
 
 class Solver:

@@ -106,6 +106,7 @@ ZEROS = np.zeros(COUNT)
         ({"wheel": {"camber": ["0.1"] * COUNT}}, "wheel of camber is of type <U3; needed: real numbers"),
         ({"camber": [[0.1], [0.1, 0.2]]}, "camber is no array"),
         ({"velocity": {"wheel_centre": None}}, "velocity of wheel_centre is of type object"),
+        ({"camber": np.ma.masked_less(ZEROS, 1.0)}, f"camber has {COUNT} masked entries; needed: numbers"),
     ],
 )
 def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are(
