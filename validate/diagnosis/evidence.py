@@ -258,6 +258,11 @@ class Evidence:
         return tuple(row for row in self.wrong if row[0] == quantity)
 
     @property
+    def beside(self) -> tuple[Row, ...]:
+        """The rows that agree, of quantities of which others disagree."""
+        return tuple(r for r in self.held if r[0] in self.wrong_quantities and r not in self.wrong)
+
+    @property
     def wrong_quantities(self) -> tuple[str, ...]:
         """The quantities of which a row disagrees."""
         return tuple(dict.fromkeys(row[0] for row in self.wrong))

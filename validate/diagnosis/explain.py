@@ -328,14 +328,27 @@ def _same(one: _Found, other: _Found) -> bool:
     return first == second
 
 
+def _undone(evidence: Evidence, found: _Found, quantity: str) -> bool:
+    """Whether rows of a quantity agree that a fault, if it were in all of them, would be seen in."""
+    for row in evidence.held:
+        if row[0] != quantity or row in evidence.wrong:
+            continue
+        if row in found.hypothesis.rows:
+            if evidence.left(row, *found.hypothesis.rows[row]) > 1.0:
+                return True
+        elif order(row) == 0 or (np.abs(evidence.held[row]) > evidence.rounded(row)).any():
+            return True
+    return False
+
+
 def _told(evidence: Evidence, found: _Found) -> Explanation:
     quantities: list[str] = []
     said: list[str] = []
     for quantity in evidence.wrong_quantities:
         rows = [row for row in found.rows if row[0] == quantity]
-        every = len(rows) == len(evidence.wrong_of(quantity))
         if not rows:
             continue
+        every = set(evidence.wrong_of(quantity)) <= set(rows) and not _undone(evidence, found, quantity)
         if kind_of(rows[0]) != "car" and every:
             quantities.append(quantity)
             said.append(QUANTITIES[quantity].words)

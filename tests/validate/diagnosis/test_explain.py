@@ -169,6 +169,43 @@ def test_a_planted_fault_is_the_first_diagnosis(name: str, fault: str) -> None:
     assert said == set(numbers)
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda v: v + [0.0, 0.0, 2.5], "position of wheel_centre: a constant offset of (0, 0, 2.5) mm"),
+        (lambda v: v * [1.0, -1.0, 1.0], "position of wheel_centre: the other sign of y"),
+        (lambda v: v[:, [1, 0, 2]], "position of wheel_centre: other axes: its x, y, z are our y, x, z"),
+    ],
+)
+def test_what_one_point_has_is_said_of_that_point_and_not_of_those_that_agree(
+    change: Callable[[Array], Array], words: str
+) -> None:
+    place = solved("double-wishbone")[1].numbers["position"]
+    wrong = {"position": {**place, "wheel_centre": change(place["wheel_centre"])}}
+    first = diagnosis("double-wishbone", wrong)[0]
+    assert (first.quantities, first.leftover <= 1.0) == (("position.wheel_centre",), True)
+    assert first.words.startswith(words)
+
+
+def test_points_that_are_shifted_alike_beside_one_that_is_not_are_no_other_origin() -> None:
+    place = solved("double-wishbone")[1].numbers["position"]
+    right = "wheel_axis_inner"
+    moved = {n: a if n == right else a + np.array([0.0, 0.0, 2.5]) for n, a in place.items()}
+    first = diagnosis("double-wishbone", {"position": moved})[0]
+    assert set(first.quantities) == {f"position.{name}" for name in place if name != right}
+    assert "shifted by (0, 0, 2.5) mm" in first.words
+    assert "origin" not in first.words
+
+
+def test_a_sign_of_rates_is_said_of_all_where_those_that_agree_have_it_too() -> None:
+    # The rack end moves along y alone: its velocity agrees either way.
+    found = diagnosis(
+        "double-wishbone",
+        each(solved("double-wishbone")[1], ("velocity",), lambda v: v * [-1.0, 1.0, 1.0]),
+    )
+    assert (found[0].quantities, found[0].words) == (("velocity",), "velocity: the other sign of x")
+
+
 def test_rates_per_input_are_told_from_rates_per_time() -> None:
     _, held = solved("bounce")
     speed = 0.25 + 0.125 * held.times[:, None]
