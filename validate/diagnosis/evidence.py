@@ -29,6 +29,11 @@ Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
 EVENLY = 32  # instants of the telling ones
+MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
+# How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
+CLEAR = 4.0
+# Of a quantity's largest number: differences that are rounding, whatever is claimed.
+ROUNDING = 64.0 * EPS
 TINY = float(np.finfo(float).tiny)
 
 
@@ -45,6 +50,16 @@ def order(row: Row) -> int:
 def kind_of(row: Row) -> str:
     """What each number belongs to: a point, a body or the car."""
     return QUANTITIES[row[0]].of
+
+
+def _apart_by(step: float, numbers: Array) -> int:
+    """How many numbers can be picked that are all farther apart than a step; MOST_DISTINCT at most."""
+    rising = np.sort(numbers[np.isfinite(numbers)])
+    count = place = 0
+    while place < len(rising) and count < MOST_DISTINCT:
+        count += 1
+        place = int(np.searchsorted(rising, rising[place] + step, side="right"))
+    return count
 
 
 class Solved:
@@ -201,7 +216,22 @@ class Evidence:
         if QUANTITIES[row[0]].unit == "rad":
             gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
         gap = np.where(np.isfinite(gap), gap, np.inf)
-        return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
+        with np.errstate(over="ignore"):  # nothing but zeros allows nothing
+            return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
+
+    def clear(self, row: Row, allowed: Array) -> bool:
+        """Whether a row is so far off that what is allowed of it does not explain it, nor rounding."""
+        if self.left(row, self.held[row], allowed) <= CLEAR:
+            return False
+        gap = np.abs(self.given[row] - self.held[row])
+        return not bool((gap <= ROUNDING * self.largest(row[0])).all())
+
+    def largest(self, quantity: str) -> float:
+        """The largest held number of a quantity."""
+        if quantity not in self._largest:
+            some = [np.abs(self.held[row]).max(initial=0.0) for row in self.held if row[0] == quantity]
+            self._largest[quantity] = float(max(some))
+        return self._largest[quantity]
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
         """What is allowed of numbers that were computed again, from the held ones or from the drawing.
@@ -234,19 +264,25 @@ class Evidence:
         return self._distinct[rows]
 
     def _distinct_of(self, numbers: Rows, rows: tuple[Row, ...]) -> int:
-        distinct: dict[int, set[float]] = {}
+        values: dict[int, list[Array]] = {}
+        steps: dict[int, float] = {}
         for row in rows:
             part = numbers[row].reshape(len(self.times), -1)
             allowed = self.allowed[row] + self.own.get(row, 0.0)
             off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
-            step = max(100.0 * float(self.allowed[row].max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
+            # Two numbers of which each may be off by what is allowed, on both sides.
+            step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
             for axis in range(part.shape[1]):
-                some = part[off[:, axis], axis]
-                distinct.setdefault(axis, set()).update(np.unique(np.rint(some / step)).tolist())
-        return sum(len(found) - 1 for found in distinct.values() if found)
+                values.setdefault(axis, []).append(part[off[:, axis], axis])
+                steps[axis] = max(steps.get(axis, 0.0), step)
+        return sum(max(_apart_by(steps[axis], np.concatenate(some)) - 1, 0) for axis, some in values.items())
 
     @cached_property
     def _apart(self) -> dict[tuple[Row, ...], float | None]:
+        return {}
+
+    @cached_property
+    def _largest(self) -> dict[str, float]:
         return {}
 
     @cached_property
@@ -256,6 +292,11 @@ class Evidence:
     def wrong_of(self, quantity: str) -> tuple[Row, ...]:
         """The rows of a quantity that disagree."""
         return tuple(row for row in self.wrong if row[0] == quantity)
+
+    @property
+    def beside(self) -> tuple[Row, ...]:
+        """The rows that agree, of quantities of which others disagree."""
+        return tuple(r for r in self.held if r[0] in self.wrong_quantities and r not in self.wrong)
 
     @property
     def wrong_quantities(self) -> tuple[str, ...]:

@@ -5,6 +5,9 @@ said by what factor it lowers their difference. Numbers that are all one number 
 fitted to them fits. So a claim needs at least two more distinct numbers than were fitted, and numbers that
 are off from more than one value.
 
+Of a row that is off by few times what is allowed nothing is claimed: what is allowed of other numbers is
+wider, and would explain it by itself.
+
 The kinds that need only arithmetic come first, each alone; then those that solve other cars; then two faults
 in the same numbers.
 
@@ -129,7 +132,9 @@ def _elsewhere(evidence: Evidence) -> bool:
 def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> tuple[Row, ...]:
     """The rows that nothing explains yet; or nothing explains mostly."""
     done = {row for one in found if one.whole or (mostly and one.lowered >= ENOUGH) for row in one.rows}
-    return tuple(row for row in evidence.wrong if row not in done)
+    return tuple(
+        row for row in evidence.wrong if row not in done and evidence.clear(row, evidence.allowed[row])
+    )
 
 
 def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
@@ -180,7 +185,8 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
     for row, (value, allowed) in hypothesis.rows.items():
         share = evidence.left(row, value, allowed)
         if row in evidence.wrong:
-            left[row] = share
+            if hypothesis.looser or evidence.clear(row, allowed):
+                left[row] = share
         elif hypothesis.whole and share > 1.0:
             return None
     exact = [row for row, share in left.items() if share <= 1.0]
@@ -328,14 +334,27 @@ def _same(one: _Found, other: _Found) -> bool:
     return first == second
 
 
+def _undone(evidence: Evidence, found: _Found, quantity: str) -> bool:
+    """Whether rows of a quantity agree that a fault, if it were in all of them, would be seen in."""
+    for row in evidence.held:
+        if row[0] != quantity or row in evidence.wrong:
+            continue
+        if row in found.hypothesis.rows:
+            if evidence.left(row, *found.hypothesis.rows[row]) > 1.0:
+                return True
+        elif order(row) == 0 or (np.abs(evidence.held[row]) > evidence.rounded(row)).any():
+            return True
+    return False
+
+
 def _told(evidence: Evidence, found: _Found) -> Explanation:
     quantities: list[str] = []
     said: list[str] = []
     for quantity in evidence.wrong_quantities:
         rows = [row for row in found.rows if row[0] == quantity]
-        every = len(rows) == len(evidence.wrong_of(quantity))
         if not rows:
             continue
+        every = set(evidence.wrong_of(quantity)) <= set(rows) and not _undone(evidence, found, quantity)
         if kind_of(rows[0]) != "car" and every:
             quantities.append(quantity)
             said.append(QUANTITIES[quantity].words)

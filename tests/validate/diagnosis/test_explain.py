@@ -20,6 +20,7 @@ from validate.diagnosis.kinds import kinds
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.output import report
+from validate.solvers.check import check
 
 Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
@@ -167,6 +168,99 @@ def test_a_planted_fault_is_the_first_diagnosis(name: str, fault: str) -> None:
     assert words in first.words
     said = {quantity.partition(".")[0] for quantity in first.quantities}
     assert said == set(numbers)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda v: v + np.array([0.0, 0.0, 2.5]),
+            "position of wheel_centre: a constant offset of (0, 0, 2.5) mm",
+        ),
+        (lambda v: v * [1.0, -1.0, 1.0], "position of wheel_centre: the other sign of y"),
+        (lambda v: v[:, [1, 0, 2]], "position of wheel_centre: other axes: its x, y, z are our y, x, z"),
+    ],
+)
+def test_what_one_point_has_is_said_of_that_point_and_not_of_those_that_agree(
+    change: Callable[[Array], Array], words: str
+) -> None:
+    place = solved("double-wishbone")[1].numbers["position"]
+    wrong = {"position": {**place, "wheel_centre": change(place["wheel_centre"])}}
+    first = diagnosis("double-wishbone", wrong)[0]
+    assert (first.quantities, first.leftover <= 1.0) == (("position.wheel_centre",), True)
+    assert first.words.startswith(words)
+
+
+def test_points_that_are_shifted_alike_beside_one_that_is_not_are_no_other_origin() -> None:
+    place = solved("double-wishbone")[1].numbers["position"]
+    right = "wheel_axis_inner"
+    moved = {n: a if n == right else a + np.array([0.0, 0.0, 2.5]) for n, a in place.items()}
+    first = diagnosis("double-wishbone", {"position": moved})[0]
+    assert set(first.quantities) == {f"position.{name}" for name in place if name != right}
+    assert "shifted by (0, 0, 2.5) mm" in first.words
+    assert "origin" not in first.words
+
+
+def test_a_sign_of_rates_is_said_of_all_where_those_that_agree_have_it_too() -> None:
+    # The rack end moves along y alone: its velocity agrees either way.
+    found = diagnosis(
+        "double-wishbone",
+        each(solved("double-wishbone")[1], ("velocity",), lambda v: v * [-1.0, 1.0, 1.0]),
+    )
+    assert (found[0].quantities, found[0].words) == (("velocity",), "velocity: the other sign of x")
+
+
+def test_a_wrong_sign_is_told_however_coarse_the_stated_accuracy_is() -> None:
+    scene, _ = solved("off-axis-strut")
+
+    def other_sign(given: Mapping[str, object]) -> Mapping[str, object]:
+        held = solved("off-axis-strut")[1]
+        return {"position": held.numbers["position"], "wheel": {"camber": -held.numbers["wheel"]["camber"]}}
+
+    outcome = check(other_sign, scene, accuracy=0.1)
+    (row,) = outcome.disagreements
+    assert 4.0 < row.share < 100.0  # of the tolerance: no longer many times it
+    assert outcome.explanations[0].words == "camber: the other sign"
+
+
+@pytest.mark.parametrize("times", [1.5, 3.0, 30.0])
+def test_differences_of_rounding_have_no_explanation(times: float) -> None:
+    # Each off by a factor or a constant, so that a factor or an offset is what fits best.
+    _, held = solved("double-wishbone")
+    small = times * 2.0**-53
+    numbers = {
+        **each(held, ("velocity",), lambda v: v * (1.0 + small)),
+        **angle(held, "toe", lambda v: v + small * np.abs(v).max()),
+    }
+    assert diagnosis("double-wishbone", numbers) == ()
+
+
+def test_an_offset_at_the_level_of_the_tolerance_is_none() -> None:
+    scene, held = solved("double-wishbone")
+
+    def barely_off(given: Mapping[str, object]) -> Mapping[str, object]:
+        return angle(held, "toe", lambda v: v + 3.0 * 7e-8)
+
+    outcome = check(barely_off, scene)
+    assert 1.0 < outcome.disagreements[0].share < 10.0
+    assert outcome.explanations == ()
+
+
+@pytest.mark.parametrize(("factor", "told"), [(0.9998905, False), (0.97, True)])
+def test_a_factor_is_one_that_is_not_nearly_one(factor: float, told: bool) -> None:
+    _, held = solved("double-wishbone")
+    found = diagnosis("double-wishbone", angle(held, "caster", lambda v: factor * v))
+    assert [one.words for one in found] == (["caster: 0.97 times ours"] if told else [])
+
+
+def test_a_factor_that_leaves_something_is_none() -> None:
+    _, held = solved("double-wishbone")
+    random = np.random.default_rng(5)
+    found = diagnosis(
+        "double-wishbone",
+        angle(held, "caster", lambda v: 0.97 * v + 1e-5 * random.standard_normal(v.shape)),
+    )
+    assert found == ()
 
 
 def test_rates_per_input_are_told_from_rates_per_time() -> None:

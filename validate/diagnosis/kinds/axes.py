@@ -44,7 +44,7 @@ class Axes(Kind):
                 if not evidence.wants(tuple(named)):
                     continue
                 words = f"other axes: its x, y, z are our {', '.join(named)}"
-                rows = in_axes(evidence, matrix, evidence.wrong, True)
+                rows = in_axes(evidence, matrix, (*evidence.wrong, *evidence.beside), True)
                 yield Hypothesis(
                     self.name, tuple(named), words, rows, cost=1.5 + 0.01 * sum(s < 0.0 for s in signs)
                 )

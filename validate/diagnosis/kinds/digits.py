@@ -61,7 +61,7 @@ class Digits(Kind):
             found = {
                 row: (evidence.held[row], evidence.allowed[row] + self._single(evidence, row)) for row in rows
             }
-            yield Hypothesis(self.name, "single", "printed or kept in single precision", found)
+            yield Hypothesis(self.name, "single", "printed or kept in single precision", found, looser=True)
 
     @staticmethod
     def _single(evidence: Evidence, row: Row) -> Array:
@@ -78,7 +78,7 @@ class Digits(Kind):
             row: (evidence.held[row], half + evidence.allowed[row] + EPS * np.abs(evidence.held[row]))
             for row, half in halves.items()
         }
-        return Hypothesis(self.name, words, f"printed with {words}", found, cost=1.05)
+        return Hypothesis(self.name, words, f"printed with {words}", found, cost=1.05, looser=True)
 
 
 KIND = Digits()

@@ -57,20 +57,24 @@ class Offset(Kind):
         return evidence.solved.drawn.get(row[1])
 
     def _origin(self, evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
-        """One shift for all points."""
-        if not rows:
-            return
+        """One shift for all points; of another origin only where every given point has it."""
+        if len(rows) < 2:
+            return  # one point alone tells of no other
         shift = np.mean(np.concatenate([evidence.given[row] - evidence.held[row] for row in rows]), axis=0)
         if not np.isfinite(shift).all():
             return
         noise = max(float(evidence.rounded(row).max()) for row in rows)
         shift[np.abs(shift) < noise] = 0.0
-        told = f"({', '.join(f'{c:.6g}' for c in shift)}) {evidence.unit_of(rows[0])}"
-        words = f"another origin: every point is shifted by {told}"
-        moved = {row: self._less(evidence, row, -shift) for row in rows}
         fitted = int(np.count_nonzero(shift))
-        if fitted:
-            yield Hypothesis(self.name, "origin", words, moved, fitted, 1.0 + 0.5 * fitted)
+        if not fitted:
+            return
+        moved = {row: self._less(evidence, row, -shift) for row in rows}
+        points = [row for row in evidence.given if row[0] == rows[0][0]]
+        every = set(points) == set(rows) and all(evidence.left(row, *moved[row]) <= 1.0 for row in rows)
+        # The points that agree say where the origin is: what is off beside them is off by itself.
+        told = f"({', '.join(f'{c:.6g}' for c in shift)}) {evidence.unit_of(rows[0])}"
+        words = f"another origin: every point is shifted by {told}" if every else f"shifted by {told}"
+        yield Hypothesis(self.name, "origin", words, moved, fitted, 1.0 + 0.5 * fitted)
 
     def _relative(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """Relative to the chassis, where an input moves that."""

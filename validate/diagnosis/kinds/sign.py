@@ -19,11 +19,13 @@ class Sign(Kind):
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """All seven of vectors, and one for each number of the car."""
         vectors = [row for row in evidence.wrong if kind_of(row) != "car"]
+        # Rows that agree as well, so that it is known whether they would under the fault.
+        both = [*vectors, *(row for row in evidence.beside if kind_of(row) != "car")]
         for signs in product((1.0, -1.0), repeat=3):
             flipped = [axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0]
             if flipped and vectors and evidence.wants(flipped.__repr__()):
                 rows: dict[Row, WouldBe] = {
-                    row: (evidence.held[row] * np.array(signs), evidence.allowed[row]) for row in vectors
+                    row: (evidence.held[row] * np.array(signs), evidence.allowed[row]) for row in both
                 }
                 words = f"the other sign of {' and '.join(flipped)}"
                 yield Hypothesis(self.name, flipped.__repr__(), words, rows, cost=1.0 + 0.1 * len(flipped))
