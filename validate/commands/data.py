@@ -74,8 +74,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         scene = load_scene(given)
         with told_as(name):
             measured = read_results(options.data, options.map, scene)
-            accuracy, factor = options.accuracy or 0.0, options.tolerance_factor
-            found = compare_results(measured, scene, name, accuracy, factor)
+            found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
         examined = _examined(found, scene, name)
         record.add(examined, None)
         done.append(report.examined_data(examined) | {"comparisons": [results_text.data_of(found)]})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import shlex
 from functools import partial
 from typing import BinaryIO
 
@@ -20,7 +21,7 @@ from validate.commands.usage import (
 )
 from validate.exit_status import ExitStatus
 from validate.fitting.corrected import corrected_text
-from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints
+from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
 from validate.fitting.record import data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
 from validate.measured.mapping import read_results
@@ -110,6 +111,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     head = Head.of("fit", options.command)
     with told_as(name), console.working("designs") as told:
         measured = read_results(options.data, options.map, scene)
+        count = len(free_coordinates(scene, options.free))
+        numbers = len(measured.numbers) * len(measured.rows)
+        console.note(f"{name}: {count} coordinates are fitted to {numbers} numbers; this may take a while")
         limits = options.bounds, options.prior, options.accuracy
         fit = fit_hardpoints(scene, measured, options.free, *limits, told=told)
     status = ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT
@@ -133,8 +137,18 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         write_whole(target, partial(_put, content))
         console.written = [*console.written, f"{target} holds {HOLDS[option]}"]
     if options.output not in (None, "-"):
-        console.say(f"{shown(options.output)} is written; try: pointcoord validate {shown(options.output)}")
+        console.say(f"{shown(options.output)} is written; try: {_next(options)}")
     return status
+
+
+def _next(options: argparse.Namespace) -> str:
+    """The command that holds the corrected scene to the same file."""
+    words = ["pointcoord", "validate", "--data", options.data]
+    if options.map is not None:
+        words += ["--map", options.map]
+    if options.accuracy:
+        words += ["--accuracy", f"{options.accuracy:g}"]
+    return shown(shlex.join([*words, options.output]))
 
 
 def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:

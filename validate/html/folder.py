@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,16 +23,20 @@ class NotOurs(OutputError):
 
 
 def require_folder(folder: str) -> None:
-    """Make the folder if it is not there; refuse one that cannot take a report, before anything is solved.
+    """Refuse a folder that cannot take a report, before anything is solved.
+
+    One that is not there is made and taken away again: a run that is stopped leaves nothing.
 
     Raises:
         NotOurs: it is a file, or holds a page that this program did not make.
         OutputError: it cannot be made or written.
     """
     place = Path(folder)
+    made: list[Path] = []
     try:
         if place.exists() and not place.is_dir():
             raise NotOurs(folder, "is a file; allowed: a folder, which is made if it is not there")
+        made = [one for one in (place, *place.parents) if not one.exists()]
         place.mkdir(parents=True, exist_ok=True)
         old = place / PAGE
         if old.is_file():
@@ -44,8 +49,14 @@ def require_folder(folder: str) -> None:
     except ValueError as error:
         # A path with a zero byte in it.
         raise NotOurs(folder, f"names no folder ({error})") from None
-    for name in (*WORDS, PAGE):
-        require_writable(os.path.join(folder, name))
+    try:
+        for name in (*WORDS, PAGE):
+            require_writable(os.path.join(folder, name))
+    finally:
+        for one in made:
+            # Somebody may have put something there meanwhile, or have taken it away.
+            with suppress(OSError):
+                one.rmdir()
 
 
 def write_report(folder: str, run: Run) -> tuple[str, ...]:
@@ -57,6 +68,10 @@ def write_report(folder: str, run: Run) -> tuple[str, ...]:
         MissingPackage: a package of the extra is not there.
         OutputError: one cannot be written.
     """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(folder, error) from None
     data = data_files(run)
     links = OF_COST if run.head.kind == "cost" else {name: WORDS[name] for name in data}
     contents = {**data, PAGE: page(run, links)}

@@ -2,12 +2,21 @@ r"""A file of results held to what it can carry.
 
 A number q of a file at an independent value x agrees with ours if they differ by at most
 
-    T = h_q + S + a + b + 4 eps |q|,    S = sum over the independent columns of max |q(x -+ h_x) - q(x)|,
+    T = h_q + S + a + b + 4 eps Q,    S = sum over the independent columns of max |q(x -+ h_x) - q(x)|,
 
 h_q and h_x half a unit of the last digit as written, S what the rounding of x may do to the quantity, taken
 at both ends of all x that are written so (to first order |q'| h_x, and monotonic over such a width), a the
 accuracy that the user says the file has, b our own proven bound; and reading, changing the unit and turning
-the sign round four times at most. Where S alone is as wide as half of the whole range that the quantity
+the sign round four times at most, a component being no more exact than the largest of its quantity, Q, from
+which it is computed. So T is 0 only where the car gives nothing but zeros and the user says that these are
+exact.
+
+Digits written in full say nothing of how exact a program is: it stops where its own tolerance is met. Where a
+column is in full digits and neither the user nor a map says an accuracy, its program is taken to place every
+point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `simulate` solves to), and a is
+what that makes of the number at that pose, with the worst signs: see `validate.solvers.held`. A travel in
+full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
+are not tested. Where S alone is as wide as half of the whole range that the quantity
 has in the file, no number of it could tell its curve from a level line: it is not tested.
 """
 
@@ -15,6 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +40,8 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
-from validate.measured.mapping import ARCSINE, TIME, Measured, Series, angle_of
-from validate.measured.poses import Found, poses_of
+from validate.measured.mapping import ARCSINE, TIME, TRAVEL, Measured, Series, angle_of
+from validate.measured.poses import Found, Numbers, asked_scene, poses_of
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -97,14 +107,14 @@ class DataOutcome:
 
 
 def compare_results(
-    measured: Measured, scene: Scene, name: str, accuracy: float = 0.0, factor: float = 1.0
+    measured: Measured, scene: Scene, name: str, accuracy: float | None = None, factor: float = 1.0
 ) -> DataOutcome:
     """Compare a file with the scene's car, at the file's own values.
 
     Args:
         name: what to call the scene.
         accuracy: how far the file's numbers may be off beside their digits, each in its column's own unit;
-            what a map says of a column goes before it.
+            what a map says of a column goes before it. None: not said, see the top of this file.
         factor: how many times the tolerance to hold differences to.
     Raises:
         ResultsError: no row can be reached, or nothing can be compared.
@@ -120,7 +130,11 @@ def compare_results(
     lacking, absent = _lacking(scene, measured)
     outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking, factor)
     return DataOutcome(
-        outcome, _over(measured), absent, _explained(scene, measured, held, ours, outcome, factor), accuracy
+        outcome,
+        _over(measured),
+        absent,
+        _explained(scene, measured, held, ours, outcome, factor),
+        accuracy or 0.0,
     )
 
 
@@ -183,7 +197,7 @@ def _on_the_grid(scene: Scene, times: Array) -> Scene:
     return there if times[-1] > times[0] and even else scene
 
 
-def as_solution(measured: Measured, scene: Scene, accuracy: float = 0.0) -> Solution:
+def as_solution(measured: Measured, scene: Scene, accuracy: float | None = None) -> Solution:
     """A file as a solution; what it claims of each number is the tolerance above.
 
     Its times are those of `DataOutcome.outcome`; components that the file does not give are NaN, and claim 0.
@@ -195,7 +209,9 @@ def as_solution(measured: Measured, scene: Scene, accuracy: float = 0.0) -> Solu
     return _solution(measured, held, measured.source)
 
 
-def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held], Solution, tuple[str, ...]]:
+def _held(
+    measured: Measured, scene: Scene, accuracy: float | None
+) -> tuple[list[Held], Solution, tuple[str, ...]]:
     poses = poses_of(scene, measured)
     values = [s.values for s in measured.independent]
     here = poses.at(values)
@@ -206,13 +222,23 @@ def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held]
         raise ResultsError(
             measured.source, measured.rows[first], problem, "rows that the scene's car can have"
         )
+    unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
+    stated = replace(here, bounds=_taken_for_granted(measured, scene, here)) if unsaid else here
+    if unsaid:
+        notes.append(_granted(unsaid, measured, scene))
     around: list[tuple[Found, Found]] = []
     for i, s in enumerate(measured.independent):
         off = s.off + poses.extra(s)
+        if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
+            off = off + scene.tolerance
         if off.any():
             ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
             around.append((poses.at(ends[0]), poses.at(ends[1])))
     found, unknown = [], []
+    largest: dict[str, float] = {}
+    for s in measured.numbers:
+        here_too = largest.get(s.meaning.quantity, 0.0)
+        largest[s.meaning.quantity] = max(here_too, float(np.nanmax(np.abs(s.values), initial=0.0)))
     for s in measured.numbers:
         mine, bound = ours_of(s, here, scene)
         if mine is None or bound is None:
@@ -226,8 +252,10 @@ def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held]
                     change.append(np.nan_to_num(_turned(np.abs(there - mine), s)))
             swing = swing + np.max(change, axis=0)
         ours = np.full(len(swing), np.nan) if mine is None else mine
-        rounding = 4.0 * EPS * np.abs(s.values)
-        allowed = s.off + swing + s.accuracy_or(accuracy) + rounding + (0.0 if bound is None else bound)
+        own_accuracy = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
+        rounding = 4.0 * EPS * largest[s.meaning.quantity]
+        allowed = s.off + swing + rounding
+        allowed = allowed + sum(0.0 if part is None else part for part in (own_accuracy, bound))
         own = np.zeros(len(swing)) if bound is None else np.asarray(bound)
         found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, own))
     if unknown:
@@ -242,6 +270,47 @@ def _held(measured: Measured, scene: Scene, accuracy: float) -> tuple[list[Held]
     }
     solution = Solution(OURS, instants, numbers, Accuracy(np.ones(count), claims, proven=True))
     return found, solution, tuple(notes)
+
+
+def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Numbers:
+    """What placing every point to the scene's tolerance makes of each number; NaN where it says nothing."""
+    # Their packages are an extra that printed files need not.
+    from validate.formulations.input_rates import rates
+    from validate.solvers.held import accuracy_at
+
+    rows = here.reached
+    if measured.independent[0].meaning.kind == TIME:
+        times = measured.independent[0].values[rows]
+        laws = {name: rates(law, times) for name, law in scene.inputs.items()}
+    else:
+        laws = {name: value[rows, None] * np.array([1.0, 0.0, 0.0]) for name, value in here.inputs.items()}
+    places = {name: place[rows] for name, place in here.numbers[_PLACES].items()}
+    stated = accuracy_at(asked_scene(scene, measured), scene.tolerance, places, laws)
+    blind = np.zeros(int(rows.sum()), dtype=bool) if stated.blind is None else stated.blind
+    found: Numbers = {}
+    for quantity, part in stated.claims.items():
+        found[quantity] = {}
+        for name, claim in part.items():
+            found[quantity][name] = np.full((len(rows), *claim.shape[1:]), np.nan)
+            found[quantity][name][rows] = np.where(blind.reshape(-1, *(1,) * (claim.ndim - 1)), np.nan, claim)
+    return found
+
+
+def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
+    whole = len(unsaid) == len(measured.numbers)
+    names = ", ".join(shown(s.column) for s in unsaid[:NAMED])
+    more = (
+        f" and {len(unsaid) - NAMED} more are"
+        if len(unsaid) > NAMED
+        else " is"
+        if len(unsaid) == 1
+        else " are"
+    )
+    who = "the file is" if whole else f"{names}{more}"
+    return (
+        f"held to points placed within {scene.tolerance:g} mm, the scene's tolerance, and to what that makes "
+        f"of each number: {who} in full digits and no --accuracy is given"
+    )
 
 
 def _turned(gap: Array, series: Series) -> Array:

@@ -21,6 +21,9 @@ A map is TOML:
 `travel.POINT` is how much higher a point is than in the closed drawing; `travel.contact` is that of the
 lowest point of a thin disc of the rolling radius about the wheel's centre. Names are those of the files that
 `pointcoord simulate -o` writes; the last part of a name will do where nothing else ends so.
+
+Columns that a map does not name are found by their own names all the same: numbers whose unit the file says
+and which no other column is said to be, and times, inputs and travels by their whole names.
 """
 
 from __future__ import annotations
@@ -312,7 +315,16 @@ class _Map:
     def ignored(self) -> tuple[str, ...]:
         """Columns that are left out, in words."""
         out = [name for name in self.columns.names if self._meaning(name) is None]
-        return (f"left out as nothing that we know: {', '.join(map_shown(out))}",) if out else ()
+        told = self._part("columns")
+        unnamed = [name for name in out if told and name not in told]
+        known = [name for name in out if name not in unnamed]
+        notes = []
+        if known:
+            notes.append(f"left out as nothing that we know: {', '.join(map_shown(known))}")
+        if unnamed:
+            why = "the map does not name them, nor are they numbers of ours with a unit"
+            notes.append(f"left out: {', '.join(map_shown(unnamed))} ({why})")
+        return tuple(notes)
 
     def _meaning(self, column: str) -> Meaning | None:
         """What a column is; None for what is to be left out.
@@ -322,10 +334,10 @@ class _Map:
         """
         part = self._part("columns").get(column)
         if part is None or "is" not in part:
+            found = self._named(column) or self._named(_without_unit(column))
             if part is None and self._part("columns"):
-                # A map says it all: a column that it leaves out is none of ours.
-                return self.meanings.get(column)
-            return self._named(column) or self._named(_without_unit(column))
+                return found if column in self.meanings or self._goes_along(column, found) else None
+            return found
         named = part["is"]
         if named == IGNORE:
             return None
@@ -345,6 +357,16 @@ class _Map:
                 f"{', '.join(self.known[:5])}, or {IGNORE}",
             )
         return found
+
+    def _goes_along(self, column: str, found: Meaning | None) -> bool:
+        """Whether a column that a map does not name is a number of ours beside those that it names."""
+        if found is None or found.kind != "number":
+            return False
+        said = [part.get("is", name) for name, part in self._part("columns").items()]
+        if any(self._named(name) == found for name in said if isinstance(name, str)):
+            return False
+        unit = self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
+        return bool(unit)
 
     def _named(self, name: str) -> Meaning | None:
         """By its whole name, or by an end of it that nothing else has."""

@@ -105,12 +105,24 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     every = scene.model_copy(update={"effects": (), "points": None})
     poses = PointCoordinates("pointcoord", AUTO).solve(every).numbers
     places = next(arrays for q, arrays in poses.items() if QUANTITIES[q].of == "point" and not per_second(q))
+    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+    return accuracy_at(scene, accuracy, places, laws)
+
+
+def accuracy_at(
+    scene: Scene, accuracy: float, places: Mapping[str, Array], laws: Mapping[str, Array]
+) -> Accuracy:
+    """The same at poses that are solved already.
+
+    Args:
+        places: where every point is, (N, 3), mm.
+        laws: every input with its two time derivatives, (N, 3); of poses alone these are 0.
+    """
     part = scene.mechanism
     design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure, part.type)
-    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
     held = _Held(scene, design, accuracy)
     parts = []
-    for low in range(0, len(scene.instants), AT_ONCE):
+    for low in range(0, len(next(iter(places.values()))), AT_ONCE):
         some = slice(low, low + AT_ONCE)
         at = {name: place[some] for name, place in places.items()}
         parts.append(held.at(at, {name: law[some] for name, law in laws.items()}))

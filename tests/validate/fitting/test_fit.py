@@ -159,6 +159,10 @@ def test_the_corrected_scene_is_read_back_and_leaves_what_the_fit_said(
     assert run(*words) is ExitStatus.AGREE
     said = capsys.readouterr()
     assert "unique near here" in said.out
+    # It takes a while: something is said at once, and in the end what the scene can be held to.
+    assert said.err.startswith("pointcoord: note: double-wishbone: 2 coordinates are fitted to 18 numbers")
+    try_this = said.out.splitlines()[-1].partition("try: ")[2]
+    assert try_this == f"pointcoord validate --data {data} {scene}"
     again, told = Scene.load(scene), json.loads(Path(found).read_text())
     jsonschema.validate(told, json.loads(schema_text()))
     assert again.inputs == CAR.inputs

@@ -4,6 +4,7 @@ import csv
 import json
 import sys
 from base64 import b64encode
+from contextlib import suppress
 from dataclasses import replace
 from hashlib import sha256
 from html.parser import HTMLParser
@@ -340,3 +341,17 @@ def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce
         assert moved == pytest.approx(movement, abs=0.02)
         told = f"{movement:.3g}" if movement > 1e-6 else "0"
         assert any(told in row for row in rows)
+
+
+def test_a_run_that_is_stopped_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*words: object, **more: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("validate.commands.comparison.examine", stopped)
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    for folder in (tmp_path / "new" / "report", kept):
+        with suppress(KeyboardInterrupt):
+            assert main(["report", str(folder), "bounce"]) not in (0, 1)
+    # What was there before stays.
+    assert [one.name for one in tmp_path.iterdir()] == ["kept"]

@@ -1,5 +1,7 @@
 """The table that Lotus' program printed, as a file: the first that was ever held to the built-in car."""
 
+import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +55,32 @@ def test_the_printed_bump_table_agrees_to_its_four_digits_and_is_held_to_no_more
         assert np.degrees(row.tolerance) == pytest.approx(0.5e-4, rel=1e-5)
         # A table of 44 rounded numbers that is right uses most of what rounding allows somewhere.
         assert 0.5 < row.share <= 1.0
+
+
+def test_all_44_angles_agree_with_the_map_of_the_readme() -> None:
+    readme = (Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8")
+    (block,) = (b for b in re.findall(r"```toml\n(.*?)```", readme, flags=re.S) if "travel.contact" in b)
+    found = compared(CSV, tomllib.loads(block))
+    assert verdicts(found) == dict.fromkeys(("camber", "kingpin", "toe", "caster"), "agrees")
+    assert found.outcome.solutions[0].numbers["wheel"].keys() == {*ANGLES}
+    assert sum(len(angles) for angles in found.outcome.solutions[0].numbers["wheel"].values()) == 44
+
+
+def test_a_column_that_a_map_does_not_name_goes_along_by_its_own_name_or_is_told() -> None:
+    content = CONTENT | {"columns": {name: CONTENT["columns"][name] for name in ("bump", "camber")}}
+    assert verdicts(compared(CSV, content)) == dict.fromkeys(ANGLES, "agrees")
+    # One that says no unit, that is nothing of ours, or what another is said to be, is left out and told.
+    others = CSV.replace("kingpin [deg]", "kingpin").replace("toe [deg]", "vorspur [deg]")
+    found = compared(
+        others.replace("camber [deg]", "caster_deg", 1).replace("caster [deg]", "camber [deg]"),
+        {
+            "rolling_radius": ROLLING_RADIUS,
+            "columns": {"bump": CONTENT["columns"]["bump"], "camber": {"is": "caster"}},
+        },
+    )
+    assert verdicts(found) == {"caster": "agrees"}
+    (note,) = (note for note in found.outcome.notes if note.startswith("left out"))
+    assert "caster_deg, vorspur, kingpin (the map does not name them" in note
 
 
 @pytest.mark.parametrize("place", [0, 5, 10])
