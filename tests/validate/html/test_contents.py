@@ -487,3 +487,35 @@ def test_a_refused_scene_is_drawn_as_far_as_it_goes_and_says_why_no_farther(
     assert 100.0 < max(line["x"]) < 130.2
     ((_, given),) = [(tag, one) for tag, one in shown.tags if "data-motion" in one]
     assert 0.05 < max(json.loads(given["data-motion"] or "")["times"]) < 0.0867
+
+
+def test_options_may_stand_between_the_folder_and_the_scenes(solver: Path) -> None:
+    file = solver.parent / "hard.json"
+    file.write_text(json.dumps(hard_document(answer("right", 1e-12, 1e-1))))
+    for words in (
+        ["--solver", "made_solver:rack_only", "--in-process", "steer"],
+        ["--hard", str(file), "steer", "--first", "pointcoord", "bounce"],
+    ):
+        main(["report", str(solver), *words, "-q"])
+        document = json.loads((solver / "results.json").read_text())
+        assert [one["scene"] for one in document["scenes"]] == [w for w in words if w in ("steer", "bounce")]
+
+
+def test_hard_cases_that_note_no_time_are_told_without_one() -> None:
+    document = hard_document(answer("right", 1e-12, 1e-1)) | {"started": None, "command_line": "mine"}
+    text = read(Run(head(), hard=HardCases.of(document))).text
+    assert "Tried by `mine`. 1 hard case" in text
+    document["started"] = "2026-01-02T03:04:05Z"
+    assert "Tried by `mine`, 2026-01-02T03:04:05Z. " in read(Run(head(), hard=HardCases.of(document))).text
+
+
+@pytest.mark.parametrize("folder", ["steer", "mine.toml"])
+def test_a_scene_in_the_place_of_the_folder_is_refused_and_makes_none(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", folder, "double-wishbone"]) == 2
+    assert "the folder of the report comes first" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert main(["report", "-q", f"./{folder}/", "steer"]) == 0
+    assert (tmp_path / folder / "index.html").is_file()
