@@ -46,13 +46,41 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str], console: Console) -> ExitStatus:
     try:
-        options = parser(words[:1]).parse_args(words)
+        options = _parsed(words)
     except Answer as answer:
         console.require("it is where the answer goes")
         console.say(str(answer).rstrip())
         return ExitStatus.AGREE
     options.command = ("pointcoord", *words)
     return ExitStatus(options.run(options, console))
+
+
+def _parsed(words: list[str]) -> argparse.Namespace:
+    """The options of a command line, whatever order they and the names of scenes stand in.
+
+    Raises:
+        UsageError: it is wrong. Answer: only a text is asked for.
+    """
+    top = parser(words[:1])
+    try:
+        return top.parse_args(words)
+    except UsageError:
+        # Without options between names it is parsed by now; argparse has a second way for the rest, which
+        # knows no commands of commands.
+        found = _command(top, words)
+        if found is None or "--" in words:
+            raise
+        try:
+            return found.parse_intermixed_args(words[1:])
+        except (UsageError, TypeError):
+            pass
+        raise
+
+
+def _command(top: argparse.ArgumentParser, words: list[str]) -> argparse.ArgumentParser | None:
+    """The parser of the command that the words begin with."""
+    choices = (action.choices for action in top._actions if isinstance(action, argparse._SubParsersAction))
+    return next((among[words[0]] for among in choices if words and words[0] in among), None)
 
 
 class Answer(Exception):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from pointcoord import built_in_scenes
 from validate.commands.comparison import add_options, compare_scenes
 from validate.commands.cost import latest
 from validate.commands.reporting import Page
@@ -19,6 +21,7 @@ from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
 from validate.output.console import Console
 from validate.output.document import Head
+from validate.plain_text import shown
 from validate.published.tables import compare_published
 
 # What a report of all built-in scenes tries itself: of each kind of singular place one, and few ways on one
@@ -62,10 +65,25 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """
     if options.data is not None:
         raise UsageError("--data is about a file of results, of which there is no page; give it to validate")
+    _require_folder_first(options.folder)
     hard = None if options.hard is None else read_hard_cases(options.hard)
     cost = None if options.cost is None else _kept_cost(options)
     page = Page(options.folder, partial(_with_more, options, hard, cost, console), option="")
     return compare_scenes(options, console, page, brief=True)
+
+
+def _require_folder_first(folder: str) -> None:
+    """Refuse a scene in the place of the folder, which would make a folder of its name.
+
+    Raises:
+        UsageError: it is one.
+    """
+    is_scene = folder in built_in_scenes() or (folder.endswith(".toml") and not Path(folder).is_dir())
+    if is_scene:
+        raise UsageError(
+            f"{shown(folder)!r} is a scene, and the folder of the report comes first: pointcoord report DIR "
+            f"{shown(folder)}; a folder of that name is given as {shown(os.path.join(os.curdir, folder, ''))}"
+        )
 
 
 def _with_more(

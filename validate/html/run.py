@@ -57,6 +57,13 @@ class Told:
             return "agrees"
         return "disagrees" if status is ExitStatus.DISAGREE else "not tested"
 
+    @property
+    def stopped(self) -> str:
+        """Why no two models could be compared on the scene; empty if they were."""
+        if self.examined.outcomes or not self.examined.complaint:
+            return ""
+        return self.examined.complaint.removeprefix(f"{self.examined.name}: ")
+
 
 @dataclass
 class Telling:

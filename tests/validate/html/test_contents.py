@@ -417,3 +417,105 @@ def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_p
     ]
     for line, one in zip(lines, answers, strict=True):
         assert line["error"] == ("" if one["error"] is None else repr(one["error"]))
+
+
+SOLVER = """
+from pointcoord import Scene, simulate
+def rack_only(given):
+    x, y, z = given["points"]["rack_centre"]
+    return {"position": {"tie_rod_inner": [[x, y + s, z] for s in given["inputs"]["rack"]["position"]]}}
+def tilted(given):
+    return {"camber": simulate(Scene.load("steer")).wheel["camber"] + 0.5}
+"""
+
+
+@pytest.fixture
+def solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "made_solver.py").write_text(SOLVER)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    return tmp_path / "out"
+
+
+def shown_of(*words: str, out: Path) -> Read:
+    main(["report", "-q", *words])
+    return Read((out / "index.html").read_text(encoding="utf-8"))
+
+
+def test_the_line_of_a_curve_is_the_solver_that_was_given_and_the_dots_are_whom_it_is_held_to(
+    solver: Path,
+) -> None:
+    shown = shown_of("--in-process", "--solver", "made_solver:tilted", str(solver), "steer", out=solver)
+    line, dots = shown.plots["camber over rack"]["data"]
+    assert (line["name"], dots["name"]) == ("made_solver:tilted", "pointcoord")
+    assert shown.plots["camber over rack"]["layout"]["showlegend"]
+    at = dict(zip(line["x"], line["y"], strict=True))
+    apart = [at[x] - y for x, y in zip(dots["x"], dots["y"], strict=True)]
+    assert apart == pytest.approx([np.degrees(0.5)] * len(apart), abs=1e-3)
+    # Of the other angle it gives nothing, and pointcoord's is no line in its place.
+    assert "kingpin angle over rack" not in shown.plots
+
+
+def test_what_a_solver_does_not_give_is_no_curve_of_it_and_does_not_empty_the_drawing(solver: Path) -> None:
+    shown = shown_of("--in-process", "--solver", "made_solver:rack_only", str(solver), "steer", out=solver)
+    assert "camber over rack" not in shown.plots
+    assert "no curves: made_solver:rack_only gives no camber and no kingpin angle" in shown.text
+    ((_, given),) = [(tag, one) for tag, one in shown.tags if "data-motion" in one]
+    motion = json.loads(given["data-motion"] or "")
+    points = list(Scene.load("steer").mechanism.topology.points)
+    assert motion["points"] == points
+    assert all(len(place) == 3 for place in motion["drawn"])
+    own, other = (model["frames"] for model in motion["models"])
+    chassis = set(motion["chassis"]) | {points.index("tie_rod_inner")}
+    assert all({i for i, place in enumerate(frame) if place} == chassis for frame in own)
+    assert all(all(frame) for frame in other)
+
+
+@pytest.mark.parametrize("words", [["report", "OUT"], ["validate", "--report", "OUT"]])
+def test_a_refused_scene_is_drawn_as_far_as_it_goes_and_says_why_no_farther(
+    words: list[str], tmp_path: Path
+) -> None:
+    text = (SCENES / "steer.toml").read_text().replace("[0.0, 150.0, 25.0]", "[0.0, 1500.0, 25.0]")
+    (tmp_path / "far.toml").write_text(text)
+    out = tmp_path / "out"
+    main([str(out) if word == "OUT" else word for word in words] + [str(tmp_path / "far.toml"), "-q"])
+    shown = Read((out / "index.html").read_text(encoding="utf-8"))
+    assert "far.toml: stopped: the motion cannot pass a singular pose" in shown.text
+    assert "Stopped: the motion cannot pass a singular pose" in shown.text
+    (line,) = shown.plots["camber over rack"]["data"]
+    assert line["name"] == "pointcoord"
+    # The rack cannot pass 130.10 mm.
+    assert 100.0 < max(line["x"]) < 130.2
+    ((_, given),) = [(tag, one) for tag, one in shown.tags if "data-motion" in one]
+    assert 0.05 < max(json.loads(given["data-motion"] or "")["times"]) < 0.0867
+
+
+def test_options_may_stand_between_the_folder_and_the_scenes(solver: Path) -> None:
+    file = solver.parent / "hard.json"
+    file.write_text(json.dumps(hard_document(answer("right", 1e-12, 1e-1))))
+    for words in (
+        ["--solver", "made_solver:rack_only", "--in-process", "steer"],
+        ["--hard", str(file), "steer", "--first", "pointcoord", "bounce"],
+    ):
+        main(["report", str(solver), *words, "-q"])
+        document = json.loads((solver / "results.json").read_text())
+        assert [one["scene"] for one in document["scenes"]] == [w for w in words if w in ("steer", "bounce")]
+
+
+def test_hard_cases_that_note_no_time_are_told_without_one() -> None:
+    document = hard_document(answer("right", 1e-12, 1e-1)) | {"started": None, "command_line": "mine"}
+    text = read(Run(head(), hard=HardCases.of(document))).text
+    assert "Tried by `mine`. 1 hard case" in text
+    document["started"] = "2026-01-02T03:04:05Z"
+    assert "Tried by `mine`, 2026-01-02T03:04:05Z. " in read(Run(head(), hard=HardCases.of(document))).text
+
+
+@pytest.mark.parametrize("folder", ["steer", "mine.toml"])
+def test_a_scene_in_the_place_of_the_folder_is_refused_and_makes_none(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", folder, "double-wishbone"]) == 2
+    assert "the folder of the report comes first" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert main(["report", "-q", f"./{folder}/", "steer"]) == 0
+    assert (tmp_path / folder / "index.html").is_file()

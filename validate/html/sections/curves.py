@@ -8,17 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion
-from validate.curves.numbers import Number, numbers_of, usual
-from validate.formulations.protocol import Solution
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers
+from pointcoord import Motion, Scene
+from pointcoord.effects.registry import ALWAYS
+from validate.curves.numbers import TRAVEL, Number, numbers_of, usual, wheel_centre
+from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers, plain
 from validate.html.run import Run, Told
-from validate.html.section import Block, Section, which
+from validate.html.section import Block, Paragraph, Section, which
+from validate.html.sides import Side, sides
 
 Array = NDArray[np.float64]
 
 # Marks of the other model on a curve: more would hide the line that they are to be seen beside.
 MARKS = 25
+PLACE = ALWAYS[0].quantities[0].name
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -27,51 +29,94 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _of_scene(one: Told, points: int) -> Iterator[Block]:
-    if one.scene is None or one.motion is None:
+    if one.scene is None:
         return
-    other = one.examined.outcomes[0].solutions[1] if one.examined.outcomes else None
+    name, both = one.examined.name, sides(one)
+    if one.stopped:
+        yield Paragraph(f"{name}: stopped: {one.stopped}")
+    if one.motion is None or not both:
+        yield Paragraph(f"{name}: no curves: pointcoord solves no instant of it.")
+        return
+    first, rest = both[0], both[1:]
     curves = usual(one.scene, numbers_of(one.scene), one.motion)
-    panels = tuple(_panel(across, up, one.motion, other, points) for across, up in curves.pairs)
-    against = f"; dots: {other.formulation}" if other is not None else ""
-    yield Plots(f"{one.examined.name}{against}", panels)
+    centre = wheel_centre(one.scene)
+    panels = tuple(
+        panel
+        for across, up in curves.pairs
+        if (panel := _panel((across, up), (first, *rest), one.motion, one.scene, centre, points)) is not None
+    )
+    dots = "".join(f"; dots: {side.name}" for side in rest)
+    if panels:
+        yield Plots(f"{name}: line: {first.name}{dots}", panels)
+    else:
+        angles = " and no ".join(
+            dict.fromkeys(n.words for pair in curves.pairs for n in pair if len(n.path) > 1)
+        )
+        yield Paragraph(f"{name}: no curves: {first.name} gives no {angles}.")
 
 
-def _panel(across: Number, up: Number, motion: Motion, other: Solution | None, points: int) -> Panel:
-    values = [_read(number, motion) for number in (across, up)]
-    # Of a stretch of a curve the place farthest out is kept.
-    at = fewer(np.abs(values[0] - values[0].mean()), points)
-    traces: list[Mapping[str, Any]] = [_trace(values[0][at], values[1][at], "lines", OURS)]
-    theirs = None if other is None else [_of_other(n, motion, other) for n in (across, up)]
-    if theirs is not None and all(array is not None for array in theirs):
-        some = slice(None, None, max(len(motion.times) // MARKS, 1))
-        x, y = (np.asarray(array)[some] for array in theirs)
-        traces.append(_trace(x, y, "markers", OTHER))
-    layout = {"xaxis": axis(_title(across)), "yaxis": axis(_title(up)), "showlegend": False}
-    return Panel(f"{up.words} over {across.words}", tuple(traces), layout)
+def _panel(
+    pair: tuple[Number, Number], both: Sequence[Side], motion: Motion, scene: Scene, centre: str, points: int
+) -> Panel | None:
+    """The line of the first side and the dots of the second; None where the first does not give the curve."""
+    traces: list[Mapping[str, Any]] = []
+    for i, side in enumerate(both):
+        values = [_of_side(number, side, motion, scene, centre) for number in pair]
+        if any(array is None for array in values):
+            if i == 0:
+                return None
+            continue
+        x, y = (np.asarray(array) for array in values)
+        if i == 0:
+            # Of a stretch of a curve the place farthest out is kept.
+            at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), points) if np.isfinite(x).any() else range(0)
+            traces.append(_trace(x[at], y[at], "lines", OURS, side.name))
+        else:
+            some = slice(None, None, max(len(x) // MARKS, 1))
+            traces.append(_trace(x[some], y[some], "markers", OTHER, side.name))
+    across, up = pair
+    lacking = [
+        side.name for side in both if TRAVEL in (across.path[0], up.path[0]) and not _has(side, centre)
+    ]
+    whose = f" (wheel travel of {', '.join(lacking)} as pointcoord has it)" if lacking else ""
+    layout = {"xaxis": axis(_title(across)), "yaxis": axis(_title(up)), "showlegend": True}
+    return Panel(f"{up.words} over {across.words}{whose}", tuple(traces), layout)
 
 
-def _trace(x: Array, y: Array, mode: str, colour: str) -> Mapping[str, Any]:
-    marks = {"size": 5, "symbol": "circle-open", "color": colour}
-    return {"x": numbers(x, 6), "y": numbers(y, 6), "mode": mode, "line": {"color": colour}, "marker": marks}
+def _trace(x: Array, y: Array, mode: str, colour: str, name: str) -> Mapping[str, Any]:
+    return {
+        "x": numbers(x, 6),
+        "y": numbers(y, 6),
+        "name": plain(name),
+        "mode": mode,
+        "line": {"color": colour},
+        "marker": {"size": 5, "symbol": "circle-open", "color": colour},
+    }
 
 
-def _read(number: Number, motion: Motion) -> Array:
-    values = number.read(motion, motion)
-    return np.degrees(values) if number.unit == "rad" else values
+def _has(side: Side, point: str) -> bool:
+    return point in side.numbers.get(PLACE, {})
 
 
-def _of_other(number: Number, motion: Motion, other: Solution) -> Array | None:
-    """The other model's own numbers; what is no number of a model, such as time, is the motion's."""
-    if not np.array_equal(other.times, motion.times):
-        return None
+def _of_side(number: Number, side: Side, motion: Motion, scene: Scene, centre: str) -> Array | None:
+    """A side's own numbers at its instants; None where it has none.
+
+    What is no number of a model, such as time or an input, is the scene's. The travel is that of the side's
+    own wheel centre; of a side that gives none it is pointcoord's, and the panel says so.
+    """
     if len(number.path) == 1:
-        return _read(number, motion)
-    values = other.numbers.get(number.path[0], {}).get(number.path[1])
-    if values is None:
-        return None
-    if not number.of_the_car:
-        values = values[:, "xyz".index(number.path[2])]
-    return np.degrees(values) if number.unit == "rad" else values
+        if side.at.size and side.at[-1] >= len(motion.times):
+            return None
+        values = number.read(motion, motion)[side.at]
+        if number.path[0] == TRAVEL and _has(side, centre):
+            apart = side.numbers[PLACE][centre] - motion.numbers[PLACE][centre][side.at]
+            values = values + apart @ np.array(scene.mechanism.up)
+    else:
+        given = side.numbers.get(number.path[0], {}).get(number.path[1])
+        if given is None or not len(given):
+            return None
+        values = given if number.of_the_car else given[:, "xyz".index(number.path[2])]
+    return np.degrees(values) if number.unit == "rad" else np.asarray(values)
 
 
 def _title(number: Number) -> str:

@@ -32,7 +32,9 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _told(hard: HardCases, of_this_run: bool) -> Iterator[Block]:
-    whose = "" if of_this_run else f"Tried by `{hard.document['command_line']}`, {hard.document['started']}. "
+    # A run whose results say nothing of times has not noted when it began.
+    when = "" if hard.document["started"] is None else f", {hard.document['started']}"
+    whose = "" if of_this_run else f"Tried by `{hard.document['command_line']}`{when}. "
     yield Paragraph(f"{whose}{hard.sentence}. {WORDS}")
     yield Grid("Answers by formulation.", *_counted(hard))
     cases = [case for case in hard.cases if _is_drawn(case)]

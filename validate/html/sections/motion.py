@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
-from validate.formulations.protocol import Solution
 from validate.html.run import Run, Told
 from validate.html.section import Block, Cell, Grid, Section, which
+from validate.html.sides import Side, sides
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 DIGITS = 2
 # mm; a drawing that closes comes back to less.
 ROUNDING = 1e-6
+PLACE = ALWAYS[0].quantities[0].name
 CLOSING = (
     "How far each point of the drawing moves until it closes at its own inputs, mm: links are as long as "
     "drawn, and what does not fit moves. A large number is another car than the one drawn."
@@ -52,29 +53,23 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _of_scene(one: Told, frames: int) -> Iterator[Block]:
-    if one.scene is None or one.motion is None or not one.examined.outcomes:
+    if one.scene is None:
         return
-    solutions = [
-        solution
-        for solution in one.examined.outcomes[0].solutions
-        if np.array_equal(solution.times, one.motion.times)
-    ]
-    if not solutions:
-        return
+    models = sides(one)
     topology = one.scene.mechanism.topology
-    count = len(one.motion.times)
-    at = np.arange(0, count, -(-count // frames))
-    moving = [_places(one.scene, one.motion, solution) for solution in solutions]
-    points = [name for name in topology.points if all(name in places for places in moving)]
+    # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
+    reached = np.unique(np.concatenate([side.at for side in models])) if models else np.zeros(1, dtype=int)
+    at = reached[:: max(-(-len(reached) // frames), 1)]
+    known = topology.with_defaults({name: np.array(p) for name, p in one.scene.mechanism.points.items()})
+    points = [name for name in topology.points if name in known]
     number = {name: i for i, name in enumerate(points)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
     lines += [topology.wheel_axis]
     for body in topology.bodies.values():
         lines += zip(body, (*body[1:], body[0]), strict=True)
-    known = topology.with_defaults({name: np.array(p) for name, p in one.scene.mechanism.points.items()})
     up, right = np.array(one.scene.mechanism.up), np.array(one.scene.mechanism.right)
     data: dict[str, Any] = {
-        "times": [float(f"{time:.6g}") for time in one.motion.times[at]],
+        "times": [float(f"{time:.6g}") for time in one.scene.instants[at]],
         "points": points,
         "chassis": [number[name] for name in topology.chassis if name in number],
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
@@ -82,14 +77,13 @@ def _of_scene(one: Told, frames: int) -> Iterator[Block]:
         "drawn": _rounded(np.stack([known[name] for name in points])),
         "closed": _closed(one.scene, known, points),
         "models": [
-            {
-                "name": solution.formulation,
-                "frames": _rounded(np.stack([places[name][at] for name in points], axis=1)),
-            }
-            for solution, places in zip(solutions, moving, strict=True)
+            {"name": side.name, "frames": _frames(_places(one.scene, one.motion, side, known), points, at)}
+            for side in models
         ],
     }
-    yield Spatial(one.examined.name, _caption(one, solutions), json.dumps(data, allow_nan=False), len(at))
+    yield Spatial(
+        one.examined.name, _caption(one, models), json.dumps(data, allow_nan=False), max(len(at), 1)
+    )
 
 
 def _closed(scene: Scene, known: Mapping[str, Array], points: Sequence[str]) -> Any:
@@ -101,14 +95,33 @@ def _closed(scene: Scene, known: Mapping[str, Array], points: Sequence[str]) -> 
     return _rounded(np.stack([places.get(name, known[name]) for name in points])) if places else None
 
 
-def _places(scene: Scene, motion: Motion, solution: Solution) -> dict[str, Array]:
-    """Of each point its places, (N, 3): what the model gives, and for the rest the chassis as it moves."""
-    topology = scene.mechanism.topology
-    known = topology.with_defaults({name: np.array(p) for name, p in scene.mechanism.points.items()})
-    shift = sum(motion.solved.readout.chassis.states(motion.times, 0), np.zeros(3))
-    held = {name: known[name] + np.broadcast_to(shift, (len(motion.times), 3)) for name in topology.chassis}
-    given = solution.numbers.get(ALWAYS[0].quantities[0].name, {})
-    return held | {name: places for name, places in given.items() if np.isfinite(places).all()}
+def _places(scene: Scene, motion: Motion | None, side: Side, known: Mapping[str, Array]) -> dict[str, Array]:
+    """Of each point that the side has its places at all instants, (N, 3), NaN where it gives none.
+
+    Points of the chassis are given to every model: they are where the chassis is moved to.
+    """
+    times = scene.instants[side.at]
+    held: dict[str, Array] = {}
+    if motion is not None:
+        shift = sum(motion.solved.readout.chassis.states(times, 0), np.zeros(3))
+        held = {name: known[name] + shift for name in scene.mechanism.topology.chassis if name in known}
+    places = {}
+    for name, own in (held | dict(side.numbers.get(PLACE, {}))).items():
+        places[name] = np.full((len(scene.instants), 3), np.nan)
+        places[name][side.at] = own
+    return places
+
+
+def _frames(places: Mapping[str, Array], points: Sequence[str], at: NDArray[np.intp]) -> Any:
+    """Of each instant a place for each point, None for one that is not given."""
+    nowhere = np.full((len(at), 3), np.nan)
+    rows = np.stack([places[name][at] if name in places else nowhere for name in points], axis=1)
+    there = np.isfinite(rows).all(axis=-1)
+    rounded = _rounded(np.nan_to_num(rows))
+    return [
+        [place if found else None for place, found in zip(row, are, strict=True)]
+        for row, are in zip(rounded, there, strict=True)
+    ]
 
 
 def _rounded(places: Array) -> Any:
@@ -139,12 +152,14 @@ def _size(movement: float) -> str:
     return f"{movement:.3g}" if movement > ROUNDING else "0"
 
 
-def _caption(one: Told, solutions: Sequence[Solution]) -> str:
+def _caption(one: Told, models: Sequence[Side]) -> str:
     lines = ("wide blue lines", "narrow orange lines")
-    told = ", ".join(f"{s.formulation} in {line}" for s, line in zip(solutions, lines, strict=False))
+    told = [f"{side.name} in {line}" for side, line in zip(models, lines, strict=False)]
     moved = one.examined.closing
     closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm" if moved else ""
-    return f"{told}; dashed: the drawing{closing}"
+    stopped = f". Stopped: {one.stopped}" if one.stopped else ""
+    whose = f"{', '.join(told)}; " if told else ""
+    return f"{whose}dashed: the drawing{closing}{stopped}"
 
 
 SECTION = Section("motion", "The suspension in motion", 30, _blocks)

@@ -47,7 +47,9 @@
       one.group = add(svg, "g", {});
       one.lines = one.strokes.map((stroke) => motion.lines.map(() => add(one.group, "line", { class: stroke })));
     }
-    const places = (frame) => motion.models[0].frames[frame];
+    // A model need not give every point: a joint is where the first that has it puts it, else as drawn.
+    const places = (frame) => motion.drawn.map((place, i) =>
+      motion.models.map((model) => model.frames[frame][i]).find((given) => given) ?? place);
     const joints = motion.points.map((name, i) => {
       const chassis = motion.chassis.includes(i);
       const shape = chassis ? add(svg, "rect", { width: 8, height: 8 }) : add(svg, "circle", { r: 3.5 });
@@ -91,7 +93,7 @@
 
     // The middle of all points of all instants, and how far out the farthest lies: a ball that is in the window
     // from every side.
-    const all = [motion.drawn, ...motion.models.flatMap((model) => model.frames)].flat();
+    const all = [motion.drawn, ...motion.models.flatMap((model) => model.frames)].flat().filter((place) => place);
     const low = [0, 1, 2].map((i) => all.reduce((m, p) => Math.min(m, p[i]), Infinity));
     const high = [0, 1, 2].map((i) => all.reduce((m, p) => Math.max(m, p[i]), -Infinity));
     const middle = low.map((value, i) => (value + high[i]) / 2);
@@ -140,10 +142,13 @@
     function draw() {
       const frame = Number(slider.value);
       for (const { lines, places } of sets) {
-        const at = places(frame).map(project);
+        const at = places(frame).map((place) => place && project(place));
         for (const stroke of lines)
-          motion.lines.forEach(([a, b], i) =>
-            set(stroke[i], { x1: at[a][0], y1: at[a][1], x2: at[b][0], y2: at[b][1] }));
+          motion.lines.forEach(([a, b], i) => {
+            const there = at[a] && at[b];
+            stroke[i].style.display = there ? "" : "none";
+            if (there) set(stroke[i], { x1: at[a][0], y1: at[a][1], x2: at[b][0], y2: at[b][1] });
+          });
       }
       const at = places(frame).map(project);
       joints.forEach((joint, i) => {
@@ -159,7 +164,7 @@
         set(text, { x: corner[0] + 1.25 * x - 8, y: corner[1] + 1.25 * y + 4 });
         text.style.display = seen ? "" : "none";
       });
-      output.textContent = `${motion.times[frame]} s`;
+      output.textContent = motion.models.length ? `${motion.times[frame]} s` : "as drawn";
       slider.setAttribute("aria-valuetext", output.textContent);
     }
 
