@@ -11,7 +11,7 @@ from validate.paper.errata import erratum_of
 
 @dataclass(frozen=True)
 class Finding:
-    """A quantity of a scene that the printed formulas get wrong, its worst row and the erratum."""
+    """A quantity of a scene that the printed formulas get wrong, its row furthest off, and the erratum."""
 
     scene: str
     quantity: str
@@ -25,7 +25,7 @@ def findings(outcomes: Iterable[Outcome]) -> tuple[Finding, ...]:
     for outcome in outcomes:
         wrong: dict[str, Comparison] = {}
         for row in outcome.disagreements:
-            if row.quantity not in wrong or row.share > wrong[row.quantity].share:
+            if row.quantity not in wrong or row.difference > wrong[row.quantity].difference:
                 wrong[row.quantity] = row
         result += [Finding(outcome.scene, q, row, erratum_of(q, wrong)) for q, row in wrong.items()]
     return tuple(result)

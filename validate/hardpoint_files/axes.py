@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import permutations
 
 from validate.hardpoint_files.contents import Place
 
@@ -100,22 +101,25 @@ class Axes:
         return turned[0], turned[1], turned[2]
 
 
-def axes_seen(forward: Place, outboard: Place, upward: Place) -> Axes | None:
+OUR_AXES = Axes(("rearward", "right", "up"))
+"""The scene's."""
+
+
+def axes_seen(forward: Place, upward: Place) -> Axes | None:
     """The right-handed axes of a file in which a car's own directions are these; None if that is not plain.
 
-    Each direction is that of its largest coordinate. Which way is left follows from the other two.
+    Of all axes at right angles, those along which the two directions reach the furthest together; which way
+    is left follows from them. Nothing that points outboard is asked: the top of a strut, the only point of
+    the chassis beside its arm, lies further above the wheel than inboard of it.
 
     Args:
-        forward, outboard, upward: differences of points in the file's axes that point mostly so.
+        forward, upward: differences of points in the file's axes that point mostly so.
     """
-    main = [max(range(3), key=lambda i: abs(vector[i])) for vector in (forward, outboard, upward)]
-    if sorted(main) != [0, 1, 2]:
+    ahead, above = max(permutations(range(3), 2), key=lambda at: abs(forward[at[0]] * upward[at[1]]))
+    if not forward[ahead] * upward[above]:
         return None
-    words = ["", "", ""]
-    words[main[0]] = "forward" if forward[main[0]] > 0 else "rearward"
-    words[main[2]] = "up" if upward[main[2]] > 0 else "down"
-    words[main[1]] = "left"
+    words = ["left", "left", "left"]
+    words[ahead] = "forward" if forward[ahead] > 0 else "rearward"
+    words[above] = "up" if upward[above] > 0 else "down"
     left = Axes.of(words)
-    if not left.right_handed:
-        words[main[1]] = "right"
-    return Axes.of(words)
+    return left if left.right_handed else left.other_handed

@@ -71,6 +71,7 @@ class Format:
         endings: sides and axles by what a point's name ends with.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
+        our_own_names: whether its points may have our own names; where all do, its axes are ours as well.
         suspensions: by our name of each.
     """
 

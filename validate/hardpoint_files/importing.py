@@ -18,7 +18,7 @@ from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.scene_text import read_file
 from pointcoord.suspensions import SUSPENSIONS
-from validate.hardpoint_files.axes import UNITS, Axes, axes_seen
+from validate.hardpoint_files.axes import OUR_AXES, UNITS, Axes, axes_seen
 from validate.hardpoint_files.contents import Contents, FilePoint, HardpointFileError, Place, plain, short
 from validate.hardpoint_files.derived import RULES, SpinAxis
 from validate.hardpoint_files.format import Format, Names, format_of
@@ -161,13 +161,13 @@ class _Import:
         axis = self.spin_axis()
         self.require_all(kind, topology, words, ours, others, axis)
         doubts: list[str] = []
-        axes, unit = self.axes(), self.unit()
-        doubts += self.against_axes(axes, topology, ours)
+        (axes, axes_by), unit = self.axes(ours), self.unit()
+        doubts += self.against_axes(axes, axes_by, topology, ours)
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
-        side = self.side(side_said, topology, turned)
+        side = self.side(side_said, topology, turned, axes)
         points = self.placed(topology, words, ours, turned, axis, side)
-        facts = [self.turning(axes, unit)]
+        facts = [self.turning(axes, axes_by, unit)]
         facts += words.notes
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
@@ -358,8 +358,20 @@ class _Import:
 
     # Axes, unit and side, and what speaks against them.
 
-    def axes(self) -> Axes:
-        return self.format.axes if self.choices.axes is None else Axes.of(self.choices.axes)
+    def axes(self, ours: Mapping[str, FilePoint]) -> tuple[Axes, str]:
+        """Where x, y and z point, and who says so; points under our own names have our own axes."""
+        if self.choices.axes is not None:
+            return Axes.of(self.choices.axes), "--axes"
+        read = {name: point for name, point in ours.items() if name not in self.own.points}
+        if self.format.our_own_names and all(self.is_our_own(*one) for one in read.items()):
+            return OUR_AXES, "its points' names, which are ours"
+        return self.format.axes, "its format"
+
+    def is_our_own(self, ours: str, point: FilePoint) -> bool:
+        """Whether a point of the file has our own name, with or without a side and an axle."""
+        name = plain(point.name)
+        base, _, ending = name.rpartition(" ")
+        return plain(ours) in (name, base if ending in self.format.endings else name)
 
     def unit(self) -> str:
         said, chosen = self.contents.unit, self.choices.unit
@@ -369,23 +381,24 @@ class _Import:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
         return chosen or said or self.format.unit
 
-    def turning(self, axes: Axes, unit: str) -> str:
+    def turning(self, axes: Axes, axes_by: str, unit: str) -> str:
         """What becomes of axes and unit, and who said what they are."""
-        axes_by = "its format" if self.choices.axes is None else "--axes"
         unit_by = "the file" if self.contents.unit else "--unit" if self.choices.unit else "its format"
         return (
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm"
         )
 
-    def against_axes(self, axes: Axes, topology: Topology, ours: Mapping[str, FilePoint]) -> list[str]:
-        """Refuse axes of the format that the car's points speak against; doubt those of the user."""
+    def against_axes(
+        self, axes: Axes, axes_by: str, topology: Topology, ours: Mapping[str, FilePoint]
+    ) -> list[str]:
+        """Refuse axes that nobody said and the car's points speak against; doubt those of the user."""
         (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
         inner, wheel = topology.inboard, topology.wheel_centre
         pairs = ((front, rear), (wheel, inner), (high, low))
         ends = [(ours[one].place, ours[other].place) for one, other in pairs]
         forward, outboard, upward = (_difference(one, other) for one, other in ends)
-        seen = axes_seen(forward, outboard, upward)
+        seen = axes_seen(forward, upward)
         # A left-handed choice may differ in the way of left only, which no point can show.
         said = set(zip("xyz", axes.directions, strict=True))
         shown = set() if seen is None else set(zip("xyz", seen.directions, strict=True))
@@ -396,8 +409,8 @@ class _Import:
         if seen is None or (said - sideways == shown - sideways and same_line):
             return []
         told = (
-            f"has axes {axes.words} by {'its format' if self.choices.axes is None else '--axes'}, but "
-            f"{front} seen from {rear}, {wheel} from {inner} and {high} from {low} lie as in {seen.words}"
+            f"has axes {axes.words} by {axes_by}, but "
+            f"{front} seen from {rear} and {high} from {low} lie as in {seen.words}"
         )
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
@@ -420,7 +433,7 @@ class _Import:
             return [f"the file {told}" + (f"; {others}" if others else "")]
         raise self.refuse(told, others or f"--unit {unit} if that is so")
 
-    def side(self, label: str, topology: Topology, turned: Mapping[str, Place]) -> str:
+    def side(self, label: str, topology: Topology, turned: Mapping[str, Place], axes: Axes) -> str:
         """The wheel's side, from where it lies; it must be the one that the file or the user says."""
         wheel, inner = topology.wheel_centre, topology.inboard
         lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
@@ -436,7 +449,7 @@ class _Import:
             if said and said != seen:
                 raise self.refuse(
                     f"has a {said} wheel by {by}, but {where}",
-                    f"--axes with the other of left and right than {self.axes().option}, or the {seen} side; "
+                    f"--axes with the other of left and right than {axes.option}, or the {seen} side; "
                     "--mirror makes the other wheel",
                 )
         if (lies > 0) != (out > 0) and not (self.choices.side or label or self.format.side):

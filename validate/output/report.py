@@ -17,6 +17,9 @@ from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 
 MOST_EXPLANATIONS = 3  # that are printed
 
+# "most used": the largest part of its tolerance that any number of the quantity uses; above 1 it disagrees.
+HEAD = ("quantity", "where", "largest difference", "held to", "at", "most used", "resting on", "verdict")
+
 # Verdicts from the one that tells least of a quantity to the one that tells most.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
 OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
@@ -36,12 +39,26 @@ def _with_unit(value: float, unit: str) -> str:
     return f"{value:.1e} {unit}" if math.isfinite(value) else "not a number"
 
 
-def _measured(row: Comparison) -> tuple[str, str, str, str]:
-    """Difference, tolerance, instant, and whose claim the tolerance rests on; dashes of what is not given."""
-    if row.verdict == "not given":
-        return "-", "-", "-", "-"
-    difference, tolerance = (_with_unit(value, row.unit) for value in (row.difference, row.tolerance))
-    return difference, tolerance, when(row, 4), row.rests_on
+def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
+    """A quantity's line: its largest difference, with where and what it is held to; the most of a tolerance
+    that any of its numbers uses, which may be another number; and the verdict of the worst.
+
+    Args:
+        rows: all of the quantity. worst: the one of them that `worst_rows` tells.
+    """
+    given = [row for row in rows if row.verdict != "not given"]
+    largest = max(given, key=lambda row: row.difference, default=worst)
+    name = "" if _of_the_car(largest) else largest.name
+    verdict = worst.verdict if worst.verdict != "disagrees" else f"DISAGREES, {worst.share:.1e} times"
+    if worst.verdict in ("disagrees", "not tested") and worst is not largest:
+        verdict += f": {worst.name}"
+    if not given:
+        return name, "-", "-", "-", "-", "-", verdict
+    # The unit is that of the difference beside it.
+    tolerance = _with_unit(largest.tolerance, "").rstrip()
+    used = _with_unit(max(row.share for row in given), "").rstrip()
+    difference = _with_unit(largest.difference, largest.unit)
+    return name, difference, tolerance, when(largest, 4), used, largest.rests_on, verdict
 
 
 def when(row: Comparison, digits: int = 9) -> str:
@@ -96,21 +113,15 @@ def outcome_text(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> 
 def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> tuple[Part, ...]:
     """The same with its table apart."""
     first, second = (s.formulation for s in outcome.solutions)
-    rows = [
-        (
-            heading(row.quantity, row.name),
-            "" if _of_the_car(row) else row.name,
-            *_measured(row),
-            f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
-        )
-        for row in worst_rows(outcome)
-    ]
+    of_one: dict[str, list[Comparison]] = {}
+    for row in outcome.rows:
+        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
+    worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
+    rows = [(words, *_told(mine, worst[words])) for words, mine in of_one.items()]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     lines: list[Part] = [
         f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants{factor}",
-        _table(
-            ("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows
-        ),
+        _table(HEAD, rows),
     ]
     told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
     return (

@@ -23,6 +23,7 @@ LEFT = (
     "formulation",
     "outcome",
     "worst at",
+    "where",
     "wrong quantity",
     "erratum",
     "slip of print",

@@ -156,7 +156,7 @@ def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
     assert not outcome.disagreements
     assert not outcome.agreed
     (line,) = (line for line in outcome_text(outcome).splitlines() if line.startswith("stub_axle"))
-    assert line.split() == ["stub_axle", "-", "-", "-", "-", "not", "given"]
+    assert line.split() == ["stub_axle", "-", "-", "-", "-", "-", "not", "given"]
 
 
 def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -173,6 +173,43 @@ def test_exchanged_columns_are_refused_with_the_axes_that_they_have(tmp_path: Pa
     assert any("left-handed" in doubt for doubt in found.doubts)
 
 
+@pytest.mark.parametrize("car", [STRUT, WISHBONE], ids=["strut", "wishbone"])
+@pytest.mark.parametrize("ending", ["", "_own"])
+def test_a_table_under_our_own_names_has_our_own_axes(car: Scene, ending: str, tmp_path: Path) -> None:
+    points = car.mechanism.points
+    own = {name: name + ending.replace("own", car.mechanism.side) for name in points}
+    found = imported(tmp_path, table(points, signs=(1, 1, 1), names=own))
+    assert drawn(found) == points
+    assert found.scene.mechanism.side == car.mechanism.side
+    assert not found.doubts
+    low, high = SUSPENSIONS[car.mechanism.type].closures["drawn"].steering_axis
+    rearward, _, up = np.subtract(points[high], points[low])
+    # Leaning rearward at the top is positive; the drawing closes to 1e-13 mm over 130 mm at the least.
+    assert found.bounce.angles["caster"] == pytest.approx(np.arctan2(rearward, up), abs=1e-14)
+
+
+@pytest.mark.parametrize("car", [STRUT, WISHBONE], ids=["strut", "wishbone"])
+def test_points_under_our_own_names_in_other_axes_are_refused_with_those_axes(
+    car: Scene, tmp_path: Path
+) -> None:
+    points, own = car.mechanism.points, {name: name for name in car.mechanism.points}
+    turned = table(points, signs=(-1, -1, 1), names=own)
+    with pytest.raises(HardpointFileError, match="lie as in x forward, y left, z up") as caught:
+        imported(tmp_path, turned)
+    words = f"--axes forward,left,up of a {car.mechanism.side} wheel"
+    assert words in str(caught.value)
+    assert drawn(imported(tmp_path, turned, axes="forward,left,up")) == points
+
+
+def test_a_strut_under_another_program_s_names_is_held_to_its_axes_as_well(tmp_path: Path) -> None:
+    # The top of this strut lies 530 mm above the wheel and 185 mm inboard of it.
+    points = STRUT.mechanism.points
+    names = {name: OPTIMUMK.get(name, name) for name in points}
+    assert drawn(imported(tmp_path, table(points, names=names))) == points
+    with pytest.raises(HardpointFileError, match="--axes rearward,right,up of a left wheel"):
+        imported(tmp_path, table(points, signs=(1, 1, 1), names=names))
+
+
 @pytest.mark.parametrize(
     "axes", ["rearward,left,up", "left,up,forward", "up,right,forward", "down,left,rearward"]
 )

@@ -1,0 +1,95 @@
+"""The table of a comparison shows what its columns say, whichever number is closest to its tolerance."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from pointcoord import Scene
+from validate.comparison.compare import Outcome, compare
+from validate.comparison.findings import findings
+from validate.output.report import heading, outcome_text
+from validate.paper.scenes import DEFAULT_SCENES
+
+
+@pytest.fixture(scope="module")
+def heaving() -> Outcome:
+    scene = "bounce-on-a-heaving-chassis"
+    return compare(Scene.load(scene), "pointcoord", "absolute", scene)
+
+
+def lines_of(outcome: Outcome) -> dict[str, list[str]]:
+    """The table's cells by quantity; its widths are those of the line of dashes."""
+    _, head, dashes, *lines = outcome_text(outcome).splitlines()
+    starts = [0] + [at + 2 for at in range(len(dashes)) if dashes[at : at + 2] == "  "]
+    ends = [*(start - 2 for start in starts[1:]), None]
+    rows = {}
+    for line in lines:
+        if line.startswith("  note: "):
+            break
+        cells = [line[start:end].strip() for start, end in zip(starts, ends, strict=True)]
+        rows[cells[0]] = cells[1:]
+    assert [head[start:end].strip() for start, end in zip(starts, ends, strict=True)] == [
+        "quantity",
+        "where",
+        "largest difference",
+        "held to",
+        "at",
+        "most used",
+        "resting on",
+        "verdict",
+    ]
+    return rows
+
+
+def of_position(outcome: Outcome, **changes: tuple[float, float, str]) -> Outcome:
+    """Other differences, shares and verdicts of some points, and no other quantity."""
+    rows = []
+    for row in outcome.rows:
+        if row.quantity == "position":
+            difference, share, verdict = changes.get(row.name, (0.0, 0.0, "agrees"))
+            rows.append(replace(row, difference=difference, share=share, verdict=verdict))
+    return replace(outcome, rows=tuple(rows))
+
+
+def test_the_largest_difference_is_the_largest_and_the_most_used_is_of_the_worst(heaving: Outcome) -> None:
+    lines = lines_of(heaving)
+    apart = 0
+    for quantity, (where, difference, held, _, used, *_) in lines.items():
+        rows = [row for row in heaving.rows if heading(row.quantity, row.name) == quantity]
+        largest = max(rows, key=lambda row: row.difference)
+        worst = max(rows, key=lambda row: row.share)
+        assert difference == f"{largest.difference:.1e} {largest.unit}"
+        assert where in ("", largest.name)
+        assert float(held) == pytest.approx(largest.tolerance, rel=0.06)
+        assert float(used) == pytest.approx(worst.share, rel=0.06)
+        apart += largest is not worst
+    assert apart  # The scene where the two are different numbers is the one to ask.
+
+
+def test_a_fault_that_is_smaller_than_another_point_s_rounding_is_named(heaving: Outcome) -> None:
+    wrong = of_position(heaving, wheel_centre=(1e-3, 0.5, "agrees"), strut_top=(1e-6, 70.0, "disagrees"))
+    where, difference, _, _, used, _, verdict = lines_of(wrong)["position"]
+    assert (where, difference, used) == ("wheel_centre", "1.0e-03 mm", "7.0e+01")
+    assert verdict == "DISAGREES, 7.0e+01 times: strut_top"
+
+
+def test_what_is_not_given_takes_no_place_from_what_is(heaving: Outcome) -> None:
+    lost = of_position(
+        heaving, strut_top=(math.nan, math.nan, "not given"), wheel_centre=(2e-13, 0.25, "agrees")
+    )
+    where, difference, _, _, used, _, verdict = lines_of(lost)["position"]
+    assert (where, difference, used, verdict) == ("wheel_centre", "2.0e-13 mm", "2.5e-01", "not given")
+
+
+@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+def test_the_table_of_a_built_in_scene_fits_110_characters(scene: str) -> None:
+    outcome = compare(Scene.load(scene), "pointcoord", "absolute", scene)
+    lines = outcome_text(outcome).splitlines()
+    assert max(len(line) for line in lines if not line.startswith("  note: ")) <= 110
+
+
+def test_an_erratum_s_largest_difference_is_the_largest(heaving: Outcome) -> None:
+    wrong = of_position(heaving, wheel_centre=(1.0, 2.0, "disagrees"), strut_top=(1e-6, 70.0, "disagrees"))
+    (found,) = findings([wrong])
+    assert found.worst.difference == 1.0
