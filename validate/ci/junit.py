@@ -7,8 +7,9 @@ where it agrees.
 | in the run | in the file |
 |---|---|
 | agrees | a case that passes |
-| disagrees, moved since the baseline | `failure` |
-| not tested, not given, new or gone since the baseline, not run | `skipped`, with the reason |
+| disagrees, moved since the baseline, or given then and not now | `failure` |
+| not tested, not given, new since the baseline, not run | `skipped`, with the reason |
+| gone with a formulation that this run does not ask | `skipped` |
 | what is given and cannot be used, or tells nothing | `error` |
 | a scene that cannot be read, is refused, or fails; another car than in the baseline | `error` |
 
@@ -197,17 +198,16 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
     elif since.standing != "compared":
         yield _Case("in the baseline", "error", since.standing, since.words)
     for move in since.moves:
-        yield _moved(move, factor)
+        yield _moved(move, factor, move in since.lost)
 
 
-def _moved(move: Move, factor: float) -> _Case:
+def _moved(move: Move, factor: float, lost: bool) -> _Case:
     name = f"{move.formulation}: {about(move.quantity, move.name)}"
     if move.verdict == "new":
         return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
     if move.verdict == "gone":
-        return _Case(
-            name, "skipped", move.verdict, "gone: the baseline has such numbers, and this run has none"
-        )
+        message = "gone: the baseline has such numbers, and this run has none"
+        return _Case(name, "failure" if lost else "skipped", move.verdict, message)
     out = _numbers("moved", move.moved, "bound", move.bound, move.unit, f"{move.instant:.9g} s", move.share)
     if move.verdict == "agrees":
         return _Case(name, out=out)

@@ -88,7 +88,7 @@ def _without_claims(accuracy: Accuracy) -> Accuracy:
 def ends_the_run(examined: Examined, since: Since | None) -> bool:
     """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
-    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved))
+    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
 
 
 def fault_of(row: Comparison, outcome: Outcome) -> str:

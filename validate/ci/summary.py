@@ -74,6 +74,8 @@ def _verdict(record: Record, status: ExitStatus) -> str:
     moved = sum(bool(since.moved) for since in record.since)
     if record.baseline is not None:
         parts.append(f"{moved} moved since the baseline")
+        if lost := sum(bool(since.lost) for since in record.since):
+            parts.append(f"{lost} {'lacks' if lost == 1 else 'lack'} numbers of the baseline")
     return (
         f"**{status.verdict.capitalize()}**: {', '.join(parts)} "
         f"(exit status {status.value}: {markdown(MEANINGS[status])})."

@@ -8,7 +8,7 @@ from typing import Any
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison
 from validate.measured.comparing import DataOutcome
-from validate.output.report import explained_lines, outcome_data, table, worst_rows
+from validate.output.report import explained_lines, outcome_data, table, verdict_lines, worst_rows
 from validate.plain_text import shown
 
 HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
@@ -24,7 +24,8 @@ def text_of(found: DataOutcome) -> str:
     lines = [
         f"{outcome.scene}: {file} and {ours}, {len(outcome.solutions[0].times)} rows over {over}",
         table(HEAD, rows),
-        *(f"  note: {note}" for note in outcome.notes),
+        *verdict_lines(outcome),
+        *(f"  note: {note}" for note in outcome.notes if note not in outcome.faults),
         *explained_lines(found.explanations),
         _sentence(found),
     ]

@@ -24,8 +24,7 @@ MODULES = {
     "wrong": RIGHT.replace("return closed_form(given)", 'a = closed_form(given)["wheel"]\n')
     + '    return {"camber": -a["camber"], "toe": a["toe"]}\n',
     "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n  def __init__(self, a): ...\n",
-    "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n"
-    "    return {'position': {'rack_centre': [given['points']['rack_centre']] * len(given['instants'])}}\n",
+    "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n",
     "none": "def solve(given):\n    return None\n",
     "broken": "import nothing_of_that_name\n",
     "odd": "x = 1 / 0\n",
@@ -34,6 +33,11 @@ MODULES = {
 STRUT = "    if given['suspension'] == 'macpherson':\n        "
 CHASSIS = "    place = given['points']['rack_centre']\n"
 CHASSIS += "    return {'position': {'rack_centre': [place] * len(given['instants'])}}\n"
+# The point of the rack, which moves.
+RACK = "    import numpy as np\n    x, place = given['inputs'], np.array(given['points']['rack_centre'])\n"
+RACK += "    place = place - np.outer(x['rack']['position'], given['right'])\n"
+RACK += "    place = place + np.outer(x['heave']['position'], given['up'])\n"
+RACK += "    return {'position': {'tie_rod_inner': place}}\n"
 # What becomes of a strut with it; a double wishbone it answers.
 ENDS = {
     "leaves": ("os._exit(0)", "ended with exit status 0 and without an answer"),
@@ -44,11 +48,10 @@ ENDS = {
     "writes": ("given['instants'][0] = 1.0", "ValueError: assignment destination is read-only"),
     "counts": ("raise ValueError(os.getpid())", "ValueError"),
 }
+MODULES["some"] += RACK
 HANGS = {"hangs": "while True: pass", "waits": "os.system('sleep 60')"}
-MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, what in HANGS.items()}
-MODULES |= {
-    name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, (what, _) in ENDS.items()
-}
+MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{RACK}" for name, what in HANGS.items()}
+MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{RACK}" for name, (what, _) in ENDS.items()}
 
 
 @pytest.fixture
@@ -252,6 +255,22 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
         told.append(out)
     assert told[0] == told[1]
     assert "velocity is of type Odd" in told[0]
+
+
+def test_how_much_was_compared_is_said_and_points_of_the_chassis_are_no_agreement(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (solvers / "own_solvers" / "chassis.py").write_text(f"def solve(given):\n{CHASSIS}", encoding="utf-8")
+    tests = solvers / "tests.xml"
+    assert run("own_solvers.chassis:solve", "off-axis-strut.toml", "--junit", str(tests)) == 3
+    out = capfd.readouterr().out
+    assert "  no verdict: whatever agrees is what the solver was given" in out
+    count = sum(map(len, given_to_solver(Scene.load("off-axis-strut"))["asked"].values()))
+    assert out.rstrip().endswith(
+        f"; 1 of {count} numbers compared, 1 of them data that the solver was given, {count - 1} not given."
+    )
+    (error,) = ElementTree.parse(tests).getroot().iter("error")
+    assert error.get("message", "").startswith("no verdict: whatever agrees is what the solver was given")
 
 
 @pytest.mark.parametrize(

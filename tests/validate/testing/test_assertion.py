@@ -122,6 +122,14 @@ def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are
     assert assert_agrees(good | {"iterations": 3, "seconds": [0.1]}, SCENE).passed
 
 
+def test_points_that_stay_where_they_are_drawn_are_no_agreement(states) -> None:
+    chassis = {name: states["position"][name] for name in SCENE.mechanism.topology.chassis}
+    with pytest.raises(
+        AssertionError, match=r"say nothing of .*: whatever agrees is what the solver was given"
+    ):
+        assert_agrees({"position": chassis}, SCENE)
+
+
 def test_what_is_needed_must_be_there_all_of_it(states) -> None:
     assert assert_agrees(states, SCENE, needed=("position", "camber", "wheel")).passed
     alone = {"camber": states["wheel"]["camber"]}
