@@ -25,7 +25,7 @@ from xml.etree import ElementTree
 
 from pointcoord.data_classes import dataclass
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record, fault_of, why_undecided
+from validate.ci.record import Record, explained, fault_of, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
@@ -133,7 +133,8 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
         f"{_times(row.share)}{_held(outcome.factor)}"
     )
-    return _Case(name, "failure", row.verdict, message, out)
+    why = tuple(f"what would explain it: {words}" for words in explained(row, outcome))
+    return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
 
 def _unusable(outcome: Outcome) -> Iterator[_Case]:

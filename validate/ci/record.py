@@ -91,6 +91,12 @@ def ends_the_run(examined: Examined, since: Since | None) -> bool:
     return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
 
 
+def explained(row: Comparison, outcome: Outcome) -> tuple[str, ...]:
+    """What would explain that a row disagrees, the best first."""
+    its = {row.quantity, f"{row.quantity}.{row.name}"}
+    return tuple(one.words for one in outcome.explanations if its & {*one.quantities})
+
+
 def fault_of(row: Comparison, outcome: Outcome) -> str:
     """What is wrong with what was given of a row, if it cannot be used; else empty."""
     about_it = f": {QUANTITIES[row.quantity].words} of {row.name} "

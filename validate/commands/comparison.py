@@ -7,7 +7,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
 from pointcoord import Scene, SceneError
@@ -281,6 +281,9 @@ def compare_scenes(
                 printed = name in PAPER_SCENES and not own
                 examined = examine(name, scene, pairs, printed, record.factor, own)
                 explained = [explain_outcome(scene, outcome) for outcome in examined.outcomes]
+                told_why = zip(examined.outcomes, explained, strict=True)
+                outcomes = tuple(replace(outcome, explanations=why) for outcome, why in told_why)
+                examined = replace(examined, outcomes=outcomes)
                 _say(examined, explained, console)
                 if recorder is not None:
                     recorder.add(examined.name, scene, examined.outcomes)

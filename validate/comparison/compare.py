@@ -137,8 +137,15 @@ class Outcome:
 
     def __repr__(self) -> str:
         first, second = (solution.formulation for solution in self.solutions)
-        counts = (f"{sum(row.verdict == v for row in self.rows)} {v}" for v in _verdicts(self.rows))
+        counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in _verdicts(self.rows))
         return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
+
+
+def counted(count: int, verdict: str) -> str:
+    """How many rows have a verdict, in words."""
+    if verdict in ("agrees", "disagrees") and count != 1:
+        return f"{count} {verdict.removesuffix('s')}"
+    return f"{count} {verdict}"
 
 
 def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:

@@ -101,13 +101,14 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
             heading(row.quantity, row.name),
             "" if _of_the_car(row) else row.name,
             *_measured(row),
-            f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict,
+            verdict_of(row),
         )
         for row in worst_rows(outcome)
     ]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
+    instants = counted_as(len(outcome.solutions[0].times), "instant")
     lines: list[Part] = [
-        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants{factor}",
+        f"{outcome.scene}: {first} and {second}, {instants}{factor}",
         _table(
             ("quantity", "worst at", "largest difference", "held to", "at", "resting on", "verdict"), rows
         ),
@@ -119,6 +120,18 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
         *(f"  note: {note}" for note in told),
         *explained_lines(explanations),
     )
+
+
+def verdict_of(row: Comparison) -> str:
+    """The verdict of a row in a table, and how far beyond its tolerance one lies that disagrees."""
+    if row.verdict != "disagrees":
+        return row.verdict
+    return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
+
+
+def counted_as(count: int, noun: str) -> str:
+    """A number of things: 1 instant, 2 instants."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def verdict_lines(outcome: Outcome) -> list[str]:

@@ -275,7 +275,7 @@ def test_numbers_that_are_given_no_more_end_with_1_and_are_named_in_the_last_lin
     monkeypatch.setattr(sys, "path", [*sys.path])
     rack = "    return {'position': found | {'rack_centre': [place] * len(given['instants'])}}\n"
     module.write_text(solver + rack, encoding="utf-8")
-    assert main([*words, "--save-baseline", kept]) == 0
+    assert main([*words, "--save-baseline", kept]) == 3
     sys.modules.pop("some_of_it")
     module.write_text(solver + "    return {'position': found}\n", encoding="utf-8")
     capsys.readouterr()

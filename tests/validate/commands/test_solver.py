@@ -11,6 +11,7 @@ import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints
 
 from pointcoord import Scene
+from validate.ci.summary import markdown
 from validate.cli import main
 from validate.solvers.apart import Apart
 from validate.solvers.plain import SolverFailed, given_to_solver
@@ -28,6 +29,7 @@ MODULES = {
     "none": "def solve(given):\n    return None\n",
     "broken": "import nothing_of_that_name\n",
     "odd": "x = 1 / 0\n",
+    "unread": "def solve(\n",
     "exits": "import os\nos._exit(7)\n",
 }
 STRUT = "    if given['suspension'] == 'macpherson':\n        "
@@ -102,6 +104,21 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
     assert run("own_solvers.wrong:solve", "--accuracy", "1e3", "off-axis-strut.toml") == 3
 
 
+def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    tests, summary = solvers / "t.xml", solvers / "s.md"
+    files = ["--junit", str(tests), "--summary", str(summary)]
+    assert run("own_solvers.wrong:solve", "off-axis-strut.toml", *files) == 1
+    why = capfd.readouterr().out.partition("  what would explain it: ")[2].splitlines()[0]
+    assert "camber" in why
+    assert "sign" in why
+    (failure,) = ElementTree.parse(tests).getroot().iter("failure")
+    assert f"; what would explain it: {why}" in failure.get("message", "")
+    (line,) = (one for one in summary.read_text("utf-8").splitlines() if "what would explain it" in one)
+    assert line.endswith(f"; what would explain it: {markdown(why)}")
+
+
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
     words = ["validate", "--solver", "own_solvers.prints:solve", "off-axis-strut.toml", "--json", "-"]
     # The tests' own folder, not ROOT's: ROOT is where the packages are installed.
@@ -145,6 +162,10 @@ def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest
         (["own_solvers.raises:Twice"], "cannot be made without arguments: TypeError"),
         (["own_solvers.broken:solve"], "No module named 'nothing_of_that_name' at broken.py:1"),
         (["own_solvers.odd:solve"], "ZeroDivisionError: division by zero at odd.py:1"),
+        (
+            ["own_solvers.unread:solve"],
+            "SyntaxError: '(' was never closed (unread.py, line 1); mend the module",
+        ),
         (["own_solvers/right.py:solve"], "try own_solvers.right:solve"),
         (["own_solvers.right"], "give MODULE:NAME"),
         ([""], "give MODULE:NAME"),

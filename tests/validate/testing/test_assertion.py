@@ -136,7 +136,7 @@ def test_what_is_needed_must_be_there_all_of_it(states) -> None:
     assert assert_agrees(alone, SCENE, needed=("camber",)).passed
     for needed, words in (
         ("velocity", "velocity is needed and missing of lower_arm_front, "),
-        ("toe", "toe is needed and missing; needed: all that the scene asks for"),
+        ("toe", "toe is needed and missing; needed: one number for each instant"),
         ("wheel", "wheel is needed and missing of kingpin"),
         ("tow", "'tow' is needed, and the scene does not ask for it (did you mean 'toe'?)"),
     ):
