@@ -123,12 +123,19 @@ class Since:
         return tuple(move for move in self.moves if move.verdict == "moved")
 
     @property
+    def lost(self) -> tuple[Move, ...]:
+        """What a formulation gave then that is in this run too, and does not give now."""
+        here = {move.formulation for move in self.moves if move.verdict != "gone"}
+        return tuple(move for move in self.moves if move.verdict == "gone" and move.formulation in here)
+
+    @property
     def status(self) -> ExitStatus:
         """What the scene's movement alone would end the run with.
 
-        A scene that is new or that is refused now says nothing of movement; the latter is told of anyway.
+        A scene that is new or that is refused now says nothing of movement; the latter is told of anyway. So
+        are the numbers of a formulation that this run does not ask.
         """
-        if self.moved:
+        if self.moved or self.lost:
             return ExitStatus.DISAGREE
         if self.standing in ("new", "not solved now"):
             return ExitStatus.AGREE

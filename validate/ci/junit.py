@@ -7,8 +7,9 @@ where it agrees.
 | in the run | in the file |
 |---|---|
 | agrees | a case that passes |
-| disagrees, moved since the baseline | `failure` |
-| not tested, not given, new or gone since the baseline, not run | `skipped`, with the reason |
+| disagrees, moved since the baseline, or given then and not now | `failure` |
+| not tested, not given, new since the baseline, not run | `skipped`, with the reason |
+| gone with a formulation that this run does not ask | `skipped` |
 | what is given and cannot be used, or tells nothing | `error` |
 | a scene that cannot be read, is refused, or fails; another car than in the baseline | `error` |
 
@@ -24,7 +25,7 @@ from xml.etree import ElementTree
 
 from pointcoord.data_classes import dataclass
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record, fault_of, why_undecided
+from validate.ci.record import Record, explained, fault_of, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
@@ -132,7 +133,8 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
         f"{_times(row.share)}{_held(outcome.factor)}"
     )
-    return _Case(name, "failure", row.verdict, message, out)
+    why = tuple(f"what would explain it: {words}" for words in explained(row, outcome))
+    return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
 
 def _unusable(outcome: Outcome) -> Iterator[_Case]:
@@ -197,17 +199,16 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
     elif since.standing != "compared":
         yield _Case("in the baseline", "error", since.standing, since.words)
     for move in since.moves:
-        yield _moved(move, factor)
+        yield _moved(move, factor, move in since.lost)
 
 
-def _moved(move: Move, factor: float) -> _Case:
+def _moved(move: Move, factor: float, lost: bool) -> _Case:
     name = f"{move.formulation}: {about(move.quantity, move.name)}"
     if move.verdict == "new":
         return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
     if move.verdict == "gone":
-        return _Case(
-            name, "skipped", move.verdict, "gone: the baseline has such numbers, and this run has none"
-        )
+        message = "gone: the baseline has such numbers, and this run has none"
+        return _Case(name, "failure" if lost else "skipped", move.verdict, message)
     out = _numbers("moved", move.moved, "bound", move.bound, move.unit, f"{move.instant:.9g} s", move.share)
     if move.verdict == "agrees":
         return _Case(name, out=out)

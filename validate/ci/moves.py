@@ -10,6 +10,7 @@ from typing import Any
 from validate.ci.baseline import Baseline, Move, Since
 from validate.output.report import about, heading, table
 
+NAMED = 8  # numbers in a sentence: the table's notes have them all
 ORDER = ("agrees", "not tested", "moved")
 ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
 
@@ -67,6 +68,16 @@ def _alone(since: Since) -> Iterator[str]:
         for formulation, whats in by_formulation.items():
             what = ", ".join(whats) if formulation in shared else "every number"
             yield f"{verdict}, {words}: {what} by {formulation}"
+
+
+def lost_lines(since: Since) -> Iterator[str]:
+    """What of a scene was given then and is not now, a line for each formulation."""
+    by_formulation: dict[str, list[str]] = {}
+    for move in since.lost:
+        by_formulation.setdefault(move.formulation, []).append(about(move.quantity, move.name))
+    for formulation, whats in by_formulation.items():
+        more = f" and {len(whats) - NAMED} more" if len(whats) > NAMED else ""
+        yield f"{since.scene}: {', '.join(whats[:NAMED])}{more} by {formulation}"
 
 
 def told_apart(found: Iterable[Since], gone: Sequence[str]) -> Iterator[str]:

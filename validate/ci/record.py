@@ -88,7 +88,13 @@ def _without_claims(accuracy: Accuracy) -> Accuracy:
 def ends_the_run(examined: Examined, since: Since | None) -> bool:
     """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
-    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved))
+    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
+
+
+def explained(row: Comparison, outcome: Outcome) -> tuple[str, ...]:
+    """What would explain that a row disagrees, the best first."""
+    its = {row.quantity, f"{row.quantity}.{row.name}"}
+    return tuple(one.words for one in outcome.explanations if its & {*one.quantities})
 
 
 def fault_of(row: Comparison, outcome: Outcome) -> str:

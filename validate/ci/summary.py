@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from validate.ci.baseline import Since
 from validate.ci.moves import told_apart, worst_moves
-from validate.ci.record import Record, why_undecided
+from validate.ci.record import Record, explained, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.exit_status import MEANINGS, ExitStatus
 from validate.output.report import about, heading, held_to, when
@@ -74,6 +74,8 @@ def _verdict(record: Record, status: ExitStatus) -> str:
     moved = sum(bool(since.moved) for since in record.since)
     if record.baseline is not None:
         parts.append(f"{moved} moved since the baseline")
+        if lost := sum(bool(since.lost) for since in record.since):
+            parts.append(f"{lost} {'lacks' if lost == 1 else 'lack'} numbers of the baseline")
     return (
         f"**{status.verdict.capitalize()}**: {', '.join(parts)} "
         f"(exit status {status.value}: {markdown(MEANINGS[status])})."
@@ -148,10 +150,11 @@ def _where(scene: str, outcome: Outcome, row: Comparison) -> str:
 def _disagreements(record: Record) -> Iterator[str]:
     for examined, outcome in record.outcomes:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
+            why = [f"; what would explain it: {markdown(words)}" for words in explained(row, outcome)]
             yield (
                 f"{_where(examined.name, outcome, row)}: {_told(row.difference, row.unit)} apart at "
                 f"{markdown(when(row, 6))}, tolerance there {_told(row.tolerance, row.unit)}; "
-                f"{_beyond(row.share)}"
+                f"{_beyond(row.share)}{''.join(why[:1])}"
             )
 
 

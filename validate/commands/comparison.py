@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, get_args
 
 from pointcoord import Scene, SceneError
 from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
-from validate.ci.moves import baseline_data, since_text
+from validate.ci.moves import baseline_data, lost_lines, since_text
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
 from validate.commands.reporting import Page, add_report, page_of
@@ -25,6 +26,7 @@ from validate.commands.usage import (
     name_of,
     result_files,
 )
+from validate.comparison.compare import Verdict
 from validate.comparison.examined import Examined, examine
 from validate.comparison.findings import Finding, findings
 from validate.diagnosis import Explanation, explain_outcome
@@ -279,6 +281,9 @@ def compare_scenes(
                 printed = name in PAPER_SCENES and not own
                 examined = examine(name, scene, pairs, printed, record.factor, own)
                 explained = [explain_outcome(scene, outcome) for outcome in examined.outcomes]
+                told_why = zip(examined.outcomes, explained, strict=True)
+                outcomes = tuple(replace(outcome, explanations=why) for outcome, why in told_why)
+                examined = replace(examined, outcomes=outcomes)
                 _say(examined, explained, console)
                 if recorder is not None:
                     recorder.add(examined.name, scene, examined.outcomes)
@@ -418,6 +423,7 @@ def _say_at_the_end(
     rest = f"; {results.uncompared} of {count} could not be compared at all" if results.uncompared else ""
     if record.not_run:
         rest += f"; {len(record.not_run)} of {count} not run ({record.stopped}): {', '.join(record.not_run)}"
+    rest += _how_much(record)
     if record.factor != 1.0:
         rest += f"; {report.held_to(record.factor)}"
     console.say(", ".join(told) + rest + ".")
@@ -425,11 +431,31 @@ def _say_at_the_end(
         _say_what_moved(record, console)
 
 
+def _how_much(record: Record) -> str:
+    """How much of what is asked for was compared, of a solver that may give what it has."""
+    counts: Counter[str] = Counter()
+    for _, outcome in record.outcomes:
+        counts.update(outcome.counts if outcome.stated else {})
+    verdicts = get_args(Verdict)
+    if not (count := sum(counts[verdict] for verdict in verdicts)):
+        return ""
+    rest = "".join(f", {counts[v]} {v}" for v in ("not given", "not tested") if counts[v])
+    back = f", {counts['given back']} of them data that the solver was given" if counts["given back"] else ""
+    return f"; {counts['agrees'] + counts['disagrees']} of {count} numbers compared{back}{rest}"
+
+
 def _say_what_moved(record: Record, console: Console) -> None:
     held = [since for since in record.since if since.compared]
     moved = [since.scene for since in held if since.moved]
     names = f": {', '.join(moved)}" if moved else ""
-    told = f"Since the baseline {shown(str(record.baseline))} {len(moved)} of {len(held)} scenes moved{names}"
+    nouns = "scene" if len(held) == 1 else "scenes"
+    told = (
+        f"Since the baseline {shown(str(record.baseline))} {len(moved)} of {len(held)} {nouns} moved{names}"
+    )
+    if not held:
+        told = f"Since the baseline {shown(str(record.baseline))} no scene could be compared"
+    lost = [line for since in record.since for line in lost_lines(since)]
+    lacking = f"; given then and not now: {'; '.join(lost)}" if lost else ""
     gone = f"; gone, in the baseline and not in this run: {', '.join(record.gone)}" if record.gone else ""
     nothing = "; nothing of this run could be held to it" if not held else ""
-    console.say(f"{told}{gone}{nothing}.")
+    console.say(f"{told}{lacking}{gone}{nothing}.")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from pointcoord.simulation import require_scene
 from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
@@ -27,6 +28,7 @@ Array = NDArray[np.float64]
 SMALLEST = float(np.finfo(float).tiny)
 # Numbers of one side that are compared at once: with a dozen such arrays they stay in a processor's memory.
 AT_ONCE = 2**16
+GIVEN_BACK = "points of the chassis, or such as stay where they are drawn"
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
 
@@ -105,6 +107,12 @@ class Outcome:
         return not self.disagreements and any(row.verdict == "agrees" and row.telling for row in self.rows)
 
     @property
+    def counts(self) -> dict[str, int]:
+        """How many rows have each verdict, and how many of those that agree tell nothing."""
+        found = {verdict: sum(row.verdict == verdict for row in self.rows) for verdict in get_args(Verdict)}
+        return found | {"given back": sum(row.verdict == "agrees" and not row.telling for row in self.rows)}
+
+    @property
     def why_no_verdict(self) -> str:
         """Why it neither passes nor disagrees, in words; empty where it does, or where the rows say it."""
         if self.passed or self.disagreements:
@@ -114,7 +122,7 @@ class Outcome:
         if not self.stated:
             return ""
         if any(row.verdict == "agrees" for row in self.rows):
-            return "whatever agrees is what the solver was given: points that stay where they are drawn"
+            return f"whatever agrees is what the solver was given: {GIVEN_BACK}"
         return "no number that is given is tested"
 
     @property
@@ -129,8 +137,15 @@ class Outcome:
 
     def __repr__(self) -> str:
         first, second = (solution.formulation for solution in self.solutions)
-        counts = (f"{sum(row.verdict == v for row in self.rows)} {v}" for v in _verdicts(self.rows))
+        counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in _verdicts(self.rows))
         return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
+
+
+def counted(count: int, verdict: str) -> str:
+    """How many rows have a verdict, in words."""
+    if verdict in ("agrees", "disagrees") and count != 1:
+        return f"{count} {verdict.removesuffix('s')}"
+    return f"{count} {verdict}"
 
 
 def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:
@@ -202,7 +217,9 @@ def compare_solutions(
         parts = _parts(quantity, names, first, second)
         missing += _missing(quantity, parts, first, second)
         sides = (_Side.of(first, quantity), _Side.of(second, quantity))
-        rows += _rows(name, quantity, parts, sides, instants[both], factor)
+        some = _rows(name, quantity, parts, sides, instants[both], factor)
+        # Decided only where one of them may give what it has: else every row has to agree.
+        rows += [_judged(row, scene, sides, factor) for row in some]
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
@@ -250,6 +267,39 @@ class _Side:
     def level(self) -> Array:
         """See `tolerance.level`, (N,)."""
         return level(self.claims.values(), self.largest, self.condition)
+
+
+def _judged(row: Comparison, scene: Scene, sides: tuple[_Side, _Side], factor: float) -> Comparison:
+    """A row, and whether it tells anything of a solver that is held to what it stated."""
+    stated = [side.blind is not None for side in sides]
+    if row.verdict != "agrees" or stated not in ([True, False], [False, True]):
+        return row
+    own, other = sides if stated[0] else sides[::-1]
+    return replace(row, telling=_tells(row, scene, own, other, factor))
+
+
+def _tells(row: Comparison, scene: Scene, own: _Side, other: _Side, factor: float) -> bool:
+    """Whether a number is none that the solver was given: what was given would not agree as well.
+
+    It was given where each point is drawn, and that of the chassis is all there is to know of its points. An
+    instant of which its accuracy says nothing does not count.
+    """
+    kind = QUANTITIES[row.quantity]
+    seen = np.ones(len(own.condition), dtype=bool) if own.blind is None else ~own.blind
+    part = scene.mechanism
+    if kind.of == "point" and row.name in part.topology.chassis:
+        return False
+    if per_second(row.quantity):
+        given_back = np.zeros(3)
+    elif kind.of == "point" and row.name in part.points:
+        given_back = np.array(part.points[row.name], dtype=float)
+    else:
+        return bool(seen.any())
+    numbers = other.numbers[row.name]
+    nothing = np.zeros_like(numbers)
+    first, second = (side.claims.get(row.name, nothing) for side in (own, other))
+    allowed = factor * tolerance(first, second, float(other.largest.max()))
+    return bool((np.abs(numbers - given_back) > allowed)[seen].any())
 
 
 def _rows(

@@ -49,7 +49,7 @@ def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
     given = [row for row in rows if row.verdict != "not given"]
     largest = max(given, key=lambda row: row.difference, default=worst)
     name = "" if _of_the_car(largest) else largest.name
-    verdict = worst.verdict if worst.verdict != "disagrees" else f"DISAGREES, {worst.share:.1e} times"
+    verdict = verdict_of(worst)
     if worst.verdict in ("disagrees", "not tested") and worst is not largest:
         verdict += f": {worst.name}"
     if not given:
@@ -119,8 +119,9 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
     worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
     rows = [(words, *_told(mine, worst[words])) for words, mine in of_one.items()]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
+    instants = counted_as(len(outcome.solutions[0].times), "instant")
     lines: list[Part] = [
-        f"{outcome.scene}: {first} and {second}, {len(outcome.solutions[0].times)} instants{factor}",
+        f"{outcome.scene}: {first} and {second}, {instants}{factor}",
         _table(HEAD, rows),
     ]
     told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
@@ -130,6 +131,18 @@ def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) ->
         *(f"  note: {note}" for note in told),
         *explained_lines(explanations),
     )
+
+
+def verdict_of(row: Comparison) -> str:
+    """The verdict of a row in a table, and how far beyond its tolerance one lies that disagrees."""
+    if row.verdict != "disagrees":
+        return row.verdict
+    return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
+
+
+def counted_as(count: int, noun: str) -> str:
+    """A number of things: 1 instant, 2 instants."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def verdict_lines(outcome: Outcome) -> list[str]:

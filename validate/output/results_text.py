@@ -6,9 +6,17 @@ import math
 from typing import Any
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.comparison.compare import Comparison
+from validate.comparison.compare import Comparison, counted
 from validate.measured.comparing import DataOutcome
-from validate.output.report import explained_lines, outcome_data, table, worst_rows
+from validate.output.report import (
+    counted_as,
+    explained_lines,
+    outcome_data,
+    table,
+    verdict_lines,
+    verdict_of,
+    worst_rows,
+)
 from validate.plain_text import shown
 
 HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
@@ -18,13 +26,14 @@ def text_of(found: DataOutcome) -> str:
     """The table of a file: of each quantity the worst, and a row for each that the file does not give."""
     outcome = found.outcome
     file, ours = (solution.formulation for solution in outcome.solutions)
-    rows = [(*_name(row), *_measured(row), row.place, _verdict(row)) for row in worst_rows(outcome)]
+    rows = [(*_name(row), *_measured(row), row.place, verdict_of(row)) for row in worst_rows(outcome)]
     rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
-    over = shown(found.over)
+    over, count = shown(found.over), len(outcome.solutions[0].times)
     lines = [
-        f"{outcome.scene}: {file} and {ours}, {len(outcome.solutions[0].times)} rows over {over}",
+        f"{outcome.scene}: {file} and {ours}, {counted_as(count, 'row')} over {over}",
         table(HEAD, rows),
-        *(f"  note: {note}" for note in outcome.notes),
+        *verdict_lines(outcome),
+        *(f"  note: {note}" for note in outcome.notes if note not in outcome.faults),
         *explained_lines(found.explanations),
         _sentence(found),
     ]
@@ -46,14 +55,10 @@ def _measured(row: Comparison) -> tuple[str, str]:
     return f"{factor * row.difference:.1e} {unit}", f"{factor * row.tolerance:.1e} {unit}"
 
 
-def _verdict(row: Comparison) -> str:
-    return f"DISAGREES, {row.share:.1e} times" if row.verdict == "disagrees" else row.verdict
-
-
 def _sentence(found: DataOutcome) -> str:
     rows = found.outcome.rows
     verdicts = dict.fromkeys(row.verdict for row in rows)
-    told = ", ".join(f"{sum(row.verdict == v for row in rows)} {v}" for v in verdicts)
+    told = ", ".join(counted(sum(row.verdict == v for row in rows), v) for v in verdicts)
     return f"Of {len(rows)} that the file gives: {told}."
 
 

@@ -23,6 +23,7 @@ other instants than it was given, of which some are among these, names them: {"i
 
 from __future__ import annotations
 
+import importlib
 import traceback
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -46,7 +47,7 @@ Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 ORDERS = ("position", "velocity", "acceleration")
 INSTANTS = "instants"
 METHOD = "solve"
-HERE = Path(__file__).parent
+HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
 
 
 class NoSolver(Exception):
@@ -258,4 +259,5 @@ def raised_at(error: BaseException) -> str:
 
 
 def _ours(file: str) -> bool:
-    return file.startswith("<frozen importlib") or Path(file).parent == HERE
+    """Whether a file is of this folder, or Python's own that imports: neither is the solver's."""
+    return file.startswith("<frozen importlib") or Path(file).parent in (HERE, IMPORTING)

@@ -70,8 +70,9 @@ def assert_agrees(
     Returns:
         All comparisons; its notes say what was given that the scene does not ask for.
     Raises:
-        AssertionError: a number disagrees, or nothing that is asked for is given. The message says which
-            quantity of what, the difference, the tolerance and the instant, and what would explain it.
+        AssertionError: a number disagrees, or nothing that is asked for is given but points that stay where
+            they are drawn. The message says which quantity of what, the difference, the tolerance and the
+            instant, and what would explain it.
         WrongStates: a number has another shape than its kind, or a misspelt name; what is needed is missing.
         NotTested: this accuracy says nothing of some of them, and nothing disagrees.
         NoSolver: `accuracy` is no length above 0.
@@ -100,7 +101,7 @@ def assert_agrees(
     agree = sum(row.verdict == "agrees" for row in outcome.rows)
     if untested:
         raise NotTested(outcome.scene, exact, untested, agree)
-    if not agree:
+    if not outcome.passed:
         raise AssertionError(_nothing(outcome))
     return outcome
 
@@ -189,4 +190,6 @@ def _row(row: Comparison) -> str:
 def _nothing(outcome: Outcome) -> str:
     asked = ", ".join(dict.fromkeys(row.quantity for row in outcome.rows))
     lines = [f"{WHO} hold nothing that {outcome.scene!r} asks for: {asked}"]
+    if any(row.verdict == "agrees" for row in outcome.rows) or outcome.faults:
+        lines = [f"{WHO} say nothing of {outcome.scene!r}: {outcome.why_no_verdict}"]
     return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])

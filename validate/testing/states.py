@@ -87,7 +87,8 @@ def require_given(states: Mapping[str, Any], scene: Scene, needed: Collection[st
         lacking = [name for name in names if name not in given and not (name in alone and name in states)]
         if lacking:
             of = "" if lacking == [need] else f" of {', '.join(lacking)}"
-            raise WrongStates(need, f"is needed and missing{of}", "all that the scene asks for")
+            form = "one number for each instant" if lacking == [need] else "an array for each of these"
+            raise WrongStates(need, f"is needed and missing{of}", form)
 
 
 def numbers_of(states: Mapping[str, Any], scene: Scene) -> tuple[Array, list[Array]]:

@@ -1,6 +1,7 @@
 """Baselines: what moved beyond what both claims allow, and what cannot be held to one."""
 
 import json
+import sys
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -120,7 +121,15 @@ def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:
     assert odd.pop(("absolute", "position", "brake")) == "new"
     assert {(who, what) for who, what, _ in odd} == {("pointcoord", "velocity")}
     assert set(odd.values()) == {"gone"}
-    assert since.status is ExitStatus.AGREE
+    assert since.lost
+    assert since.status is ExitStatus.DISAGREE
+    # More than then is no loss, and neither is a formulation that is not asked.
+    grown = replace(OUTCOME, solutions=(one, two.with_numbers(more)))
+    assert saved(tmp_path).since("steer", SCENE, [grown]).status is ExitStatus.AGREE
+    other = replace(OUTCOME, solutions=(one, replace(two, formulation="another")))
+    told = saved(tmp_path).since("steer", SCENE, [other])
+    assert not told.lost
+    assert told.status is ExitStatus.AGREE
     renamed = replace(
         OUTCOME, solutions=tuple(replace(s, formulation=s.formulation + "x") for s in (one, two))
     )
@@ -231,7 +240,7 @@ def test_the_program_says_what_moved_what_is_new_and_what_is_gone(
     (row,) = (line for line in out.splitlines() if line.endswith("MOVED"))
     assert row.split()[:3] == ["absolute", "position", "wheel_centre"]
     assert f"Since the baseline: {three} is not in the baseline." in out
-    assert f"1 of 1 scenes moved: {one}; gone, in the baseline and not in this run: {two}." in out
+    assert f"1 of 1 scene moved: {one}; gone, in the baseline and not in this run: {two}." in out
     document = json.loads(data.read_text())
     assert [scene["exit_status"] for scene in document["scenes"]] == [0, 0]
     held = document["baseline"]
@@ -249,6 +258,33 @@ def test_the_program_says_what_moved_what_is_new_and_what_is_gone(
     assert suites[f"{one}: since the baseline"].get("failures") == "1"
     assert suites[f"{three}: since the baseline"].get("skipped") == "1"
     assert suites[f"{two}: since the baseline"].get("skipped") == "1"
+
+
+def test_numbers_that_are_given_no_more_end_with_1_and_are_named_in_the_last_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept, scene, tests = str(tmp_path / "b.npz"), short_scene(tmp_path, "one.toml"), tmp_path / "x.xml"
+    solver = "def solve(given):\n    place = given['points']['rack_centre']\n"
+    solver += (
+        "    import numpy as np\n    rack = np.outer(given['inputs']['rack']['position'], given['right'])\n"
+    )
+    solver += "    found = {'tie_rod_inner': np.array(place) - rack}\n"
+    module = tmp_path / "some_of_it.py"
+    monkeypatch.chdir(tmp_path)
+    words = ["validate", scene, "--solver", "some_of_it:solve", "--in-process"]
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    rack = "    return {'position': found | {'rack_centre': [place] * len(given['instants'])}}\n"
+    module.write_text(solver + rack, encoding="utf-8")
+    assert main([*words, "--save-baseline", kept]) == 3
+    sys.modules.pop("some_of_it")
+    module.write_text(solver + "    return {'position': found}\n", encoding="utf-8")
+    capsys.readouterr()
+    assert main([*words, "--baseline", kept, "--junit", str(tests)]) == 1
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert f"; given then and not now: {scene}: position of rack_centre by some_of_it:solve." in last
+    suite = next(s for s in checked(tests.read_bytes()) if s.get("name") == f"{scene}: since the baseline")
+    (failure,) = suite.iter("failure")
+    assert failure.get("type") == "gone"
 
 
 def test_a_run_that_has_nothing_in_its_baseline_has_no_verdict(

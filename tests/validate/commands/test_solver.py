@@ -11,6 +11,7 @@ import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints
 
 from pointcoord import Scene
+from validate.ci.summary import markdown
 from validate.cli import main
 from validate.solvers.apart import Apart
 from validate.solvers.plain import SolverFailed, given_to_solver
@@ -24,16 +25,21 @@ MODULES = {
     "wrong": RIGHT.replace("return closed_form(given)", 'a = closed_form(given)["wheel"]\n')
     + '    return {"camber": -a["camber"], "toe": a["toe"]}\n',
     "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n  def __init__(self, a): ...\n",
-    "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n"
-    "    return {'position': {'rack_centre': [given['points']['rack_centre']] * len(given['instants'])}}\n",
+    "some": "def solve(given):\n    if given['suspension'] == 'macpherson':\n        raise SystemExit(5)\n",
     "none": "def solve(given):\n    return None\n",
     "broken": "import nothing_of_that_name\n",
     "odd": "x = 1 / 0\n",
+    "unread": "def solve(\n",
     "exits": "import os\nos._exit(7)\n",
 }
 STRUT = "    if given['suspension'] == 'macpherson':\n        "
 CHASSIS = "    place = given['points']['rack_centre']\n"
 CHASSIS += "    return {'position': {'rack_centre': [place] * len(given['instants'])}}\n"
+# The point of the rack, which moves.
+RACK = "    import numpy as np\n    x, place = given['inputs'], np.array(given['points']['rack_centre'])\n"
+RACK += "    place = place - np.outer(x['rack']['position'], given['right'])\n"
+RACK += "    place = place + np.outer(x['heave']['position'], given['up'])\n"
+RACK += "    return {'position': {'tie_rod_inner': place}}\n"
 # What becomes of a strut with it; a double wishbone it answers.
 ENDS = {
     "leaves": ("os._exit(0)", "ended with exit status 0 and without an answer"),
@@ -44,11 +50,10 @@ ENDS = {
     "writes": ("given['instants'][0] = 1.0", "ValueError: assignment destination is read-only"),
     "counts": ("raise ValueError(os.getpid())", "ValueError"),
 }
+MODULES["some"] += RACK
 HANGS = {"hangs": "while True: pass", "waits": "os.system('sleep 60')"}
-MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, what in HANGS.items()}
-MODULES |= {
-    name: f"import os\ndef solve(given):\n{STRUT}{what}\n{CHASSIS}" for name, (what, _) in ENDS.items()
-}
+MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{RACK}" for name, what in HANGS.items()}
+MODULES |= {name: f"import os\ndef solve(given):\n{STRUT}{what}\n{RACK}" for name, (what, _) in ENDS.items()}
 
 
 @pytest.fixture
@@ -99,6 +104,21 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
     assert run("own_solvers.wrong:solve", "--accuracy", "1e3", "off-axis-strut.toml") == 3
 
 
+def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    tests, summary = solvers / "t.xml", solvers / "s.md"
+    files = ["--junit", str(tests), "--summary", str(summary)]
+    assert run("own_solvers.wrong:solve", "off-axis-strut.toml", *files) == 1
+    why = capfd.readouterr().out.partition("  what would explain it: ")[2].splitlines()[0]
+    assert "camber" in why
+    assert "sign" in why
+    (failure,) = ElementTree.parse(tests).getroot().iter("failure")
+    assert f"; what would explain it: {why}" in failure.get("message", "")
+    (line,) = (one for one in summary.read_text("utf-8").splitlines() if "what would explain it" in one)
+    assert line.endswith(f"; what would explain it: {markdown(why)}")
+
+
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
     words = ["validate", "--solver", "own_solvers.prints:solve", "off-axis-strut.toml", "--json", "-"]
     # The tests' own folder, not ROOT's: ROOT is where the packages are installed.
@@ -142,6 +162,10 @@ def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest
         (["own_solvers.raises:Twice"], "cannot be made without arguments: TypeError"),
         (["own_solvers.broken:solve"], "No module named 'nothing_of_that_name' at broken.py:1"),
         (["own_solvers.odd:solve"], "ZeroDivisionError: division by zero at odd.py:1"),
+        (
+            ["own_solvers.unread:solve"],
+            "SyntaxError: '(' was never closed (unread.py, line 1); mend the module",
+        ),
         (["own_solvers/right.py:solve"], "try own_solvers.right:solve"),
         (["own_solvers.right"], "give MODULE:NAME"),
         ([""], "give MODULE:NAME"),
@@ -252,6 +276,22 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
         told.append(out)
     assert told[0] == told[1]
     assert "velocity is of type Odd" in told[0]
+
+
+def test_how_much_was_compared_is_said_and_points_of_the_chassis_are_no_agreement(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (solvers / "own_solvers" / "chassis.py").write_text(f"def solve(given):\n{CHASSIS}", encoding="utf-8")
+    tests = solvers / "tests.xml"
+    assert run("own_solvers.chassis:solve", "off-axis-strut.toml", "--junit", str(tests)) == 3
+    out = capfd.readouterr().out
+    assert "  no verdict: whatever agrees is what the solver was given" in out
+    count = sum(map(len, given_to_solver(Scene.load("off-axis-strut"))["asked"].values()))
+    assert out.rstrip().endswith(
+        f"; 1 of {count} numbers compared, 1 of them data that the solver was given, {count - 1} not given."
+    )
+    (error,) = ElementTree.parse(tests).getroot().iter("error")
+    assert error.get("message", "").startswith("no verdict: whatever agrees is what the solver was given")
 
 
 @pytest.mark.parametrize(

@@ -133,6 +133,43 @@ def test_what_is_left_out_is_told(answer: dict[Any, Any], said: str) -> None:
     assert said in "\n".join(check(lambda given: answer, SCENE).notes)
 
 
+CHASSIS = {name: RIGHT["position"][name] for name in SCENE.mechanism.topology.chassis}
+
+
+def at_rest(theta: float) -> Scene:
+    """The car with its arm at an angle and its rack at the middle, for five instants."""
+    return Scene.from_mapping(
+        scene_content(CAR, (theta, 0.0, 0.0), (0.0, 0.0), start=-0.5, stop=0.5, samples=5), "resting"
+    )
+
+
+def test_giving_back_what_was_given_tells_nothing() -> None:
+    outcome = check(lambda given: {"position": CHASSIS}, SCENE)
+    assert [row.name for row in outcome.rows if row.verdict == "agrees"] == list(CHASSIS)
+    assert not outcome.disagreements
+    assert not outcome.passed
+    assert "what the solver was given" in outcome.why_no_verdict
+    assert outcome.counts["given back"] == outcome.counts["agrees"] == len(CHASSIS)
+    moving = {**CHASSIS, "wheel_centre": RIGHT["position"]["wheel_centre"]}
+    told = check(lambda given: {"position": moving}, SCENE)
+    assert told.passed
+    assert [row.name for row in told.rows if row.verdict == "agrees" and row.telling] == ["wheel_centre"]
+
+
+def test_points_of_a_car_that_rests_tell_only_where_they_are_not_as_drawn() -> None:
+    drawn = CAR.points
+    up, front, ball = (np.array(p) for p in (CAR.up, drawn["lower_arm_front"], drawn["lower_ball_joint"]))
+    theta = float(np.arccos((ball - front) @ up / np.linalg.norm(ball - front)))
+    for resting, tells in ((at_rest(theta), False), (at_rest(theta + 0.01), True)):
+        right = closed_form(given_to_solver(resting))
+        outcome = check(lambda given, right=right: {"position": right["position"]}, resting)
+        assert not outcome.disagreements
+        assert outcome.passed is tells
+        still = check(lambda given, right=right: {"velocity": right["velocity"]}, resting)
+        assert not still.passed
+        assert check(lambda given, right=right: {"camber": right["wheel"]["camber"]}, resting).passed
+
+
 UNUSABLE = {
     "transposed": {"position": {"wheel_centre": RIGHT["position"]["wheel_centre"].T}},
     "one instant less": {"toe": RIGHT["wheel"]["toe"][1:]},
@@ -213,3 +250,19 @@ def test_the_stated_accuracy_stands_beside_the_comparison() -> None:
     outcome = check(closed_form, SCENE, accuracy=1e-4)
     assert report.outcome_data(outcome)["accuracy"] == 1e-4
     assert report.outcome_data(compare(SCENE, "pointcoord", "absolute"))["accuracy"] is None
+
+
+def test_verdicts_are_counted_and_said_in_plain_words() -> None:
+    angles = RIGHT["wheel"]
+    nan = angles["toe"] * np.nan
+    outcome = check(lambda given: {"toe": nan, "camber": angles["camber"], "caster": angles["caster"]}, SCENE)
+    assert ", 2 agree" in repr(outcome)
+    assert "1 disagrees" in repr(outcome)
+    text = report.outcome_text(outcome)
+    assert "DISAGREES, not a number" in text
+    assert " inf " not in text
+    one = Scene.from_mapping(
+        scene_content(CAR, (1.6, 0.12, -0.3), (4.0, -25.0), start=0.5, stop=0.5, samples=1), "one"
+    )
+    alone = closed_form(given_to_solver(one))["wheel"]
+    assert "pointcoord, 1 instant\n" in report.outcome_text(check(lambda given: alone, one))

@@ -122,13 +122,21 @@ def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are
     assert assert_agrees(good | {"iterations": 3, "seconds": [0.1]}, SCENE).passed
 
 
+def test_points_that_stay_where_they_are_drawn_are_no_agreement(states) -> None:
+    chassis = {name: states["position"][name] for name in SCENE.mechanism.topology.chassis}
+    with pytest.raises(
+        AssertionError, match=r"say nothing of .*: whatever agrees is what the solver was given"
+    ):
+        assert_agrees({"position": chassis}, SCENE)
+
+
 def test_what_is_needed_must_be_there_all_of_it(states) -> None:
     assert assert_agrees(states, SCENE, needed=("position", "camber", "wheel")).passed
     alone = {"camber": states["wheel"]["camber"]}
     assert assert_agrees(alone, SCENE, needed=("camber",)).passed
     for needed, words in (
         ("velocity", "velocity is needed and missing of lower_arm_front, "),
-        ("toe", "toe is needed and missing; needed: all that the scene asks for"),
+        ("toe", "toe is needed and missing; needed: one number for each instant"),
         ("wheel", "wheel is needed and missing of kingpin"),
         ("tow", "'tow' is needed, and the scene does not ask for it (did you mean 'toe'?)"),
     ):
