@@ -93,7 +93,10 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         return ()
     found = list(_supposed(evidence, _quick()))
     if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
-        deep = list(_supposed(evidence, [kind for kind in kinds() if kind.solves]))
+        solving = [kind for kind in kinds() if kind.solves]
+        deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
+        if _open(evidence, deep):
+            deep += _supposed(evidence, [kind for kind in solving if not kind.first])
         found += deep
         for one in _ranked(deep)[:1]:
             # What other faults the same car has beside it.
@@ -334,15 +337,19 @@ def _same(one: _Found, other: _Found) -> bool:
     return first == second
 
 
-def _undone(evidence: Evidence, found: _Found, quantity: str) -> bool:
-    """Whether rows of a quantity agree that a fault, if it were in all of them, would be seen in."""
+def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
+    """Whether a quantity has rows that a fault does not explain, or that agree and would not under it."""
     for row in evidence.held:
-        if row[0] != quantity or row in evidence.wrong:
+        if row[0] != quantity or row in found.rows:
             continue
         if row in found.hypothesis.rows:
             if evidence.left(row, *found.hypothesis.rows[row]) > 1.0:
                 return True
-        elif order(row) == 0 or (np.abs(evidence.held[row]) > evidence.rounded(row)).any():
+        elif (
+            row in evidence.wrong
+            or order(row) == 0
+            or (np.abs(evidence.held[row]) > evidence.rounded(row)).any()
+        ):
             return True
     return False
 
@@ -354,7 +361,7 @@ def _told(evidence: Evidence, found: _Found) -> Explanation:
         rows = [row for row in found.rows if row[0] == quantity]
         if not rows:
             continue
-        every = set(evidence.wrong_of(quantity)) <= set(rows) and not _undone(evidence, found, quantity)
+        every = not _left_out(evidence, found, quantity)
         if kind_of(rows[0]) != "car" and every:
             quantities.append(quantity)
             said.append(QUANTITIES[quantity].words)

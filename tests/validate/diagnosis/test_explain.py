@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, sweep
 from pointcoord.method import AUTO
+from pointcoord.scene.scene_file import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain, explain_outcome
@@ -408,6 +409,62 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
         "quantities": ("wheel.camber",),
         "leftover": found[0].leftover,
     }
+
+
+def with_input(name: str, given: str, change: Callable[[InputPart], InputPart]) -> Numbers:
+    """The numbers of a solver that takes an input otherwise than it is given."""
+    scene, _ = solved(name)
+    other = scene.model_copy(update={"inputs": {**scene.inputs, given: change(scene.inputs[given])}})
+    return formulation("pointcoord").solve(other).numbers
+
+
+def scaled(factor: float) -> Callable[[InputPart], InputPart]:
+    """Of laws that are polynomials or sines, as those of the built-in cars are."""
+
+    def change(law: InputPart) -> InputPart:
+        if law.sine is not None:
+            wave = {"amplitude": factor * law.sine.amplitude, "offset": factor * law.sine.offset}
+            return law.model_copy(update={"sine": law.sine.model_copy(update=wave)})
+        assert law.polynomial is not None
+        return law.model_copy(update={"polynomial": tuple(factor * c for c in law.polynomial)})
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (-1.0, "the input rack has the other sign"),
+        (0.5, "the input rack is taken 0.5 times"),
+        (21.0 / 20.0, "the input rack is taken 1.05 times"),
+        (20.0 / 21.0, "the input rack is taken 0.952381 times"),
+    ],
+)
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+def test_a_wrong_input_is_the_first_and_only_diagnosis(name: str, factor: float, words: str) -> None:
+    (only,) = diagnosis(name, with_input(name, "rack", scaled(factor)))
+    assert (only.kind, only.leftover <= 1.0) == ("input", True)
+    assert only.words.endswith(words)
+    assert {"position", "velocity", "acceleration"} <= set(only.quantities)
+
+
+def test_two_wrong_inputs_are_no_other_assembly() -> None:
+    # They keep all lengths, and are away from ours by millimetres.
+    scene, _ = solved("double-wishbone")
+    laws = {"rack": scaled(1.05), "arm_angle": scaled(1.002)}
+    inputs = {name: laws[name](law) for name, law in scene.inputs.items()}
+    wrong = formulation("pointcoord").solve(scene.model_copy(update={"inputs": inputs}))
+    assert all(one.kind != "branch" for one in diagnosis("double-wishbone", wrong.numbers))
+
+
+def test_an_arm_angle_from_the_other_side_is_told() -> None:
+    def other(law: InputPart) -> InputPart:
+        assert law.sine is not None
+        wave = {"amplitude": -law.sine.amplitude, "offset": np.pi - law.sine.offset}
+        return law.model_copy(update={"sine": law.sine.model_copy(update=wave)})
+
+    (only,) = diagnosis("double-wishbone", with_input("double-wishbone", "arm_angle", other))
+    assert only.words.endswith("the input arm_angle is taken as pi minus it")
 
 
 def test_another_assembly_of_the_same_links_is_told_as_one() -> None:

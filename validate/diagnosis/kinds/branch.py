@@ -1,7 +1,7 @@
 """Another assembly: places that keep every length of the drawing, at the same inputs, elsewhere.
 
 Whoever draws the car as it stands there draws the same links. So that drawing is solved for the same inputs:
-if the given numbers are that car's, they are another assembly of ours.
+if the given places are that car's at every instant, they are another assembly of ours.
 """
 
 from __future__ import annotations
@@ -67,6 +67,13 @@ class Branch(Kind):
                 value[:first] = evidence.held[row][:first]
                 # The drawing is made of given numbers: they are off twice, as it and at each instant.
                 rows[row] = (value, 4.0 * evidence.rounded(row, value))
+        # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
+        if any(
+            not np.abs(evidence.given[row] - rows[row][0]).max() <= KEPT * size
+            for row in placed.values()
+            if row in rows
+        ):
+            return
         when = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
         words = f"another assembly of the same links{when}: all {len(links)} lengths are kept"
         yield Hypothesis(self.name, "branch", words, rows, whole=True)

@@ -49,7 +49,7 @@ class Hardpoint(Kind):
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """The likeliest, with more coordinates only where fewer do not do."""
         few = _fewer(evidence)
-        looked = _looked_at(evidence)
+        looked = looked_at(evidence)
         if few is None or not looked:
             return
         scene, some = few
@@ -87,7 +87,7 @@ class Hardpoint(Kind):
                 return
 
 
-def _looked_at(evidence: Evidence) -> tuple[Row, ...]:
+def looked_at(evidence: Evidence) -> tuple[Row, ...]:
     """Numbers of one unit that disagree: positions if there are any, then angles, else what comes first."""
     for of in ("mm", "rad"):
         best = [row for row in evidence.wrong if length_or_angle(row) == of and order(row) == 0]

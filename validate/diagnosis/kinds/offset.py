@@ -39,6 +39,7 @@ class Offset(Kind):
             vector = np.ndim(gap) == 1
             clear = np.abs(gap).max() > 8.0 * evidence.rounded(row).max()
             if np.isfinite(gap).all() and clear and len(evidence.times) > 2:
+                gap = np.where(np.abs(gap) <= evidence.rounded(row).max(), 0.0, gap)
                 said = f"({', '.join(f'{c:.6g}' for c in gap)})" if vector else f"{gap:.6g}"
                 words = f"a constant offset of {said} {evidence.unit_of(row)}"
                 rows = {row: self._less(evidence, row, -gap)}
