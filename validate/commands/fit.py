@@ -37,7 +37,8 @@ DESCRIPTION = """\
 Find the corrections of hardpoints that best explain a file of results, by least squares, each
 number weighed by the digits that it is written with. Says what is left, how well each correction
 is known, and which combinations of coordinates the data cannot see. Where there are such, the
-answer is one of many: the one that moves the hardpoints least."""
+answer is one of many: the likeliest if every coordinate is off by --prior or so, not the one that
+moves the fewest hardpoints. Where you know which points are in doubt, name them by --free."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -71,7 +72,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         type=float,
         default=PRIOR,
         help="how far off a coordinate is thought to be, a standard deviation: the smaller, the less "
-        f"hardpoints move ({PRIOR:g} if not given, which settles only what the data leave open)",
+        f"hardpoints move along what the data leave open ({PRIOR:g} if not given, a fifth of the bounds that "
+        "are taken then)",
     )
     parser.add_argument(
         "--accuracy",

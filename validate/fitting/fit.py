@@ -43,13 +43,20 @@ from validate.measured.mapping import Measured
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-BOUNDS, PRIOR = 25.0, 100.0  # mm
+BOUNDS = 25.0  # mm, that no hardpoint of a drawing of this car is off by
+# Then they are five standard deviations out, which of 1e6 coordinates less than one is beyond. A wider prior
+# lets rounding of digits move hardpoints along what the file hardly sees: with 100 mm by 24 mm together where
+# one is off by 5, in a table of four decimals.
+PRIOR = BOUNDS / 5.0
 # What a number is known to at best, however many digits it has: 0.1 um, and what that is on a wheel.
 LEAST = {"mm": 1e-4, "rad": 3e-7}
 # Parts of what is left: the search ends where a step lessens it by no more.
 ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
+# Of the bounds: how far a correction may go along what the file cannot see, where it is asked what the file
+# alone knows. So a coordinate is unknown that has a quarter of such a combination.
+OPEN = 4.0
 MOST_SOLVES = 60
 NAMED = 3  # rows that are left out, one by one
 KEPT = 3  # solved designs that are remembered
@@ -98,6 +105,7 @@ class Fit:
         scene: corrected.
         drawn, corrections: by coordinate, mm.
         deviations: by coordinate, mm; of one on its bound 0: it is held there.
+        unknown: coordinates that the file does not know to within the bounds, whatever the prior says.
         widening: how many deviations to either side hold in 95 of 100 files.
         columns: of the file.
         combinations: of the corrections, the best known first.
@@ -113,6 +121,7 @@ class Fit:
     drawn: dict[str, float]
     corrections: dict[str, float]
     deviations: dict[str, float]
+    unknown: tuple[str, ...]
     widening: float
     columns: tuple[Fitted, ...]
     combinations: tuple[Combination, ...]
@@ -141,9 +150,9 @@ class Fit:
         return tuple(n for n, amount in self.corrections.items() if _on_bound(amount, self.bounds))
 
     def interval(self, coordinate: str) -> tuple[float, float]:
-        """Where the correction lies in 95 of 100 files, mm."""
-        half = self.widening * self.deviations[coordinate]
-        return self.corrections[coordinate] - half, self.corrections[coordinate] + half
+        """Where the correction lies in 95 of 100 files, mm, and within the bounds."""
+        half, amount = self.widening * self.deviations[coordinate], self.corrections[coordinate]
+        return max(amount - half, -self.bounds), min(amount + half, self.bounds)
 
     def rms(self, unit: str) -> tuple[float, float, int]:
         """Before and after, over all columns of a unit, and how many numbers these are."""
@@ -232,8 +241,9 @@ def fit_hardpoints(
     factor = max(1.0, estimated)
     with np.errstate(divide="ignore"):
         deviations = factor / singular
-    variance = np.zeros(len(zero))
+    variance, alone = np.zeros(len(zero)), np.zeros(len(zero))
     variance[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2))
+    alone[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + (OPEN * bounds) ** -2))
     tail = 0.5 * (1.0 + CONFIDENCE)
     better = lsq_linear(whole, -rest, bounds=(-bounds - amounts, bounds - amounts))
     return Fit(
@@ -241,6 +251,9 @@ def fit_hardpoints(
         {name: _place(scene, name) for name in curves.free},
         dict(zip(curves.free, amounts.tolist(), strict=True)),
         dict(zip(curves.free, np.sqrt(variance).tolist(), strict=True)),
+        tuple(
+            name for name, open_ in zip(curves.free, np.sqrt(alone).tolist(), strict=True) if open_ >= bounds
+        ),
         float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail)),
         _columns(measured, used, gap(first), after, spread),
         tuple(

@@ -46,7 +46,7 @@ def text_of(fit: Fit, name: str, source: str) -> str:
             lines.append(f"{said}   on its bound, and held there")
             continue
         low, high = fit.interval(one)
-        open_ = "   not known from these data" if deviation >= fit.bounds else ""
+        open_ = "   not known from these data" if one in fit.unknown else ""
         lines.append(f"{said} +- {deviation:.2g}   {low:+z.4f} to {high:+z.4f}{open_}")
     lines += [
         "",
@@ -64,8 +64,9 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         "",
         f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
         "coordinates.",
-        f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it; any of "
-        "them may be added, to first order:",
+        f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it: a choice, no "
+        "finding; fewer --free coordinates narrow it.",
+        "  Any of them may be added, to first order:",
     ]
     lines += [f"    {words}" for words in unseen_words(fit)]
     return "\n".join(lines)

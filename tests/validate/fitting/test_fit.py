@@ -18,7 +18,7 @@ from validate import paper
 from validate.cli import main
 from validate.exit_status import ExitStatus
 from validate.fitting.curves import Curves
-from validate.fitting.fit import Fit, fit_hardpoints, free_coordinates
+from validate.fitting.fit import PRIOR, Fit, fit_hardpoints, free_coordinates
 from validate.fitting.words import combination, simplest, text_of, unseen_words, warnings_of_fit
 from validate.measured.poses import poses_of
 from validate.output.document import schema_text
@@ -252,6 +252,53 @@ def test_a_hardpoint_misread_by_5_mm_is_found_to_the_noise(over: str) -> None:
         # Digits are spread evenly: their sums are within four deviations but for one in 10^4.
         assert abs(fit.corrections[name] - right) < 4.0 * fit.deviations[name], name
     assert fit.deviations["upper_ball_joint.y"] < 0.1
+
+
+@cache
+def with_every_point_free(prior: float) -> Fit:
+    """Curves over the arm's angle of a car whose upper ball joint is 5 mm higher, in four decimals."""
+    right = designs_of(CAR, offsets={"upper_ball_joint.z": 5.0}).design(0)
+    found = at_inputs(right, {"arm_angle": (1.35, 1.75), "rack": (0.0, 0.0)}, 13)
+    angles = {f"wheel.{n} [deg]": np.degrees(a) for n, a in found["wheel"].items()}
+    places = {
+        f"position.wheel_centre.{a} [mm]": found["position"]["wheel_centre"][:, i]
+        for i, a in enumerate("xyz")
+    }
+    text = table({"input.arm_angle [rad]": np.linspace(1.35, 1.75, 13), **angles, **places}, 4)
+    exact = {"input.arm_angle": {"printed": 0}}
+    return fit_hardpoints(CAR, measured(text, CAR, columns=exact, held={"rack": 0.0}), prior=prior)
+
+
+def test_one_coordinate_off_by_5_mm_is_found_as_such_where_all_are_free() -> None:
+    fit, wide = with_every_point_free(PRIOR), with_every_point_free(100.0)
+    assert fit.converged
+    # Digits are explained as well by moving much else.
+    assert fit.factor == wide.factor == 1.0
+    assert not fit.unique
+    off, more = (
+        {n: a - 5.0 * (n == "upper_ball_joint.z") for n, a in one.corrections.items()} for one in (fit, wide)
+    )
+    assert max(map(abs, off.values())) < 1.5
+    assert max(map(abs, more.values())) > 2.0 * max(map(abs, off.values()))
+    said = text_of(fit, "x", "y")
+    assert "the prior of 5 mm makes it: a choice, no finding" in said
+
+
+@pytest.mark.parametrize("prior", [2.0, PRIOR, 100.0])
+def test_what_is_not_known_is_marked_whatever_the_prior_and_no_interval_leaves_the_bounds(
+    prior: float,
+) -> None:
+    fit = with_every_point_free(prior)
+    # The wheel's centre is in the file; the spin axis's inner point may go along the axis.
+    assert "wheel_axis_inner.y" in fit.unknown
+    assert "wheel_centre.y" not in fit.unknown
+    assert fit.unknown == with_every_point_free(PRIOR).unknown
+    said = text_of(fit, "x", "y").splitlines()
+    line = next(line for line in said if line.startswith("    wheel_axis_inner.y "))
+    assert line.endswith("not known from these data")
+    for name in fit.corrections:
+        low, high = fit.interval(name)
+        assert -fit.bounds <= low <= fit.corrections[name] <= high <= fit.bounds
 
 
 def test_intervals_hold_the_right_car_as_often_as_they_say() -> None:
