@@ -55,6 +55,8 @@ class Read(HTMLParser):
             self._into = "script"
         elif tag == "p" and given.get("role") == "status":
             self._into = "verdict"
+        elif tag == "small" and self._into == "verdict":
+            self._into = None
 
     def handle_endtag(self, tag: str) -> None:
         if tag in ("th", "td", "p", "script"):
@@ -138,7 +140,7 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
 def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
     run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
     read = Read(page(run, FILES))
-    assert read.verdict == "0 of 1 scene agrees; not tested: no such."
+    assert read.verdict == "0 of 1 scenes agree; not tested (wrong input): no such."
     assert run.status == 2
 
 
