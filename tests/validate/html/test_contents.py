@@ -312,7 +312,9 @@ def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> Non
     assert mine["y"] == [1e-6]
     assert "<" not in json.dumps(plot)
     # Times are neither right nor wrong.
-    assert shown.verdict == ("", "")
+    assert shown.verdict[0] == "verdict measured"
+    assert "Exit status 0" in shown.text
+    assert shown.of("command")[0][1][1] == "pointcoord cost"
 
 
 def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
@@ -414,6 +416,8 @@ def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_p
     assert (document["kind"], document["verdict"]) == ("hard", "agree")
     shown = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
     assert shown.verdict[0] == "verdict agrees"
+    assert shown.of("accuracy against time")[0][1][1] == "pointcoord cost --report DIR"
+    assert not shown.of("hard cases")
     assert "1 hard case at " in shown.verdict[1]
     answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
     with (tmp_path / "hard.csv").open(newline="") as stream:
@@ -543,3 +547,15 @@ def test_a_verdict_tells_disagreements_first_and_each_reason_once_with_its_scene
     assert velocity.startswith("steer, double-wishbone, bounce: not given: ")
     (closing,) = [line for line in lines if "closing the drawing moves wheel_centre" in line]
     assert closing.startswith("steer, bounce: ")
+
+
+def test_a_drawing_that_closes_to_rounding_is_told_so_and_no_number_of_rounding_is_shown(
+    wide: Examined,
+) -> None:
+    assert wide.closing is not None
+    assert 0.0 < wide.closing["largest"] < 1e-6
+    telling = Telling(1)
+    telling.add(wide, Scene.load("double-wishbone"))
+    text = read(Run(head(), tuple(telling.told))).text
+    assert "it closes, no point moves by more than rounding" in text
+    assert "closing it moves" not in text

@@ -28,8 +28,10 @@ def _blocks(run: Run) -> Sequence[Block]:
     notes = [Paragraph(line) for line in lines[:LINES]]
     if len(lines) > LINES:
         notes.append(Paragraph(f"{len(lines) - LINES} more such lines are in the data beside this page."))
-    # Times compare nothing that could be right or wrong.
-    verdict = "" if run.head.kind == "cost" else VERDICTS.get(run.status, "not tested")
+    verdict = VERDICTS.get(run.status, "not tested")
+    if run.head.kind == "cost" and run.status is ExitStatus.AGREE:
+        # Times compare nothing that could be right or wrong.
+        verdict = "measured"
     status = f"Exit status {run.status.value}: {run.status.verdict}"
     return [Paragraph(run.sentence, verdict, status), *notes]
 
