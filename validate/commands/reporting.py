@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from validate.commands.usage import UsageError
@@ -26,8 +26,19 @@ def add_report(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _nothing(run: Run) -> Run:
-    return run
+# What a page of each kind can hold, and the command that makes a page with it.
+ELSEWHERE = {
+    "validate": ("scenes held to two formulations", "pointcoord report DIR SCENE"),
+    "hard": ("hard cases", "pointcoord hard --report DIR"),
+    "cost": ("accuracy against time", "pointcoord cost --report DIR"),
+    "": ("the paper's figures, tables and errata, other programs' tables", "pointcoord report DIR"),
+}
+
+
+def _nothing_more(run: Run) -> Run:
+    """The run as it is, which names what else pages hold."""
+    there = {run.head.kind, *([""] if run.paper else ())}
+    return replace(run, left_out=tuple(row for kind, row in ELSEWHERE.items() if kind not in there))
 
 
 @dataclass(frozen=True)
@@ -40,7 +51,7 @@ class Page:
     """
 
     folder: str
-    with_more: Callable[[Run], Run] = _nothing
+    with_more: Callable[[Run], Run] = _nothing_more
     option: str = "--report "
 
     @property

@@ -58,6 +58,16 @@ class Told:
         return "disagrees" if status is ExitStatus.DISAGREE else "not tested"
 
     @property
+    def why_not(self) -> str:
+        """Why a scene is not tested, in a word or two; empty of one that is, or whose claims are too wide."""
+        status = self.examined.status
+        if self.verdict != "not tested" or not self.examined.complaint:
+            return ""
+        if status is ExitStatus.WRONG_INPUT:
+            return status.verdict
+        return "failed" if status is ExitStatus.NOT_FINISHED else "refused"
+
+    @property
     def stopped(self) -> str:
         """Why no two models could be compared on the scene; empty if they were."""
         if self.examined.outcomes or not self.examined.complaint:
@@ -168,10 +178,10 @@ class Run:
             return []
         by_verdict: dict[str, list[str]] = {}
         for one in self.told:
-            by_verdict.setdefault(one.verdict, []).append(one.examined.name)
+            word = f"{one.verdict} ({one.why_not})" if one.why_not else one.verdict
+            by_verdict.setdefault(word, []).append(one.examined.name)
         agreeing = len(by_verdict.pop("agrees", ()))
-        noun, verb = ("scene", "agrees") if count == 1 else ("scenes", "agree")
-        parts = [f"{agreeing} of {count} {noun} {verb}"]
+        parts = [f"{agreeing} of {count} scenes agree"]
         parts += [f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items())]
         if self.record is not None and not_run:
             parts.append(f"not run ({self.record.stopped}): {named(not_run)}")

@@ -30,12 +30,13 @@ class Block(Protocol):
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Text, and what kind of verdict it tells, if any."""
+    """Text, and what kind of verdict it tells, if any, with small print below it."""
 
     template: ClassVar[str] = "paragraph.html"
     scripts: ClassVar[tuple[str, ...]] = ()
     text: str
     verdict: str = ""
+    detail: str = ""
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,8 @@ class Read(HTMLParser):
         elif tag == "p" and given.get("role") == "status":
             self.verdict = (given.get("class") or "", "")
             self._into = "verdict"
+        elif tag == "small" and self._into == "verdict":
+            self._into = "small print"
         elif tag in ("script", "style"):
             self._into = "code"
 
@@ -176,7 +178,7 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
         k: v for k, v in document.items() if k != "written"
     }
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
-    assert shown.verdict == ("verdict disagrees", "0 of 1 scene agrees; disagrees: steer.")
+    assert shown.verdict == ("verdict disagrees", "0 of 1 scenes agree; disagrees: steer.")
     (row,) = shown.of("steer")[:1]
     assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
     assert "disagree in position of tie_rod_inner" in shown.text
@@ -191,6 +193,10 @@ def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> Non
     assert main(words) == 2
     shown = Read((tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
     assert shown.verdict[0] == "verdict not-tested"
+    refused, broken = shown.verdict[1].index("(refused)"), shown.verdict[1].index("(wrong input)")
+    assert refused < shown.verdict[1].index("too far.toml")
+    assert broken < shown.verdict[1].index("broken.toml")
+    assert "Exit status 2: wrong input" in shown.text
     for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
         row = next(row for row in shown.rows if row and row[0][1].endswith(name))
         assert row[1][0] == "not-tested"
@@ -306,7 +312,9 @@ def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> Non
     assert mine["y"] == [1e-6]
     assert "<" not in json.dumps(plot)
     # Times are neither right nor wrong.
-    assert shown.verdict == ("", "")
+    assert shown.verdict[0] == "verdict measured"
+    assert "Exit status 0" in shown.text
+    assert shown.of("command")[0][1][1] == "pointcoord cost"
 
 
 def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
@@ -408,6 +416,8 @@ def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_p
     assert (document["kind"], document["verdict"]) == ("hard", "agree")
     shown = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
     assert shown.verdict[0] == "verdict agrees"
+    assert shown.of("accuracy against time")[0][1][1] == "pointcoord cost --report DIR"
+    assert not shown.of("hard cases")
     assert "1 hard case at " in shown.verdict[1]
     answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
     with (tmp_path / "hard.csv").open(newline="") as stream:
@@ -519,3 +529,33 @@ def test_a_scene_in_the_place_of_the_folder_is_refused_and_makes_none(
     assert not list(tmp_path.iterdir())
     assert main(["report", "-q", f"./{folder}/", "steer"]) == 0
     assert (tmp_path / folder / "index.html").is_file()
+
+
+def test_a_verdict_tells_disagreements_first_and_each_reason_once_with_its_scenes(solver: Path) -> None:
+    words = ("--in-process", "--solver", "made_solver:rack_only", "steer", "double-wishbone", "bounce")
+    main(["report", "-q", str(solver), *words])
+    text = (solver / "index.html").read_text(encoding="utf-8")
+    lines = [
+        part.partition("</p>")[0]
+        for part in text.partition('<section id="agreement"')[0].split("<p>")[1:]
+        if "</p>" in part
+    ]
+    lines = [line for line in lines if "need JavaScript" not in line]
+    assert "disagree in position of tie_rod_inner" in lines[0]
+    assert len({line.partition(": ")[2] for line in lines}) == len(lines)
+    (velocity,) = [line for line in lines if line.endswith("made_solver:rack_only gives no velocity")]
+    assert velocity.startswith("steer, double-wishbone, bounce: not given: ")
+    (closing,) = [line for line in lines if "closing the drawing moves wheel_centre" in line]
+    assert closing.startswith("steer, bounce: ")
+
+
+def test_a_drawing_that_closes_to_rounding_is_told_so_and_no_number_of_rounding_is_shown(
+    wide: Examined,
+) -> None:
+    assert wide.closing is not None
+    assert 0.0 < wide.closing["largest"] < 1e-6
+    telling = Telling(1)
+    telling.add(wide, Scene.load("double-wishbone"))
+    text = read(Run(head(), tuple(telling.told))).text
+    assert "it closes, no point moves by more than rounding" in text
+    assert "closing it moves" not in text

@@ -63,7 +63,8 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
     if not outcomes:
         verdict = one.verdict
         blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
-        yield Cell(name), Cell(verdict, complaint, verdict), *blank
+        why = f"{one.why_not}: {complaint}" if one.why_not else complaint
+        yield Cell(name), Cell(verdict, why, verdict), *blank
         return
     for i, outcome in enumerate(outcomes):
         if short and i and outcome.passed:

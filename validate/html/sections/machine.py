@@ -12,9 +12,6 @@ from validate.plain_text import shown
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    if run.head.kind == "cost":
-        # Where it was measured stands with the numbers; where the page is made tells nothing of them.
-        return []
     document = run.document
     told = {
         "command": document["command_line"],
@@ -22,7 +19,8 @@ def _blocks(run: Run) -> Sequence[Block]:
         **({} if document["started"] is None else {"started": document["started"]}),
         "exit status": f"{document['exit_status']}, {document['verdict']}",
         **dict(_settings(run)),
-        **dict(_flat(document["machine"])),
+        # Where times were measured stands with them; where the page is made tells nothing of them.
+        **({} if run.head.kind == "cost" else dict(_flat(document["machine"]))),
     }
     rows = tuple((Cell(name), Cell(shown(value))) for name, value in told.items())
     return [Grid("What this page was made by.", ("what", "value"), rows)]

@@ -26,7 +26,8 @@ ROUNDING = 1e-6
 PLACE = ALWAYS[0].quantities[0].name
 CLOSING = (
     "How far each point of the drawing moves until it closes at its own inputs, mm: links are as long as "
-    "drawn, and what does not fit moves. A large number is another car than the one drawn."
+    "drawn, and what does not fit moves. A large number is another car than the one drawn; "
+    f"rounding is less than {ROUNDING:g} mm."
 )
 
 
@@ -149,14 +150,18 @@ def _movements(one: Told) -> Mapping[str, float]:
 
 def _size(movement: float) -> str:
     # Less is rounding, and says nothing of the drawing.
-    return f"{movement:.3g}" if movement > ROUNDING else "0"
+    return f"{movement:.3g}" if movement > ROUNDING else "rounding"
 
 
 def _caption(one: Told, models: Sequence[Side]) -> str:
     lines = ("wide blue lines", "narrow orange lines")
     told = [f"{side.name} in {line}" for side, line in zip(models, lines, strict=False)]
     moved = one.examined.closing
-    closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm" if moved else ""
+    closing = ""
+    if moved:
+        closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm"
+        if moved["largest"] <= ROUNDING:
+            closing = "; it closes, no point moves by more than rounding"
     stopped = f". Stopped: {one.stopped}" if one.stopped else ""
     whose = f"{', '.join(told)}; " if told else ""
     return f"{whose}dashed: the drawing{closing}{stopped}"
