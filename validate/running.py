@@ -15,6 +15,12 @@ JOB = 'if __name__ == "__main__":'
 # Modules that need all packages of the extra, and what Python calls these.
 STUDIES = ("validate.studies.claims",)
 EXTRA = ("mpmath", "flint", "pinocchio")
+# Long studies are a command; before that they were run as modules of validate.studies.
+LONG_STUDIES = {
+    f"validate.{room}.{module}": study
+    for room in ("studies", "long_studies")
+    for module, study in (("random_runs", "random"), ("bounds", "bounds"), ("hard_runs", "hard"))
+}
 
 
 def asked_for(argv: Sequence[str], original: Sequence[str]) -> str | None:
@@ -57,6 +63,8 @@ def check_what_is_run() -> None:
     if module is None or module.partition(".")[0] != ROOT.name:
         return
     if not has_job(module):
+        if module in LONG_STUDIES:
+            _refuse(f"{module} has nothing to run; run pointcoord study {LONG_STUDIES[module]}")
         jobs = ", ".join(modules_with_a_job())
         _refuse(f"{module} has nothing to run; run pointcoord, or python -m with one of: {jobs}")
     if module in STUDIES:

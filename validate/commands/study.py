@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -170,7 +170,12 @@ def _worked_out(
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
     # Found out before a folder is made.
     scheduler.quiet_dask()
-    with records.adding_to(folder, records.Head.of(study)) as there:
+    with ExitStack() as stack:
+        cluster = None
+        if options.scheduler != LOCAL and not folder.exists():
+            # A wrong address leaves no folder behind.
+            cluster = stack.enter_context(scheduler.opened(options.scheduler))
+        there = stack.enter_context(records.adding_to(folder, records.Head.of(study)))
         recorded = there.recorded()
         missing = [number for number in numbers if number not in recorded]
         before, begun = len(numbers) - len(missing), False
@@ -189,20 +194,27 @@ def _worked_out(
                 console.written = [f"{held(0)}; the same command goes on"]
                 with (
                     progress(console, "processes start", lines=True) as told,
-                    scheduler.opened(options.scheduler, options.workers) as cluster,
+                    _open(scheduler, cluster, options) as workers,
                 ):
                     begun = True
 
                     def tell(more: int) -> None:
                         console.written = [f"{held(more)}; the same command goes on"]
-                        told(f"{study.noun}s, {cluster.words}", before + more, len(numbers))
+                        told(f"{study.noun}s, {workers.words}", before + more, len(numbers))
 
                     tell(0)
-                    run_study(study, missing, there, cluster, tell)
+                    run_study(study, missing, there, workers, tell)
             findings = found()
             console.show(findings.parts)
             ending.status = findings.status
     return ending.status
+
+
+def _open(scheduler: Any, cluster: Any, options: argparse.Namespace) -> Any:
+    """The cluster that is there already, or else the one that is asked for."""
+    if cluster is not None:
+        return nullcontext(cluster)
+    return scheduler.opened(options.scheduler, options.workers)
 
 
 def _told(findings: Findings, journal: Journal, console: Console) -> ExitStatus:

@@ -474,8 +474,21 @@ class Dial:
     @property
     def turns(self) -> bool:
         """Whether accuracy costs time for certain: quartiles apart, a slope beyond two standard errors."""
-        sure = self.fit.error is None or -self.fit.exponent > 2.0 * self.fit.error
-        return self.coarse.upper < self.fine.lower and sure
+        return self.apart and (self.fit.error is None or self.rises)
+
+    @property
+    def apart(self) -> bool:
+        """Whether the finest value takes longer than the coarsest one, their quartiles apart."""
+        return self.coarse.upper < self.fine.lower
+
+    @property
+    def rises(self) -> bool:
+        """Whether the slope over all values says that accuracy costs time, by more than two standard errors.
+
+        The slope of equal times is rounding, and so is its error: a digit must cost a thousandth at least.
+        """
+        error = self.fit.error
+        return error is not None and -self.fit.exponent > 2.0 * error and self.a_digit >= 1.001
 
 
 def dials(rows: Iterable[Row], quantity: str = "position") -> list[Dial]:

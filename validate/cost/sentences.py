@@ -286,8 +286,23 @@ def dial_sentences(dials: Iterable[Dial]) -> list[str]:
         if dial.turns:
             lines.append(f"{start}, {dial.a_digit:.3f} times for each digit; {slope}.")
         else:
-            lines.append(f"{start}: accuracy does not cost time for certain; {slope}.")
+            lines.append(f"{start}; {_not_certain(dial)}; {slope}.")
     return lines
+
+
+def _not_certain(dial: Dial) -> str:
+    """What the figures say where the two ends and the slope do not both say that accuracy costs time."""
+    ends = "the quartiles of these two "
+    if dial.apart:
+        return f"{ends}are apart, but the slope over all settings is within two standard errors of none"
+    if dial.rises:
+        return (
+            f"{ends}overlap, but the slope over all settings is beyond two standard errors: "
+            f"{dial.a_digit:.3f} times for each digit"
+        )
+    if dial.fit.error is None:
+        return f"{ends}do not show that accuracy costs time"
+    return f"neither {ends}nor the slope over all settings show that accuracy costs time"
 
 
 def growth_words(growth: Growth) -> str:

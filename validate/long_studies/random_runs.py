@@ -72,7 +72,7 @@ class Result:
         outcome: the class that it is counted in.
         reason: what there is to say of this scene alone; empty if nothing.
         shares: per quantity, the largest share of its tolerance, where both models answered.
-        kept: whether the scene is written down.
+        kept: whether the whole scene is recorded, to be looked into.
     """
 
     outcome: str
@@ -270,7 +270,11 @@ def _parts(rows: Sequence[Row]) -> tuple[Part, ...]:
         parts += ["", "Where both agreed:", Table(head, tuple(lines))]
     written = sum(row["scene"] is not None for row in rows)
     seconds = sum(row["seconds"] for row in rows)
-    parts += ["", f"{counted(len(rows), 'scene')}, {written:,} of them written down, {seconds:.0f} s."]
+    parts += [
+        "",
+        f"{counted(len(rows), 'scene')} recorded, {written:,} of them as a whole scene, to be looked "
+        f"into; {seconds:.0f} s of work, of all runs and processes.",
+    ]
     return tuple(parts)
 
 

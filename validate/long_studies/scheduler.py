@@ -348,15 +348,20 @@ def _require_scheduler(distributed: Any, address: str, words: str) -> None:
     async def answered() -> Any:
         return await asyncio.wait_for(asked(), ANSWER)
 
+    began = time.monotonic()
     try:
         answer = asyncio.run(answered())
         if not isinstance(answer, Mapping) or answer.get("type") != "Scheduler":
             raise ValueError("something else answers")
     except Exception as error:
-        told = one_line(f"{type(error).__name__}: {error}").removesuffix(": ")
+        # A limit of time that runs out has no words of its own.
+        told = one_line(str(error)) or (
+            "no answer" if isinstance(error, TimeoutError) else type(error).__name__
+        )
+        waited = f"{told}, after {time.monotonic() - began:.1f} s"
         raise NoCluster(
-            f"{words} does not answer as a Dask scheduler within {ANSWER:g} s ({told}); give --scheduler an "
-            "address such as tcp://HOST:8786, where dask scheduler runs, or leave it out"
+            f"{words} does not answer as a Dask scheduler ({waited}); give --scheduler an address such as "
+            "tcp://HOST:8786, where dask scheduler runs, or leave it out"
         ) from None
 
 

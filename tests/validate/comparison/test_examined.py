@@ -12,6 +12,7 @@ from program import PAST_ITS_END, complaints, short_scene
 
 from pointcoord import Scene
 from validate.cli import main
+from validate.commands.study import STUDIES
 from validate.comparison.examined import Examined, Once, examine
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
@@ -365,6 +366,23 @@ def test_a_module_that_is_run_does_its_job_or_is_refused(
     assert ended.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pointcoord: {module} has nothing to run; ")
+
+
+@pytest.mark.parametrize("room", ["studies", "long_studies"])
+@pytest.mark.parametrize(
+    ("module", "study"), [("random_runs", "random"), ("bounds", "bounds"), ("hard_runs", "hard")]
+)
+def test_a_long_study_that_is_run_as_a_module_is_sent_to_its_command(
+    room: str, module: str, study: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = f"validate.{room}.{module}"
+    monkeypatch.setattr(sys, "argv", ["-m", "--count", "3"])
+    monkeypatch.setattr(sys, "orig_argv", ["python", "-m", name, "--count", "3"])
+    with pytest.raises(SystemExit):
+        check_what_is_run()
+    line = capsys.readouterr().err.strip()
+    assert line == f"pointcoord: {name} has nothing to run; run pointcoord study {study}"
+    assert study in STUDIES
 
 
 def test_every_module_with_a_job_ends_with_its_main(capsys: pytest.CaptureFixture[str]) -> None:

@@ -127,7 +127,20 @@ def test_a_dial_that_turns_and_one_that_does_not_are_told_apart() -> None:
     assert "series at 1e-13 mm takes 3.55 times as long as at 1e-02 mm, 1.122 times for each digit" in turning
     assert "to the power -0.050 +- 0.000" in turning
     flat = said(dialled("bounce", "series", 4e-6, 0.0, 0.0, output=0.0))[-1]
-    assert "accuracy does not cost time for certain" in flat
+    assert "neither the quartiles of these two nor the slope over all settings show that accuracy" in flat
+
+
+def test_a_dial_s_sentence_says_what_its_ends_and_its_slope_say_where_they_differ() -> None:
+    # Every setting's quartiles are a tenth apart: more than the 10^(11 * 0.002) = 5 % between the ends.
+    small = said(dialled("bounce", "series", 4e-6, 0.002, 0.0, output=0.0, spread=0.1))[-1]
+    assert "quartiles of these two overlap, but the slope over all settings is beyond two standard" in small
+    assert "1.005 times for each digit; time goes with the setting to the power -0.002 +- 0.000" in small
+    assert "not cost" not in small
+    # Every other setting takes a fifth longer, the finest one among them: ends apart, and no growth.
+    slower = dialled("bounce", "series", 4.8e-6, 0.0, 0.0, output=0.0)
+    quick = dialled("bounce", "series", 4e-6, 0.0, 0.0, output=0.0)
+    rough = said([pair[i % 2] for i, pair in enumerate(zip(quick, slower, strict=True))])[-1]
+    assert "are apart, but the slope over all settings is within two standard errors of none" in rough
 
 
 def test_a_setting_that_moves_no_error_is_no_dial_of_another_way() -> None:
