@@ -29,7 +29,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
+from pointcoord import PointcoordError, Scene
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
@@ -40,7 +40,7 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
-from validate.measured.mapping import ARCSINE, TIME, TRAVEL, Measured, Series, angle_of
+from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import Found, Numbers, asked_scene, poses_of
 from validate.plain_text import shown
 
@@ -49,6 +49,8 @@ Bools = NDArray[np.bool_]
 
 EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
+TRIED_RADIUS = 300.0  # mm, of a wheel: any would do
+SECANTS = 4
 # Rows out of reach, or columns, that are named one by one.
 NAMED = 3
 
@@ -118,6 +120,7 @@ def compare_results(
         factor: how many times the tolerance to hold differences to.
     Raises:
         ResultsError: no row can be reached, or nothing can be compared.
+        MissingPackage: digits in full without an accuracy need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     held, ours, notes = _held(measured, scene, accuracy)
@@ -129,13 +132,64 @@ def compare_results(
     ]
     lacking, absent = _lacking(scene, measured)
     outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking, factor)
-    return DataOutcome(
-        outcome,
-        _over(measured),
-        absent,
-        _explained(scene, measured, held, ours, outcome, factor),
-        accuracy or 0.0,
-    )
+    explanations = _explained(scene, measured, held, ours, outcome, factor)
+    if outcome.disagreements:
+        explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
+    return DataOutcome(outcome, _over(measured), absent, explanations, accuracy or 0.0)
+
+
+def _other_travel(
+    scene: Scene, measured: Measured, held: Sequence[Held], outcome: Outcome, accuracy: float | None
+) -> tuple[Explanation, ...]:
+    """Whether the travel of the wheel's centre is meant where that of the contact is said, or the other way.
+
+    Where no rolling radius R is said it is fitted, from the contact of R = 0, which is the centre.
+    """
+    centre = scene.mechanism.topology.wheel_centre
+    said = next((s for s in measured.independent if s.meaning.kind == TRAVEL), None)
+    if said is None or said.meaning.name not in (CONTACT, centre):
+        return ()
+    meant = replace(said.meaning, name=centre if said.meaning.name == CONTACT else CONTACT)
+    independent = tuple(replace(s, meaning=meant) if s is said else s for s in measured.independent)
+
+    def trial(radius: float) -> tuple[Array, float]:
+        other = replace(measured, independent=independent, rolling_radius=radius)
+        return _signed(_held(other, scene, accuracy)[0])
+
+    try:
+        radius = measured.rolling_radius
+        if not radius > 0.0:
+            before, radius = 0.0, TRIED_RADIUS
+            there = _signed(held)[0]
+            for _ in range(SECANTS):
+                here, _ = trial(radius)
+                slope = np.nan_to_num(here - there) / (radius - before)
+                step = float(np.nan_to_num(here) @ slope) / max(float(slope @ slope), SMALLEST)
+                before, there, radius = radius, here, radius - step
+                if not (radius > 0.0 and abs(step) > 1e-3 * radius):
+                    break
+            # Least squares come near it; what counts is the largest difference, and so near all is linear.
+            near = (radius - before) + radius * np.linspace(-0.02, 0.02, 401)
+            largest = np.abs(np.nan_to_num(there) + near[:, None] * slope).max(axis=-1)
+            radius = before + float(near[np.argmin(largest)])
+        if not radius > 0.0:
+            return ()
+        _, leftover = trial(radius)
+    except PointcoordError:
+        return ()
+    leftover /= outcome.factor
+    if not leftover <= 1.0:
+        return ()
+    of = f" with a rolling radius of {radius:.4g} mm" if meant.name == CONTACT else ""
+    words = f"{shown(said.column)} is {meant.words}{of}, not {said.meaning.words}"
+    names = tuple(f"{row.quantity}.{row.name}" for row in outcome.disagreements)
+    return (Explanation(words, "travel", names, leftover),)
+
+
+def _signed(held: Sequence[Held]) -> tuple[Array, float]:
+    """Differences of all columns in their tolerances, and the largest; infinite if there is none."""
+    parts = np.concatenate([(h.series.values - h.ours) / (h.tolerance + SMALLEST) for h in held])
+    return parts, float(np.nanmax(np.abs(parts), initial=0.0)) if np.isfinite(parts).any() else math.inf
 
 
 def _explained(

@@ -108,6 +108,25 @@ def test_travel_of_the_wheel_centre_is_another_table() -> None:
     assert camber.verdict == "disagrees"
 
 
+@pytest.mark.parametrize("radius", [{}, {"rolling_radius": ROLLING_RADIUS}])
+def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such(radius: dict[str, float]) -> None:
+    bump = {"is": "travel.wheel_centre", "printed": 0}
+    found = compared(CSV, {**radius, "columns": {**CONTENT["columns"], "bump": bump}})
+    first = found.explanations[0]
+    assert first.words.startswith("bump is travel.contact with a rolling radius of 2")
+    assert first.words.endswith("not travel.wheel_centre")
+    assert first.leftover <= 1.0
+    given = float(first.words.partition("radius of ")[2].split()[0])
+    # Four digits of angles over 37.5 mm leave the radius open by some millimetres.
+    assert given == pytest.approx(ROLLING_RADIUS, abs=5.0)
+    # Toe of the other sign is no such fault.
+    lines = [line.split(",") for line in CSV.splitlines()]
+    turned = "\n".join(
+        ",".join([*c[:2], c[2] if i == 0 else str(-float(c[2])), *c[3:]]) for i, c in enumerate(lines)
+    )
+    assert not any(e.kind == "travel" for e in compared(turned).explanations)
+
+
 def test_a_bump_that_may_be_rounded_widens_by_slope_times_half_its_digit() -> None:
     columns = {**CONTENT["columns"], "bump": {"is": "travel.contact"}}
     found = compared(CSV, CONTENT | {"columns": columns})
