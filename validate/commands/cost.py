@@ -348,12 +348,15 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     elif options.csv:
         _put(options.csv, csv_text(report.rows).encode())
     if options.report:
+        # Most runs write no page.
+        from validate.html.folder import make_folder
+
+        make_folder(options.report)
         for name, content in report.files():
             _put(os.path.join(options.report, name), content)
-        # Most runs write no page.
         from validate.html.run import Run
 
-        Page(options.report).write(Run(Head.of("cost", options.command, timed=True), cost=report), console)
+        Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
@@ -371,7 +374,7 @@ def _put(target: str, content: bytes) -> None:
 
 
 def _require_folder(folder: str) -> None:
-    """Make the folder, and see that it takes files and that there is a painter, before anything is measured.
+    """See that the folder takes files, and that there is a painter, before anything is measured.
 
     Raises:
         UsageError: it has no name, or holds another's page.
@@ -383,4 +386,5 @@ def _require_folder(folder: str) -> None:
     except ImportError as error:
         raise MissingPackage("--report", error, "plot") from None
     Page(folder).require()
-    require_writable(os.path.join(folder, "report.md"))
+    if os.path.isdir(folder):
+        require_writable(os.path.join(folder, "report.md"))

@@ -59,6 +59,18 @@ def require_folder(folder: str) -> None:
                 one.rmdir()
 
 
+def make_folder(folder: str) -> None:
+    """Make the folder of a report, if it is not there.
+
+    Raises:
+        OutputError: it cannot be made.
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(folder, error) from None
+
+
 def write_report(folder: str, run: Run) -> tuple[str, ...]:
     """Write the page and its data; the page is last, so that where it is, its data are.
 
@@ -68,10 +80,7 @@ def write_report(folder: str, run: Run) -> tuple[str, ...]:
         MissingPackage: a package of the extra is not there.
         OutputError: one cannot be written.
     """
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise unwritable(folder, error) from None
+    make_folder(folder)
     data = data_files(run)
     links = OF_COST if run.head.kind == "cost" else {name: WORDS[name] for name in data}
     contents = {**data, PAGE: page(run, links)}
