@@ -181,6 +181,4 @@ def test_a_claim_of_nothing_is_no_test_and_a_fault_is_found_however_little_is_cl
 
 def test_an_outcome_prints_as_a_line() -> None:
     outcome = compared(lambda s: s)
-    assert (
-        repr(outcome) == f"<Outcome of {SCENE.title!r}, pointcoord and changed: {len(outcome.rows)} agrees>"
-    )
+    assert repr(outcome) == f"<Outcome of {SCENE.title!r}, pointcoord and changed: {len(outcome.rows)} agree>"
