@@ -79,9 +79,9 @@ def assert_agrees(
         FormulationError: the states are no mapping, or the other formulation refuses the scene.
         SceneError: there is no such scene, or it is wrong.
 
-    >>> assert_agrees({"camber": [0.0] * 131}, "bounce")
+    >>> assert_agrees({"camber": [0.0] * 131}, "bounce")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    AssertionError: the states disagree with pointcoord in 'bounce' ...
+    AssertionError: the states disagree with pointcoord in 'bounce': ...
     """
     __tracebackhide__ = True
     exact = required_accuracy(accuracy)

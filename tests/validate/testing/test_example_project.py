@@ -70,7 +70,8 @@ def test_a_run_that_does_not_use_the_plugin_imports_nothing_for_it(
         "def test_plain(request):\n"
         "    assert request.config.pluginmanager.hasplugin('pointcoord')\n"
         "    packages = 'pointcoord', 'absolute', 'validate', 'numpy', 'scipy', 'pydantic_core', 'flint'\n"
-        "    assert not {n for n in sys.modules if n.partition('.')[0] in packages}\n",
+        "    found = {n for n in sys.modules if n.partition('.')[0] in packages}\n"
+        "    assert found == {'pointcoord', 'pointcoord.pytest_plugin'}\n",
         encoding="utf-8",
     )
     off = [word for name in ("benchmark", "hypothesispytest", "timeout") for word in ("-p", f"no:{name}")]
@@ -97,6 +98,7 @@ def test_a_project_with_a_module_validate_of_its_own_keeps_it(
         encoding="utf-8",
     )
     done = environment.run(*PLAIN, "test_own.py", cwd=tmp_path)
+    print(reported(done))
     (said,) = (line for line in reported(done) if "suspension_scenes" in line)
     assert f"({tmp_path / 'validate.py'}) is not pointcoord's" in said
     assert "Traceback" not in done.stdout + done.stderr

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from importlib.metadata import entry_points
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -24,7 +25,16 @@ def mark(name: str, *names: object, **options: object) -> SimpleNamespace:
 
 
 ROOT = Path(__file__).parents[3]
-OURS = ("-p", "pointcoord.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:xdist", "--strict-markers")
+# Where pointcoord is installed, pytest finds the plugin by itself, and takes it once only.
+FOUND = any(one.value == "pointcoord.pytest_plugin" for one in entry_points(group="pytest11"))
+OURS = (
+    *(() if FOUND else ("-p", "pointcoord.pytest_plugin")),
+    "-p",
+    "no:cacheprovider",
+    "-p",
+    "no:xdist",
+    "--strict-markers",
+)
 
 
 def run(folder: Path, text: str, *options: str) -> "subprocess.CompletedProcess[str]":
