@@ -98,7 +98,6 @@ def test_a_project_with_a_module_validate_of_its_own_keeps_it(
         encoding="utf-8",
     )
     done = environment.run(*PLAIN, "test_own.py", cwd=tmp_path)
-    print(reported(done))
     (said,) = (line for line in reported(done) if "suspension_scenes" in line)
     assert f"({tmp_path / 'validate.py'}) is not pointcoord's" in said
     assert "Traceback" not in done.stdout + done.stderr
