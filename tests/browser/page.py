@@ -174,7 +174,9 @@ def test_the_verdict_is_that_of_the_data_beside_the_page(report: Opened) -> None
     assert data["verdict"] == "agree"
     shown = report.page.locator(".verdict")
     assert shown.count() == 1
-    first, *others = shown.inner_text().removesuffix(".").split("; ")
+    sentence, ending = shown.inner_text().strip().split("\n")
+    assert ending == f"Exit status {data['exit_status']}: {data['verdict']}"
+    first, *others = sentence.removesuffix(".").split("; ")
     assert first == f"{len(agree)} of {len(scenes)} scenes agree"
     # A run may have tried hard cases as well; nothing else is told of one that agrees.
     hard = report.folder / "hard.json"
@@ -182,7 +184,7 @@ def test_the_verdict_is_that_of_the_data_beside_the_page(report: Opened) -> None
     assert [re.sub(r" at \d+ values.*: ", ": ", one) for one in others] == (
         [f"{cases} hard cases: all as expected"] if cases else []
     )
-    assert report.page.title() == f"pointcoord: {shown.inner_text()}"
+    assert report.page.title() == f"pointcoord: {sentence}"
     cells = report.page.locator("#agreement td").all_inner_texts()
     asked = [cell for cell in cells if cell != "not asked for"]
     assert all(cell.startswith("agrees") for cell in asked)
