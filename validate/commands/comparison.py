@@ -227,7 +227,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         # Most runs compare no file.
         from validate.commands.data import run as run_data
 
-        return run_data(options, console)
+        return run_data(options, console, page_of(options))
     return compare_scenes(options, console, page_of(options))
 
 

@@ -64,12 +64,27 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         OutputError: the report cannot be written.
     """
     if options.data is not None:
-        raise UsageError("--data is about a file of results, of which there is no page; give it to validate")
+        return _of_file(options, console)
     _require_folder_first(options.folder)
     hard = None if options.hard is None else read_hard_cases(options.hard)
     cost = None if options.cost is None else _kept_cost(options)
     page = Page(options.folder, partial(_with_more, options, hard, cost, console), option="")
     return compare_scenes(options, console, page, brief=True)
+
+
+def _of_file(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """The page of a file of results."""
+    # Most pages are of no file.
+    from validate.commands.data import run as run_data
+
+    _require_folder_first(options.folder)
+    for option, value in (("--hard", options.hard), ("--cost", options.cost)):
+        if value is not None:
+            raise UsageError(
+                f"{option} is not about a file of results; leave it out with --data, or give {option} to "
+                "pointcoord report DIR without --data"
+            )
+    return run_data(options, console, Page(options.folder, option=""), brief=True)
 
 
 def _require_folder_first(folder: str) -> None:

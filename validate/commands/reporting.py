@@ -28,7 +28,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
 
 # What a page of each kind can hold, and the command that makes a page with it.
 ELSEWHERE = {
-    "validate": ("scenes held to two formulations", "pointcoord report DIR SCENE"),
+    "validate": ("scenes in motion, held to two formulations", "pointcoord report DIR SCENE"),
     "hard": ("hard cases", "pointcoord hard --report DIR"),
     "cost": ("accuracy against time", "pointcoord cost --report DIR"),
     "": ("the paper's figures, tables and errata, other programs' tables", "pointcoord report DIR"),
@@ -38,6 +38,9 @@ ELSEWHERE = {
 def _nothing_more(run: Run) -> Run:
     """The run as it is, which names what else pages hold."""
     there = {run.head.kind, *([""] if run.paper else ())}
+    if run.files:
+        # Of a file's scene no motion is solved and no other model.
+        there.remove(run.head.kind)
     return replace(run, left_out=tuple(row for kind, row in ELSEWHERE.items() if kind not in there))
 
 

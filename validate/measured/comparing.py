@@ -99,6 +99,7 @@ class DataOutcome:
         accuracy: how far the file's numbers may be off beside their digits, in their columns' units.
         absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
             the outcome, so that it agrees where all that is given does.
+        columns: each beside ours. rows: what to call each row of these.
     """
 
     outcome: Outcome
@@ -106,6 +107,21 @@ class DataOutcome:
     absent: tuple[str, ...]
     explanations: tuple[Explanation, ...] = ()
     accuracy: float = 0.0
+    columns: tuple[Held, ...] = ()
+    rows: tuple[str, ...] = ()
+
+    @property
+    def at(self) -> Array:
+        """Values of the independent column, or numbers of rows, (N,)."""
+        return self.outcome.solutions[0].times
+
+    def columns_of(self, row: Comparison) -> tuple[Held, ...]:
+        """The columns that a row of the outcome is of."""
+        return tuple(
+            held
+            for held in self.columns
+            if (held.series.meaning.quantity, held.series.meaning.name) == (row.quantity, row.name)
+        )
 
 
 def compare_results(
@@ -135,7 +151,9 @@ def compare_results(
     explanations = _explained(scene, measured, held, ours, outcome, factor)
     if outcome.disagreements:
         explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
-    return DataOutcome(outcome, _over(measured), absent, explanations, accuracy or 0.0)
+    outcome = replace(outcome, explanations=explanations)
+    over = _over(measured)
+    return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
 
 
 def _other_travel(

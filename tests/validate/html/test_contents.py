@@ -391,8 +391,6 @@ def test_what_a_page_is_made_of_is_installed_with_it() -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["validate", "--data", "x.csv", "steer", "--report", "OUT"], "--report is about scenes"),
-        (["report", "OUT", "steer", "--data", "x.csv"], "of which there is no page"),
         (["report", "OUT", "steer", "--cost", "no such file"], "--cost no such file"),
         (["hard", "--list", "--report", "OUT"], "leave it out with --list"),
         (["validate", "steer", "--report", ""], "--report '' names no folder"),

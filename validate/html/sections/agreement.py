@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from validate.comparison.compare import Comparison, Outcome
 from validate.html.run import FIRST, FURTHER, Run, Told
 from validate.html.section import Block, Cell, Grid, Section
-from validate.output.report import about, heading, worst_rows
+from validate.output.report import about, heading, when, worst_rows
 
 CAPTION = (
     "For each quantity the number that comes closest to its tolerance, or exceeds it the most: its largest "
@@ -90,7 +90,7 @@ def _cell(row: Comparison, short: bool) -> Cell:
         return Cell(row.verdict, row.name, row.verdict)
     told = f"{row.share:.1e} of its tolerance"
     if not short or row.verdict != "agrees":
-        told += f", {about(row.quantity, row.name)}, {row.instant:.4g} s"
+        told += f", {about(row.quantity, row.name)}, {when(row, 4)}"
     return Cell(row.verdict, told, row.verdict)
 
 
