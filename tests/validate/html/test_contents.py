@@ -19,6 +19,7 @@ from pointcoord import Scene
 from validate.cli import main
 from validate.comparison.examined import Examined, examine
 from validate.cost.report import Report
+from validate.cost.ways.registry import WAYS
 from validate.html.data import data_files
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
@@ -315,6 +316,21 @@ def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> Non
     assert shown.verdict[0] == "verdict measured"
     assert "Exit status 0" in shown.text
     assert shown.of("command")[0][1][1] == "pointcoord cost"
+
+
+def test_every_way_of_a_page_is_told_from_every_other_by_its_line_and_by_its_mark() -> None:
+    rows = tuple(
+        made_rows.measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5, dense=way.dense)
+        for k, way in enumerate(WAYS)
+    )
+    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", None, "", False, rows))).plots.items()
+    assert len(plot["data"]) == len(WAYS) > 12
+    lines = {(one["line"]["color"], one["line"].get("dash")) for one in plot["data"]}
+    symbols = {one["marker"]["symbol"].removesuffix("-open") for one in plot["data"]}
+    assert len(lines) == len(symbols) == len(WAYS)
+    dense = {way.name for way in WAYS if way.dense}
+    assert {one["name"].removesuffix("*") for one in plot["data"] if one["name"].endswith("*")} == dense
+    assert all(one["name"].endswith("*") != one["marker"]["symbol"].endswith("-open") for one in plot["data"])
 
 
 def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
