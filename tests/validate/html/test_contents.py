@@ -179,7 +179,7 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
         k: v for k, v in document.items() if k != "written"
     }
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
-    assert shown.verdict == ("verdict disagrees", "0 of 1 scenes agree; disagrees: steer.")
+    assert shown.verdict == ("verdict disagrees", "0 of 1 scene agrees; disagrees: steer.")
     (row,) = shown.of("steer")[:1]
     assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
     assert "disagree in position of tie_rod_inner" in shown.text

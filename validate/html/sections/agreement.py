@@ -1,4 +1,4 @@
-"""Scenes by quantities: who agrees, and how close the closest number comes to its tolerance."""
+"""Scenes by quantities: who agrees, and how much of a tolerance is used."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from validate.html.section import Block, Cell, Grid, Section
 from validate.output.report import about, heading, worst_rows
 
 CAPTION = (
-    "For each quantity the number that comes closest to its tolerance, or exceeds it the most: its largest "
-    "difference as a share of what it is held to. It agrees up to 1."
+    "For each quantity the verdict, and below it the number whose difference uses most of its tolerance: it "
+    "agrees if that is 1 or less."
 )
 # A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
 MOST_THAT_AGREE, MOST = 1000, 1500
