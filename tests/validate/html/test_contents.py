@@ -17,16 +17,19 @@ import validate.html
 import validate.published
 from pointcoord import Scene
 from validate.cli import main
+from validate.commands.reporting import Page
 from validate.comparison.examined import Examined, examine
 from validate.cost.report import Report
 from validate.cost.ways.registry import WAYS
 from validate.html.data import data_files
+from validate.html.folder import PAGE
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.plot import Plots
 from validate.html.run import FIRST, FURTHER, Run, Telling
 from validate.html.section import Grid, Paragraph
 from validate.html.sections.motion import Spatial
+from validate.output.console import Console
 from validate.output.document import Head, schema_text
 from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper
 from validate.published.tables import compare_published
@@ -199,7 +202,7 @@ def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> Non
     assert broken < shown.verdict[1].index("broken.toml")
     assert "Exit status 2: wrong input" in shown.text
     for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
-        row = next(row for row in shown.rows if row and row[0][1].endswith(name))
+        row = next(row for row in shown.rows if row and name in row[0][1])
         assert row[1][0] == "not-tested"
         assert said in row[1][1]
     with (tmp_path / "out" / "comparisons.csv").open(newline="") as stream:
@@ -412,6 +415,8 @@ def test_what_a_page_is_made_of_is_installed_with_it() -> None:
         (["report", "OUT", "steer", "--cost", "no such file"], "--cost no such file"),
         (["hard", "--list", "--report", "OUT"], "leave it out with --list"),
         (["validate", "steer", "--report", ""], "--report '' names no folder"),
+        (["validate", "steer", "--solver", "pathlib:nope", "--report", "OUT"], "has no 'nope'"),
+        (["cost", "--ways", "nope", "--report", "OUT"], "nope"),
     ],
 )
 def test_a_report_that_cannot_be_is_refused_in_a_line(
@@ -423,6 +428,38 @@ def test_a_report_that_cannot_be_is_refused_in_a_line(
     assert said in error
     assert len(error.splitlines()) == 1
     assert not out.exists()
+    # A folder that is there is somebody's.
+    out.mkdir()
+    assert main([str(out) if word == "OUT" else word for word in words]) == 2
+    assert list(out.iterdir()) == []
+
+
+def test_what_a_page_of_validate_does_not_hold_is_named_with_the_command_that_adds_it(tmp_path: Path) -> None:
+    assert main(["validate", "-q", "steer", "--report", str(tmp_path)]) == 0
+    shown = Read((tmp_path / PAGE).read_text(encoding="utf-8"))
+    ((place, _),) = [one for one in enumerate(shown.rows) if one[1] and one[1][0][1] == "not in this page"]
+    told = {row[0][1]: row[1][1] for row in shown.rows[place + 1 : place + 5]}
+    assert told == {
+        "hard cases": "pointcoord hard --report DIR",
+        "accuracy against time": "pointcoord cost --report DIR",
+        "the paper's figures, tables and errata": "pointcoord report DIR",
+        "other programs' tables": "pointcoord report DIR",
+    }
+    headings = {given.get("id") for tag, given in shown.tags if tag == "section"}
+    assert not headings & {"hard", "cost", "paper", "figures", "published"}
+    for command in told.values():
+        assert main([command.split()[1], "--help"]) == 0
+
+
+def test_a_page_of_validate_that_holds_the_papers_tables_still_names_those_of_other_programs(
+    tmp_path: Path,
+) -> None:
+    run = Page(str(tmp_path)).write(Run(head(), paper=compare_with_paper()), Console())
+    assert [what for what, _ in run.left_out] == [
+        "hard cases",
+        "accuracy against time",
+        "other programs' tables",
+    ]
 
 
 def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:

@@ -64,7 +64,7 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
         verdict = one.verdict
         blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
         why = f"{one.why_not}: {complaint}" if one.why_not else complaint
-        yield Cell(name), Cell(verdict, why, verdict), *blank
+        yield Cell(name, one.examined.title), Cell(verdict, why, verdict), *blank
         return
     for i, outcome in enumerate(outcomes):
         if short and i and outcome.passed:
@@ -76,7 +76,9 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
             # One of the other formulations has no answer.
             verdict = one.verdict
         asked = (cells.get(quantity, Cell("not asked for")) for quantity in quantities)
-        yield Cell(name, pair), Cell(verdict, complaint, verdict), *asked
+        # What a scene is called is said once.
+        told = pair if i or not one.examined.title else f"{one.examined.title}. Compared: {pair}"
+        yield Cell(name, told), Cell(verdict, complaint, verdict), *asked
 
 
 def _verdict(outcome: Outcome) -> str:
