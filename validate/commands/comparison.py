@@ -54,7 +54,8 @@ _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
 Solve each scene by two formulations and compare every number that it asks for. Each
 formulation claims how far off its numbers may be, and a difference is held to the sum of both
-claims. For each quantity the row is printed that comes closest to that.
+claims, its tolerance. Of each quantity the largest difference is printed, and how much of its
+tolerance any number of it uses at most.
 
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
@@ -401,7 +402,7 @@ def _say(examined: Examined, explained: Explained, console: Console) -> None:
 
 
 def _finished(results: _Results, names: Sequence[str]) -> str:
-    return f"{len(results.scenes)} of {len(names)} scenes"
+    return f"{len(results.scenes)} of {report.counted_as(len(names), 'scene')}"
 
 
 def _say_at_the_end(
@@ -413,10 +414,10 @@ def _say_at_the_end(
         console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
     if results.paper:
         console.say(report.paper_text(results.paper) + "\n")
+    agreed = [results.agreed.get(pair, 0) for pair in pairs]
+    counts = [report.agreeing(agreed[0], count), *(f"{more} of {count}" for more in agreed[1:])]
     told = [
-        f"{results.agreed.get(pair, 0)} of {count} {'scenes agree ' if i == 0 else ''}between {pair[0]} and "
-        f"{pair[1]}"
-        for i, pair in enumerate(pairs)
+        f"{words} between {first} and {second}" for words, (first, second) in zip(counts, pairs, strict=True)
     ]
     # No agreement is no disagreement yet: what was not compared is counted apart.
     record = results.record

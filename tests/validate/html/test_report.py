@@ -141,7 +141,7 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
 def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
     run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
     read = Read(page(run, FILES))
-    assert read.verdict == "0 of 1 scenes agree; not tested (wrong input): no such."
+    assert read.verdict == "0 of 1 scene agrees; not tested (wrong input): no such."
     assert run.status == 2
 
 

@@ -1,4 +1,4 @@
-"""Scenes by quantities: who agrees, and how close the closest number comes to its tolerance."""
+"""Scenes by quantities: who agrees, and how much of a tolerance is used."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from validate.html.section import Block, Cell, Grid, Section
 from validate.output.report import about, heading, when, worst_rows
 
 CAPTION = (
-    "For each quantity the number that comes closest to its tolerance, or exceeds it the most: its largest "
-    "difference as a share of what it is held to. It agrees up to 1."
+    "For each quantity the verdict, and below it the number whose difference uses most of its tolerance: it "
+    "agrees if that is 1 or less."
 )
 # A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
 MOST_THAT_AGREE, MOST = 1000, 1500
@@ -64,7 +64,7 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
         verdict = one.verdict
         blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
         why = f"{one.why_not}: {complaint}" if one.why_not else complaint
-        yield Cell(name), Cell(verdict, why, verdict), *blank
+        yield Cell(name, one.examined.title), Cell(verdict, why, verdict), *blank
         return
     for i, outcome in enumerate(outcomes):
         if short and i and outcome.passed:
@@ -76,7 +76,9 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
             # One of the other formulations has no answer.
             verdict = one.verdict
         asked = (cells.get(quantity, Cell("not asked for")) for quantity in quantities)
-        yield Cell(name, pair), Cell(verdict, complaint, verdict), *asked
+        # What a scene is called is said once.
+        told = pair if i or not one.examined.title else f"{one.examined.title}. Compared: {pair}"
+        yield Cell(name, told), Cell(verdict, complaint, verdict), *asked
 
 
 def _verdict(outcome: Outcome) -> str:
