@@ -273,7 +273,7 @@ def compare_scenes(
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
-        console.working("scenes", len(names)) as told,
+        console.working("scenes", len(names), lines=brief) as told,
     ):
         for place, (name, scene) in enumerate(_loaded(names, console)):
             since = None
@@ -305,6 +305,7 @@ def compare_scenes(
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
         if page is not None and telling is not None:
+            told("the page", len(names))
             whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
             ending.status = whole.status
             if brief:

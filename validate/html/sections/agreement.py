@@ -15,6 +15,7 @@ CAPTION = (
 )
 # A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
 MOST_THAT_AGREE, MOST = 1000, 1500
+TITLES = 100
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -49,7 +50,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     if left_out:
         more = ", ".join(f"{count} {verdict}" for verdict, count in left_out.items())
         caption += f" Not in this table: {more}; the data beside this page have them all."
-    return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows))]
+    return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows)), *_titles(run)]
 
 
 def _heading(row: Comparison) -> str:
@@ -64,7 +65,7 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
         verdict = one.verdict
         blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
         why = f"{one.why_not}: {complaint}" if one.why_not else complaint
-        yield Cell(name, one.examined.title), Cell(verdict, why, verdict), *blank
+        yield Cell(name), Cell(verdict, why, verdict), *blank
         return
     for i, outcome in enumerate(outcomes):
         if short and i and outcome.passed:
@@ -76,9 +77,7 @@ def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[C
             # One of the other formulations has no answer.
             verdict = one.verdict
         asked = (cells.get(quantity, Cell("not asked for")) for quantity in quantities)
-        # What a scene is called is said once.
-        told = pair if i or not one.examined.title else f"{one.examined.title}. Compared: {pair}"
-        yield Cell(name, told), Cell(verdict, complaint, verdict), *asked
+        yield Cell(name, pair), Cell(verdict, complaint, verdict), *asked
 
 
 def _verdict(outcome: Outcome) -> str:
@@ -90,10 +89,21 @@ def _verdict(outcome: Outcome) -> str:
 def _cell(row: Comparison, short: bool) -> Cell:
     if row.verdict == "not given":
         return Cell(row.verdict, row.name, row.verdict)
-    told = f"{row.share:.1e} of its tolerance"
+    told = f"{row.share:.2g} of its tolerance"
     if not short or row.verdict != "agrees":
-        told += f", {about(row.quantity, row.name)}, {when(row, 4)}"
+        # The heading says the quantity, or the whole name.
+        of = "" if row.name == _heading(row) else f"{about(row.quantity, row.name)}, "
+        told += f": {of}{when(row, 4)}"
     return Cell(row.verdict, told, row.verdict)
+
+
+def _titles(run: Run) -> Iterator[Block]:
+    """What the scenes are, in their own words."""
+    titled = [(one.examined.name, one.examined.title) for one in run.told if one.examined.title]
+    more = f" Of {len(titled)} titles the first {TITLES}." if len(titled) > TITLES else ""
+    if titled:
+        rows = tuple((Cell(name), Cell(title)) for name, title in titled[:TITLES])
+        yield Grid(f"The titles of the scenes.{more}", ("scene", "title"), rows)
 
 
 SECTION = Section("agreement", "Agreement", 20, _blocks)
