@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from validate.comparison.compare import Comparison, Outcome
 from validate.html.run import FIRST, FURTHER, Run, Told
 from validate.html.section import Block, Cell, Grid, Section
-from validate.output.report import about, heading, when, worst_rows
+from validate.output.report import heading, when, worst_rows
 
 CAPTION = (
     "For each quantity the verdict, and below it the number whose difference uses most of its tolerance: it "
@@ -92,7 +92,7 @@ def _cell(row: Comparison, short: bool) -> Cell:
     told = f"{row.share:.2g} of its tolerance"
     if not short or row.verdict != "agrees":
         # The heading says the quantity, or the whole name.
-        of = "" if row.name == _heading(row) else f"{about(row.quantity, row.name)}, "
+        of = "" if row.name == _heading(row) else f"{row.name}, "
         told += f": {of}{when(row, 4)}"
     return Cell(row.verdict, told, row.verdict)
 
