@@ -1,15 +1,18 @@
 """Poses at instants, however they are solved: how far one is proven, what is left of it, what it costs."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.linear import factorise
+from pointcoord.numerics import newton
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.solve import chord, pointwise
+from pointcoord.solve import assembly, chord, pointwise, standing_still
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.chord import solve_by_chord
 from pointcoord.solve.pointwise import InstantSolver, Solved, solve_from_drawing, solve_instants
@@ -80,6 +83,30 @@ def test_one_factorisation_serves_many_instants_by_chord(strut: Mechanism) -> No
     solved = solve_by_chord(strut, SWING, start_of(strut, SWING), times, 0)
     assert len(solved.times) == 400
     assert solved.work.factorisations < 40
+
+
+@by_way
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+def test_factorisations_and_rates_are_counted_as_they_are_made(
+    strut: Mechanism, monkeypatch: pytest.MonkeyPatch, way: InstantSolver, derivative: int
+) -> None:
+    pose, times, seen = start_of(strut, SWING), np.linspace(0.0, 1.0, 30), []
+
+    def counted(matrix: Array) -> Factors:
+        seen.append(int(np.prod(matrix.shape[:-2])))
+        return factorise(matrix)
+
+    for module in (newton, assembly, chord, pointwise, standing_still):
+        monkeypatch.setattr(module, "factorise", counted)
+    if way is solve_from_drawing:
+        # It closes the drawing as well, which has factors of its own.
+        monkeypatch.setattr(pointwise, "close_drawing", lambda *_: replace(closed, work=Work()))
+        closed = assembly.close_drawing(strut)
+        seen.clear()
+    work = way(strut, SWING, pose, times, derivative, pointwise.square_velocity_term, 1e-10).work
+    assert work.factorisations == sum(seen)
+    assert work.rate_solves == derivative * 30
+    assert work.unknowns_solved == derivative * 30 * strut.map.unknowns
 
 
 def test_residuals_by_chord_are_counted_one_by_one(strut: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,7 +34,7 @@ def test_exact_poses_are_taken_as_they_are_and_cost_their_factors_only(strut: Me
     part, poses = steered(strut)
     place = starting_place(part, poses)
     np.testing.assert_array_equal(place.y, part.taken(poses.y))
-    np.testing.assert_array_equal(place.left, np.zeros((2, 3)))
+    np.testing.assert_array_equal(place.left, np.zeros((2, 3)), strict=True)
     assert place.work == Work(factorisations=6)
     same_factors(place.factors, part.system.jacobian(place.y))
 
@@ -48,7 +48,7 @@ def test_a_pose_among_exact_ones_that_a_tolerance_left_off_is_solved_to_rounding
     # The same pose twice, each to rounding, of coordinates up to 2.
     off = np.abs(place.y - part.taken(poses.y)).max(axis=-1)
     assert (off <= 4.0 * np.finfo(float).eps * poses.condition).all()
-    np.testing.assert_array_equal(place.left, np.zeros((2, 3)))
+    np.testing.assert_array_equal(place.left, np.zeros((2, 3)), strict=True)
 
 
 def test_poses_of_a_part_are_poses_of_the_whole(strut: Mechanism) -> None:
@@ -57,7 +57,7 @@ def test_poses_of_a_part_are_poses_of_the_whole(strut: Mechanism) -> None:
     place = whole_place(part, y, factorise(part.system.jacobian(y)))
     np.testing.assert_array_equal(place.y, poses.y)
     same_factors(place.factors, strut.map.jacobian(poses.y))
-    np.testing.assert_array_equal(place.left, np.zeros((2, 3)))
+    np.testing.assert_array_equal(place.left, np.zeros((2, 3)), strict=True)
     assert place.work == Work(factorisations=6)
 
 
@@ -70,4 +70,4 @@ def test_where_all_moves_nothing_is_done(strut: Mechanism) -> None:
         assert place.y is poses.y
         assert place.factors is poses.factors
         assert place.work == Work()
-        np.testing.assert_array_equal(place.left, np.zeros((2, 3)))
+        np.testing.assert_array_equal(place.left, np.zeros((2, 3)), strict=True)
