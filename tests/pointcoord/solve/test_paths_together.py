@@ -98,3 +98,17 @@ def test_a_place_on_the_way_is_brought_as_near_as_two_of_newton_s_steps_bring_it
     assert paths_together._advance(columns, group, first=False).all()
     # The first step leaves some 1e-5, and the second one the square of that.
     assert np.abs(group.y.T - wanted).max() < 1e-12
+
+
+def test_a_step_goes_to_the_residual_that_is_wanted() -> None:
+    mechanism, columns, closed = ready("bounce")
+    system, rng = mechanism.map, np.random.default_rng(10)
+    n = system.unknowns
+    y = np.repeat(closed[:, None], 3, axis=-1)
+    y[:n] += 1e-3 * rng.uniform(-1.0, 1.0, (n, 3))
+    wanted = 1e-3 * rng.uniform(-1.0, 1.0, (n, 3))
+    d = columns.map.differences(y)
+    found = columns.step(columns.factorise(d), d, wanted)
+    off = system.residual(y.T) - wanted.T
+    right = -np.linalg.solve(system.jacobian(y.T), off[..., None])[..., 0]
+    np.testing.assert_allclose(found.T, right, rtol=0, atol=1e-13)
