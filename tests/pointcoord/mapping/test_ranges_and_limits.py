@@ -200,3 +200,15 @@ def test_what_comes_after_the_end_of_a_way_is_not_looked_at() -> None:
     # A thousandth of the smallest box before it counts as there.
     assert 0.0 < end <= 0.1
     assert [law.spans for law in laws] == [0, 0]
+
+
+def test_a_way_of_one_span_ends_inside_it_or_where_it_begins() -> None:
+    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (0.9, 1.1), "rack": (-20.0, 20.0)}, 6)
+    laws = [Polynomial((1.0,)), Polynomial((-10.0, 20.0))]
+    one = Spans.of(laws, np.array([0.0]), np.array([1.0]))
+    for first_gap, entered in ((32, 0.5), (48, 1.0), (16, -np.inf)):
+        table = np.zeros((64, 64), dtype=np.int64)
+        table[:, first_gap:] = -1
+        end = covered_until(laws, one, Lookup(domain, table))
+        # A box is 1/32 s long, and a span that is a quarter of it tells all that can be told.
+        assert end == entered or entered - 0.25 / 32.0 - 1e-4 <= end < entered
