@@ -96,3 +96,17 @@ def test_nothing_is_told_that_is_not_asked_for(model: absolute.Model, kind: kind
     assert not still.angular_acceleration
     assert not still.acceleration_error
     assert still.position_error.keys() == model.points.keys()
+
+
+def test_the_residual_is_told_in_millimetres(
+    model: absolute.Model, kind: kinds.Kind, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As if rows were off by so much of the size, which is the furthest that a point is drawn from the mean.
+    off = np.array([0.25, 0.5, 0.125])
+    solver = absolute.solve.__globals__
+    refine = solver["refine"]
+    monkeypatch.setitem(solver, "refine", lambda *arguments: refine(*arguments)._replace(residual=off))
+    motion = absolute.solve(model, kind.inputs(np.linspace(0.0, 1.0, 3)))
+    points = np.array(list(model.points.values()))
+    size = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
+    assert motion.residual == pytest.approx(off * size, rel=1e-12)

@@ -66,11 +66,11 @@ def test_a_line_is_off_by_the_worst_its_body_may_be_turned_by(model: absolute.Mo
 def test_a_line_of_an_exact_body_is_off_by_its_roundings(model: absolute.Model) -> None:
     lines = solved_lines(model, 0.0, 1.0)
     for ends in lines_of(model):
-        length = np.linalg.norm(lines.line(ends), axis=1)[:, None]
-        claim = lines.error(ends)
-        # Thirteen of half an eps, as they add up, and at most as many as that.
-        assert (claim >= 0.5 * EPS * length).all()
-        assert (claim <= 13 * EPS * length).all()
+        along = np.abs(lines.line(ends))
+        # Four standard deviations of thirteen roundings of its length (see test_rounding), and two of each
+        # component where it becomes millimetres.
+        arms = 4.0 * np.sqrt(13 / 18) * EPS / 2.0 * np.linalg.norm(along, axis=1)[:, None]
+        assert lines.error(ends) == pytest.approx(arms + EPS * along, rel=1e-12)
 
 
 def test_a_line_is_off_by_no_more_than_its_ends(model: absolute.Model) -> None:
