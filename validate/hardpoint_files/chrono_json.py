@@ -1,8 +1,8 @@
 """A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
 
-A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`. A vehicle
-names the files of its suspensions and steering from Chrono's folder of data, and puts each suspension at a
-place of its chassis (WheeledVehicle.cpp).
+A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`.
+A vehicle names the files of its suspensions and steering from Chrono's folder of data, and puts each
+suspension at a place of its chassis (WheeledVehicle.cpp).
 """
 
 from __future__ import annotations

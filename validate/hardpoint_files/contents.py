@@ -63,6 +63,23 @@ class Printed:
 
 
 @dataclass(frozen=True)
+class Spoilt:
+    """A line that would be a point and is none.
+
+    Attributes:
+        point: its name, line and wheel, without a place. error: what is wrong with it as a point.
+        value: the first number that it has; empty if it has none.
+    """
+
+    point: FilePoint
+    error: HardpointFileError
+    value: str
+
+    def __str__(self) -> str:
+        return f"{short(self.point.name)} {self.value}".strip() + f" on line {self.point.line}"
+
+
+@dataclass(frozen=True)
 class SpinAxis:
     """Where a wheel's spin axis points, forward, outboard and up, and what that is taken from."""
 
@@ -80,6 +97,8 @@ class Contents:
         unit: of its lengths, if it says so.
         angles: static angles that it prints, by part and its own words, deg.
         spin_axes: by part, where its wheel's spin axis points, if said without a point.
+        axes: where x, y and z point, if it says so. turned: words of axes of its own that are not known here.
+        spoilt: lines that hold no point; right unless they are called like one.
         notes: by part, what the user should know of its points. doubts: by part, what may make them another
             car than the file's.
     """
@@ -89,6 +108,9 @@ class Contents:
     unit: str = ""
     angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
     spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
+    axes: tuple[str, ...] = ()
+    turned: str = ""
+    spoilt: tuple[Spoilt, ...] = ()
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
