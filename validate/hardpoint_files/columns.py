@@ -25,6 +25,7 @@ from validate.hardpoint_files.contents import (
     decimal_of,
     plain,
     short,
+    words_of,
 )
 
 SEPARATORS = ("\t", ";", ",")
@@ -52,12 +53,12 @@ WHEELS = {
 # A lonely r is right beside an l, and rear beside an f.
 BESIDE = {"l": {"l": ("left", ""), "r": ("right", "")}, "f": {"f": ("", "front"), "r": ("", "rear")}}
 # Titles of columns that hold wheels, names, and numbers of lines; words that say nothing of a coordinate.
-OF_WHEELS = set("corner wheel axle side end".split())
-OF_NAMES = set("name point points hardpoint hardpoints node joint label description".split())
-OF_LINES = set("no nr number id index n #".split())
-IDLE = set("coordinate coordinates coord coords position pos location axis value".split())
+OF_WHEELS = words_of("corner wheel axle side end")
+OF_NAMES = words_of("name point points hardpoint hardpoints node joint label description")
+OF_LINES = words_of("no nr number id index n")
+IDLE = words_of("coordinate coordinates coord coords position pos location axis value")
 # Words of a line that is a heading of a wheel, beside those that name it.
-HEADING = set("suspension axle wheel corner hardpoints points side geometry coordinates".split())
+HEADING = words_of("suspension axle wheel corner hardpoints points side geometry coordinates")
 IDENTITY = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
 ROW = "a name and three numbers, separated by commas, semicolons or tabs"
 

@@ -145,6 +145,11 @@ def plain(name: str) -> str:
     return " ".join(re.findall(r"[^\W_]+", name.casefold()))
 
 
+def words_of(text: str) -> frozenset[str]:
+    """The words of a text."""
+    return frozenset(plain(text).split())
+
+
 def short(text: str) -> str:
     """A text of a file in at most 60 characters, in quotes."""
     quoted = repr(text if len(text) <= 60 else text[:57] + "...")
