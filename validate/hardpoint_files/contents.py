@@ -135,7 +135,7 @@ def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
         HardpointFileError: it is not finite, or farther off than any car.
     """
     # The exponent first: 1e-999999999 compares as small and has a billion digits.
-    if not number.is_finite() or abs(number) > FARTHEST or int(number.as_tuple().exponent) < -1100:
+    if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
         raise HardpointFileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
     return number
 

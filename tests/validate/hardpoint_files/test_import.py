@@ -364,6 +364,7 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,"), "line 3: x of 'CHAS_LowAft' is ''"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,nan"), "line 3: x of 'CHAS_LowAft' is 'NaN'"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,1e999999"), "line 3: x of 'CHAS_LowAft' is"),
+        (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,-5e9999999999999"), "line 3: x of 'CHAS_LowAft' is"),
         (table().replace("CHAS_LowAft,", ","), "line 3: has coordinates without a name"),
         (table() + "CHAS_LowAft,1,2,3\n", "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
         (table(titles="Point,X,Y\n"), "line 1: has no column of z"),
