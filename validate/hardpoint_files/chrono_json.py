@@ -66,6 +66,8 @@ def _read(text: str, source: str, on_the_way: tuple[str, ...]) -> Contents:
     if kind == "Vehicle" and isinstance(data.get(AXLES), list):
         return _vehicle(data, clean, source)
     told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
+    if not isinstance(kind, str):
+        told = "is JSON without a Type, which every file of Chrono's has"
     raise HardpointFileError(source, _line(clean, "Type"), told, KINDS)
 
 

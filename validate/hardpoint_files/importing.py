@@ -328,7 +328,10 @@ class _Import:
         ]
         if unused:
             raise UnknownName(f"point in {self.source}", unused[0], {p.name for p in self.contents.points})
-        part = self.one_of("part", "axle", self.choices.part, {point.part for _, point in known})
+        parts = {point.part for _, point in known}
+        part = self.one_of("part", "axle", self.choices.part, parts)
+        # A file that does not say its axle is of the one that is said.
+        part = part if part in parts else ""
         known = [(ours, point) for ours, point in known if point.part in ("", part)]
         others = [point for point in others if not part or point.part in ("", part)]
         labels = {point.side for _, point in known} - {""}
