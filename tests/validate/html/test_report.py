@@ -106,7 +106,8 @@ def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
     assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
     assert [row[0] for row in read.cells if name in row[0]]
     assert "img" not in {tag for tag, _ in read.opened}
-    assert len(read.scripts) == 3  # plotly and two of our own
+    assert len(read.scripts) == 4  # plotly and three of our own
+    assert any(cell.startswith("</title></script>") for row in read.cells for cell in row)
     assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
