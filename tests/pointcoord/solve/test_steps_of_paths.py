@@ -116,3 +116,25 @@ def test_many_poses_are_led_where_each_is_led(mechanism: Mechanism) -> None:
         allowed = 4 * eps * float(ends.condition[number])
         assert np.abs(one.y - end).max() <= allowed
         assert np.abs(plain.y[number] - end).max() <= allowed
+
+
+@by_mechanism
+@pytest.mark.parametrize("moved", ["arm_angle", "rack"])
+def test_an_input_that_is_held_is_not_to_be_brought_back(mechanism: Mechanism, moved: str) -> None:
+    pose, inputs = at(mechanism, 1.3, 20.0), {"arm_angle": 1.3, "rack": 20.0}
+    inputs[moved] += 1e-3
+    goal = mechanism.known_series({name: np.array([value]) for name, value in inputs.items()})[0]
+    assert assembly.blocked(mechanism, "no way", pose, goal, np.array(True), None).reduce == moved
+
+
+@by_mechanism
+@pytest.mark.parametrize(("angle", "rack"), [(0.8, 50.0), (2.1, -30.0), (0.05, 0.0)])
+def test_a_path_of_one_pose_is_cut_as_in_a_batch(mechanism: Mechanism, angle: float, rack: float) -> None:
+    start = at(mechanism, 1.5, 0.0)
+    known = mechanism.known_series({"arm_angle": np.array([angle]), "rack": np.array([rack])})[0]
+    one = follow(mechanism.map, start.y, known, start.factors, 1e-10)
+    many = follow_plainly(mechanism.map, start.y, known, start.factors, 1e-10)
+    assert one.work.factorisations > 6
+    # Whether a last correction is noise is told by rounding: one Newton step more or less at either end.
+    assert abs(one.work.factorisations - many.work.factorisations) <= 2
+    np.testing.assert_allclose(one.done, many.done, atol=1e-12)
