@@ -63,6 +63,14 @@ class Printed:
 
 
 @dataclass(frozen=True)
+class SpinAxis:
+    """Where a wheel's spin axis points, forward, outboard and up, and what that is taken from."""
+
+    direction: tuple[float, float, float]
+    words: str
+
+
+@dataclass(frozen=True)
 class Contents:
     """A file, read.
 
@@ -71,16 +79,18 @@ class Contents:
         called: what it calls its suspension, by part; empty if it does not say.
         unit: of its lengths, if it says so.
         angles: static angles that it prints, by part and its own words, deg.
-        spin_axis: where its wheel's spin axis points, forward, outboard and up, if said without a point.
-        spin_words: what that is taken from.
+        spin_axes: by part, where its wheel's spin axis points, if said without a point.
+        notes: by part, what the user should know of its points. doubts: by part, what may make them another
+            car than the file's.
     """
 
     points: tuple[FilePoint, ...]
     called: Mapping[str, str] = field(default_factory=dict)
     unit: str = ""
     angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
-    spin_axis: tuple[float, float, float] | None = None
-    spin_words: str = ""
+    spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
+    notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:

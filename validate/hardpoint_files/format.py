@@ -47,13 +47,13 @@ class Names:
     """A suspension in the words of a format.
 
     Attributes:
-        called: a pattern of what the format calls it; empty if it does not say.
+        called: what the format calls it, for people, with a pattern of each; empty if it does not say.
         names: what it calls each of our points, any of several names.
         derived: points that follow from others where the file does not have them.
         notes: what the user should know of these points.
     """
 
-    called: str
+    called: Mapping[str, str]
     names: Mapping[str, tuple[str, ...]]
     derived: Mapping[str, Derived]
     notes: tuple[str, ...] = ()
@@ -87,6 +87,25 @@ class Format:
     not_needed: tuple[str, ...]
     our_own_names: bool
     suspensions: Mapping[str, Names]
+
+    def called(self, said: str) -> str | None:
+        """Our type of the suspension that a file calls so; None if it is none of ours."""
+        return next(
+            (
+                kind
+                for kind, words in self.suspensions.items()
+                if any(re.fullmatch(pattern, said, re.IGNORECASE) for pattern in words.called.values())
+            ),
+            None,
+        )
+
+    @property
+    def known_suspensions(self) -> str:
+        """The suspensions that this format has, in its own words and ours."""
+        return ", ".join(
+            f"{' or '.join(words.called)} ({kind})" if words.called else kind
+            for kind, words in self.suspensions.items()
+        )
 
     def read(self, text: str, source: str) -> Contents:
         """What a file of this format holds.
@@ -123,7 +142,7 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
         our_own_names=table.get("our_own_names", False),
         suspensions={
             kind: Names(
-                called=own.get("called", ""),
+                called=own.get("called", {}),
                 names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
                 derived={
                     ours: Derived(rule["rule"], tuple(rule["of"]))

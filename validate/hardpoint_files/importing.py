@@ -19,8 +19,16 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.scene.scene_text import read_file
 from pointcoord.suspensions import SUSPENSIONS
 from validate.hardpoint_files.axes import OUR_AXES, UNITS, Axes, axes_seen
-from validate.hardpoint_files.contents import Contents, FilePoint, HardpointFileError, Place, plain, short
-from validate.hardpoint_files.derived import RULES, SpinAxis
+from validate.hardpoint_files.contents import (
+    Contents,
+    FilePoint,
+    HardpointFileError,
+    Place,
+    SpinAxis,
+    plain,
+    short,
+)
+from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import Format, Names, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
@@ -119,12 +127,13 @@ def _known_choices(choices: Choices) -> None:
     allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
         ("suspension", choices.suspension, SUSPENSIONS),
         ("side", choices.side, SIDES),
-        ("part", choices.part, PARTS),
         ("unit", choices.unit, UNITS),
     )
     for kind, chosen, names in allowed:
         if chosen is not None and chosen not in names:
             raise UnknownName(kind, chosen, names)
+    if choices.part is not None and not choices.part.isdecimal() and choices.part not in PARTS:
+        raise UnknownName("part", choices.part, (*PARTS, "1", "2", "3"))
 
 
 def _decoded(data: bytes, source: str) -> str:
@@ -155,12 +164,12 @@ class _Import:
 
     def result(self) -> Imported:
         kind = self.suspension()
-        words = self.format.suspensions.get(kind, Names("", {}, {}))
+        words = self.format.suspensions.get(kind, Names({}, {}, {}))
         topology = SUSPENSIONS[kind].closures["drawn"]
-        ours, others, side_said = self.chosen(kind)
-        axis = self.spin_axis()
+        ours, others, part, side_said = self.chosen(kind)
+        axis = self.spin_axis(part)
         self.require_all(kind, topology, words, ours, others, axis)
-        doubts: list[str] = []
+        doubts = list(self.contents.doubts.get(part, ()))
         (axes, axes_by), unit = self.axes(ours), self.unit()
         doubts += self.against_axes(axes, axes_by, topology, ours)
         doubts += self.against_unit(unit, ours)
@@ -168,7 +177,7 @@ class _Import:
         side = self.side(side_said, topology, turned, axes)
         points = self.placed(topology, words, ours, turned, axis, side)
         facts = [self.turning(axes, axes_by, unit)]
-        facts += words.notes
+        facts += (*self.contents.notes.get(part, ()), *words.notes)
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -203,14 +212,15 @@ class _Import:
         if self.choices.suspension:
             return self.choices.suspension
         called = self.contents.called
-        said = called.get(self.choices.part or "") or next(iter(called.values()), "")
-        if said:
-            for kind, words in self.format.suspensions.items():
-                if words.called and words.called in said.casefold():
-                    return kind
+        if called:
+            part = self.one_of("part", "axle", self.choices.part, {*called})
+            said = called.get(part) or next(iter(called.values()))
+            kind = self.format.called(said)
+            if kind is not None:
+                return kind
             raise self.refuse(
-                f"holds a suspension called {short(said)}",
-                f"{', '.join(self.format.suspensions)}; if it is like one of these, say so with --suspension",
+                f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
+                f"{self.format.known_suspensions}; a like one by another name: say so with --suspension",
             )
         missing = {
             kind: len(self.missing(SUSPENSIONS[kind].closures["drawn"], self.named(kind)[0]))
@@ -226,7 +236,7 @@ class _Import:
 
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        words = self.format.suspensions.get(kind, Names("", {}, {})).names
+        words = self.format.suspensions.get(kind, Names({}, {}, {})).names
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in SUSPENSIONS[kind].points}
@@ -251,8 +261,8 @@ class _Import:
         found = [self.lookup(kind)(point) for point in self.contents.points]
         return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
-    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str]:
-        """The points of one wheel by our names, the file's other points, and the side that the file says."""
+    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str, str]:
+        """The points of one wheel by our names, the file's others, and the axle and side by the file."""
         known, others = self.named(kind)
         unused = [
             their
@@ -278,16 +288,21 @@ class _Import:
                     "one of them, or a file of names (--names) that says which",
                     point.line,
                 )
-        return found | dict(self.own.points), others, side
+        return found | dict(self.own.points), others, part, side
 
     def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
         """The part or side of a file that may hold several."""
         labels = sorted(there - {""})
         if chosen and labels and chosen not in labels:
-            raise self.refuse(f"has no points of the {chosen} {what}", f"--{option} {labels[0]}")
-        if not chosen and len(labels) > 1:
             raise self.refuse(
-                f"has points of the {' and of the '.join(labels)} {what}",
+                f"has no points of {what} {chosen}",
+                " or ".join(f"--{option} {label}" for label in labels),
+            )
+        if not chosen and len(labels) > 1:
+            called = self.contents.called
+            told = [f"{label} ({called[label]})" if label in called else label for label in labels]
+            raise self.refuse(
+                f"has points of more than one {what}: {', '.join(told)}",
                 " or ".join(f"--{option} {label}" for label in labels),
             )
         return chosen or (labels[0] if labels else "")
@@ -338,13 +353,13 @@ class _Import:
             return False
         return RULES[rule.rule]([ours[other].place for other in rule.of], 1, axis) is not None
 
-    def spin_axis(self) -> SpinAxis | None:
+    def spin_axis(self, part: str) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
         camber, toe = self.choices.camber, self.choices.toe
-        if self.contents.spin_axis is not None:
+        if part in self.contents.spin_axes:
             if camber is not None or toe is not None:
                 raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
-            return SpinAxis(self.contents.spin_axis, self.contents.spin_words)
+            return self.contents.spin_axes[part]
         if camber is None or toe is None:
             if camber is not None or toe is not None:
                 raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")

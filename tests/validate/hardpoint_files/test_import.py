@@ -89,7 +89,7 @@ def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
     assert "lower_arm_front  = [-110, 257, 69]     # Lower wishbone front pivot, line 9" in text
     assert "# not used: Bracket of our own, line 20" in text
     assert main(["validate", str(target)]) == 0
-    assert "1 of 1 scenes agree" in capsys.readouterr().out
+    assert "1 of 1 scene agrees" in capsys.readouterr().out
     assert main(["import", str(source), "-q"]) == 2
     assert "unrecognized" in capsys.readouterr().err
     assert main(["import", str(source)]) == 0
@@ -284,7 +284,7 @@ def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) 
     assert drawn(found) == rear
     # The inner point lies 1 mm behind the centre, 60 mm further in: 0.955 deg of toe in.
     assert [(check.printed, check.verdict) for check in found.angles] == [(0.0, "agrees"), (0.95, "agrees")]
-    with pytest.raises(HardpointFileError, match="has no points of the rear axle"):
+    with pytest.raises(HardpointFileError, match="has no points of axle rear"):
         imported(tmp_path, lotus_report(), part="rear")
 
 
@@ -372,7 +372,10 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         ("", "has no points"),
         ("only words", "has no points"),
         (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),
-        (LEFT_CHRONO.replace('"Suspension"', '"Steering"'), "line 3: has Type 'Steering'"),
+        (
+            LEFT_CHRONO.replace('"Suspension"', '"Steering"'),
+            "line 3: is a file of Chrono's of Type 'Steering'",
+        ),
         (LEFT_CHRONO.replace("DoubleWishbone", "SolidAxle"), "called 'SolidAxle'"),
         (LEFT_CHRONO.replace("0.718", '"x"'), "line 7: y of 'Spindle: COM' is 'x'"),
         (LEFT_CHRONO.replace("0.718", "NaN"), "NaN is no number"),
