@@ -70,7 +70,7 @@ def test_a_line_of_an_exact_body_is_off_by_its_roundings(model: absolute.Model) 
         # Four standard deviations of thirteen roundings of its length (see test_rounding), and two of each
         # component where it becomes millimetres.
         arms = 4.0 * np.sqrt(13 / 18) * EPS / 2.0 * np.linalg.norm(along, axis=1)[:, None]
-        assert lines.error(ends) == pytest.approx(arms + EPS * along, rel=1e-12)
+        assert lines.error(ends) == pytest.approx(arms + EPS * along, rel=1e-9, abs=0.0)
 
 
 def test_a_line_is_off_by_no_more_than_its_ends(model: absolute.Model) -> None:

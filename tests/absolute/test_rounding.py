@@ -78,7 +78,7 @@ def test_a_row_is_rounded_from_its_arms_its_places_and_its_reach(model: absolute
         arms = np.linalg.norm(offset.first_arm) + np.linalg.norm(offset.second_arm)
         places = np.linalg.norm(ends[0]) + np.linalg.norm(ends[1])
         expected.append(REACH * np.linalg.norm(ends[1] - ends[0]) + PLACE * places + ARM * arms)
-    assert doubt.rounded[0] == pytest.approx(expected + TARGET * np.abs(target[0]), rel=1e-6)
+    assert doubt.rounded[0] == pytest.approx(expected + TARGET * np.abs(target[0]), rel=1e-6, abs=0.0)
     assert doubt.known == pytest.approx(np.abs(target - placed.values), rel=1e-12)
 
 
@@ -95,13 +95,13 @@ def test_rates_are_rounded_from_the_magnitudes_of_their_terms() -> None:
     # a'.e + a.(s2 + w2 x r2 - s1 - w1 x r1) with a' = w1 x a, for directions a.
     terms = w1 * e + s2 + w2 * r2 + s1 + w1 * r1
     doubt = rate_doubt(motion, jacobian, velocities, target)
-    assert doubt.rounded[0] == pytest.approx(RATE * terms + TARGET * np.abs(target[0]), rel=1e-12)
+    assert doubt.rounded[0] == pytest.approx(RATE * terms + TARGET * np.abs(target[0]), rel=1e-9, abs=0.0)
     assert doubt.known[0] == pytest.approx(np.abs(target[0] - jacobian[0] @ velocities[0]), rel=1e-12)
     # a''.e, 2 a'.e', a.e'', with a'' = w1 x (w1 x a) and e'' of both arms turned twice; and the rate of the
     # accelerations, which are the same here.
     bend = w1 * w1 * e + 2.0 * w1 * (s2 + w2 * r2 + s1 + w1 * r1) + w2 * w2 * r2 + w1 * w1 * r1
     doubt = second_doubt(motion, motion, jacobian, velocities, drift, target)
     expected = RATE * terms + DRIFT * bend + TARGET * np.abs(target[0])
-    assert doubt.rounded[0] == pytest.approx(expected, rel=1e-12)
+    assert doubt.rounded[0] == pytest.approx(expected, rel=1e-9, abs=0.0)
     left = target[0] - drift[0] - jacobian[0] @ velocities[0]
     assert doubt.known[0] == pytest.approx(np.abs(left), rel=1e-12)
