@@ -547,6 +547,8 @@ def _out_of_reach(measured: Measured, found: Found) -> list[str]:
         others = ", ".join(measured.rows[i] for i in lost[NAMED : 2 * NAMED])
         more = f" and {len(lost) - 2 * NAMED} more" if len(lost) > 2 * NAMED else ""
         notes.append(f"likewise left out: {others}{more}")
+    if len(lost) * 2 > len(measured.rows):
+        notes.append(f"only {len(measured.rows) - len(lost)} of {len(measured.rows)} rows are compared")
     return notes
 
 
