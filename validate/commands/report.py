@@ -21,6 +21,7 @@ from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
 from validate.output.console import Console
 from validate.output.document import Head
+from validate.output.progress import progress
 from validate.plain_text import shown
 from validate.published.tables import compare_published
 
@@ -111,7 +112,7 @@ def _with_more(
     if hard is None and whole:
         hard = _some_hard_cases(run.head, console)
     if cost is None and whole:
-        cost = _first_look_at_cost(run.head)
+        cost = _first_look_at_cost(run.head, console)
     if options.hard is None:
         what = "more than a few hard cases" if whole else "hard cases"
         left_out.append(
@@ -136,7 +137,7 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
     from validate.hard.catalogue import chosen
 
     cases = chosen(HARD)
-    with console.working("hard cases", len(cases)) as at:
+    with console.working("hard cases", len(cases), lines=True) as at:
         done: list[str] = []
 
         def tell(one: hard_run.Examined) -> None:
@@ -149,7 +150,7 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
     return HardCases.of(mine.document(hard_report.results_data(results), status, complete=True))
 
 
-def _first_look_at_cost(head: Head) -> Report:
+def _first_look_at_cost(head: Head, console: Console) -> Report:
     # So does the study of cost.
     from validate.cost.accuracy import accuracy_rows
     from validate.cost.scenes import own_scene, study_scene
@@ -159,7 +160,8 @@ def _first_look_at_cost(head: Head) -> Report:
     command = shlex.join(head.command)
     store = Store(None, Header.here(command))
     scenes = (study_scene(SCENE, own_scene(SCENE)),)
-    rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True)
+    with progress(console, "a first look at cost") as told:
+        rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True, progress=told)
     return Report("in this run", store.header, command, True, tuple(rows))
 
 

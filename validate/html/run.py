@@ -210,7 +210,7 @@ class Run:
             word = f"{one.verdict} ({one.why_not})" if one.why_not else one.verdict
             by_verdict.setdefault(word, []).append(one.examined.name)
         agreeing = len(by_verdict.pop("agrees", ()))
-        parts = [f"{agreeing} of {count} scenes agree"]
+        parts = [report.agreeing(agreeing, count)]
         parts += [f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items())]
         if self.record is not None and not_run:
             parts.append(f"not run ({self.record.stopped}): {named(not_run)}")

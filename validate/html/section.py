@@ -57,7 +57,7 @@ class Grid:
     """A table; the first cell of a row is its name."""
 
     template: ClassVar[str] = "grid.html"
-    scripts: ClassVar[tuple[str, ...]] = ()
+    scripts: ClassVar[tuple[str, ...]] = ("grid.js",)
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
