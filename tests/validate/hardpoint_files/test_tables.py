@@ -216,14 +216,17 @@ def test_a_lonely_r_is_right_beside_an_l_and_rear_beside_an_f(before: bool, tmp_
     assert len(found.unknown) == 2 * len(CAR)
 
 
-@pytest.mark.parametrize(("letters", "chosen"), [("FR", {"part": "rear"}), ("LR", {"side": "right"})])
-def test_a_letter_over_columns_is_read_by_the_other_letter(
-    letters: str, chosen: Mapping[str, str], tmp_path: Path
-) -> None:
-    first, second = (CAR, WHEELS["rear", "right"]) if letters == "FR" else (WHEELS["front", "left"], CAR)
+@pytest.mark.parametrize(("letters", "label"), [("FR", "part"), ("LR", "side")])
+def test_a_letter_over_columns_is_read_by_the_other_letter(letters: str, label: str, tmp_path: Path) -> None:
+    cars = {
+        "part": {"front": CAR, "rear": WHEELS["rear", "right"]},
+        "side": {"left": WHEELS["front", "left"], "right": CAR},
+    }[label]
     titles = "Point," + ",".join(f"{letter} {axis}" for letter in letters for axis in "XYZ")
-    both = [f"{WORDS[name]},{cells(first[name])},{cells(second[name])}" for name in CAR]
-    assert drawn(imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **chosen)) == second
+    both = [f"{WORDS[name]}," + ",".join(cells(car[name]) for car in cars.values()) for name in CAR]
+    for chosen, car in cars.items():
+        found = imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **{label: chosen})
+        assert drawn(found) == car
 
 
 def test_a_name_of_the_other_side_than_its_column_is_refused(tmp_path: Path) -> None:
