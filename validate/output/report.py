@@ -72,7 +72,7 @@ def heading(quantity: str, name: str) -> str:
 
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
-    """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
+    """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
     # A solver that is held to what it states need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
@@ -145,6 +145,11 @@ def counted_as(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def agreeing(agreed: int, count: int) -> str:
+    """How many scenes agree: 1 of 1 scene agrees, 2 of 3 scenes agree."""
+    return f"{agreed} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
+
+
 def verdict_lines(outcome: Outcome) -> list[str]:
     """What cannot be used, and why there is no verdict where the rows do not say it."""
     why = [f"  no verdict: {outcome.why_no_verdict}"] if outcome.why_no_verdict else []
@@ -157,13 +162,12 @@ def explained_lines(explanations: Sequence[Explanation]) -> list[str]:
 
 
 def agreement_line(outcome: Outcome) -> str:
-    """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
+    """One line for a pair that agrees: how much of its tolerance a difference uses at most."""
     first, second = (s.formulation for s in outcome.solutions)
     worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
     return (
-        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; the difference "
-        f"that comes closest to its tolerance is {worst.share:.1e} of it "
-        f"({about(worst.quantity, worst.name)})"
+        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; no difference "
+        f"uses more than {worst.share:.1e} of its tolerance ({about(worst.quantity, worst.name)})"
         + (f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else "")
     )
 

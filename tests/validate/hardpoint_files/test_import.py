@@ -89,7 +89,7 @@ def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
     assert "lower_arm_front  = [-110, 257, 69]     # Lower wishbone front pivot, line 9" in text
     assert "# not used: Bracket of our own, line 20" in text
     assert main(["validate", str(target)]) == 0
-    assert "1 of 1 scenes agree" in capsys.readouterr().out
+    assert "1 of 1 scene agrees" in capsys.readouterr().out
     assert main(["import", str(source), "-q"]) == 2
     assert "unrecognized" in capsys.readouterr().err
     assert main(["import", str(source)]) == 0

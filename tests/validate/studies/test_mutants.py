@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from program import ENVIRONMENT
 
-from validate.studies.mutants.changes import Change, mutants
+from validate.studies.mutants.changes import Change, mutants, sampled
 from validate.studies.mutants.plan import read_plan
 from validate.studies.mutants.reasons import read_reasons
 
@@ -176,3 +176,32 @@ def test_the_projects_plan_and_reasons_are_read_and_speak_of_mutated_modules() -
     plan = read_plan(root)
     mutated = {module for part in plan.parts for module in part.modules}
     assert {change.module for change in read_reasons()} <= mutated
+
+
+def test_a_sample_is_drawn_by_name_and_grows_with_its_count() -> None:
+    every = mutants("toy.sum", SUM)
+    assert sampled(every, None) == every
+    assert sampled(every, len(every) + 1) == every
+    for count in range(1, len(every)):
+        fewer, more = sampled(every, count), sampled(every, count + 1)
+        assert len(fewer) == count
+        assert set(fewer) < set(more)
+        assert list(fewer) == [mutant for mutant in every if mutant in fewer]
+    # New mutants take places, but do not bring in old ones that were not drawn.
+    longer = mutants("toy.sum", SUM + "\n\ndef other(x):\n    return x + 1\n")
+    old = {mutant.change for mutant in every} & {mutant.change for mutant in sampled(longer, 6)}
+    assert old
+    assert old <= {mutant.change for mutant in sampled(every, 6)}
+
+
+def test_a_part_with_a_sample_is_tried_in_part_unless_the_whole_is_asked_for(
+    toy: Path, run: Callable[..., tuple[int, dict[str, Any], str]]
+) -> None:
+    (toy / "plan.toml").write_text(PLAN + "sample = 2\n", encoding="utf-8")
+    found = run()[1]
+    assert (len(found["mutants"]), found["made"]) == (2, {"toy.sum": 12})
+    assert len(run("--whole")[1]["mutants"]) == 12
+    (toy / "plan.toml").write_text(PLAN + "sample = 0\n", encoding="utf-8")
+    status, _, errors = run()
+    assert status == 2
+    assert "sample = 0" in errors

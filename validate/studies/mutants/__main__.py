@@ -11,8 +11,8 @@ tried in a process of its own (see `trial`) against the tests that run the chang
     survived     no test fails, and nobody has said why.
 
 Exit status 0 only if none survived. Reasons of changes that do not exist any more, or that a test does
-notice, are listed as stale. `plan.toml` says which modules are mutated; the others of the mathematics are
-listed too.
+notice, are listed as stale. `plan.toml` says which modules are mutated, and of which a sample of the mutants
+is tried (--whole: all of them); the others of the mathematics are listed too.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import os
 import random
 import sys
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ from validate.output.console import Console
 from validate.output.document import Head, write_json
 from validate.output.files import require_writable
 from validate.output.report import table
-from validate.studies.mutants.changes import Change, Mutant, mutants, source_of
+from validate.studies.mutants.changes import Change, Mutant, mutants, sampled, source_of
 from validate.studies.mutants.plan import PLAN, Part, Plan, read_plan
 from validate.studies.mutants.reasons import REASONS, read_reasons
 from validate.studies.mutants.store import Store
@@ -61,11 +61,13 @@ class Study:
     """What a run found.
 
     Attributes:
+        made: how many mutants each module has, tried or not.
         stale: changes that have a reason, and either do not exist or are noticed.
         left_out: modules of the mathematics that are not mutated.
     """
 
     rows: tuple[Row, ...]
+    made: Mapping[str, int]
     stale: tuple[Change, ...]
     left_out: tuple[str, ...]
 
@@ -82,6 +84,7 @@ def study(
     console: Console,
     *,
     modules: Iterable[str] = (),
+    whole: bool = False,
     sample: int | None = None,
     seed: int = 0,
     workers: int = 1,
@@ -90,7 +93,8 @@ def study(
     """Try the mutants of a plan.
 
     Args:
-        modules: these only; packages stand for what is in them. sample: so many of all, drawn by `seed`.
+        modules: these only; packages stand for what is in them. whole: also what the plan does not draw.
+        sample: so many of all these, drawn by `seed`.
         workers: trials at a time. grace: seconds of processor time that any trial has beyond its tests'.
     Raises:
         UsageError: a module is not in the plan, or a test fails without a change.
@@ -98,17 +102,19 @@ def study(
     """
     wanted = _wanted(plan, tuple(modules))
     made = {name: mutants(name, source_of(plan.root, name).read_text("utf-8")) for _, name in wanted}
-    every = [mutant for found in made.values() for mutant in found]
+    planned = {name: sampled(made[name], None if whole else part.sample) for part, name in wanted}
+    every = [mutant for found in planned.values() for mutant in found]
     chosen = set(every if sample is None else random.Random(seed).sample(every, min(sample, len(every))))
     rows: list[Row] = []
     for part, name in wanted:
-        mine = [mutant for mutant in made[name] if mutant in chosen]
+        mine = [mutant for mutant in planned[name] if mutant in chosen]
         if mine:
             rows += _of_module(plan, part, name, mine, reasons, store, console, workers, grace)
-    exist = {mutant.change for mutant in every}
+    exist = {mutant.change for found in made.values() for mutant in found}
     noticed = {row.change for row in rows if row.result in ("killed", "hung")}
     stale = [c for c in reasons if c.module in made and (c not in exist or c in noticed)]
-    return Study(tuple(rows), tuple(stale), plan.left_out)
+    counts = {name: len(found) for name, found in made.items()}
+    return Study(tuple(rows), counts, tuple(stale), plan.left_out)
 
 
 def _wanted(plan: Plan, asked: tuple[str, ...]) -> list[tuple[Part, str]]:
@@ -159,10 +165,13 @@ def study_text(done: Study) -> str:
     count = Counter((row.change.module, row.result) for row in done.rows)
     names = list(dict.fromkeys(row.change.module for row in done.rows))
     seconds = {name: sum(row.seconds for row in done.rows if row.change.module == name) for name in names}
-    lines = [_line(name, [count[name, result] for result in RESULTS], seconds[name]) for name in names]
+    lines = [
+        _line(name, done.made[name], [count[name, result] for result in RESULTS], seconds[name])
+        for name in names
+    ]
     total = [sum(count[name, result] for name in names) for result in RESULTS]
-    lines.append(_line("all", total, sum(seconds.values())))
-    blocks = [table(("module", "mutants", *RESULTS, "CPU s"), lines)]
+    lines.append(_line("all", sum(done.made[name] for name in names), total, sum(seconds.values())))
+    blocks = [table(("module", "mutants", "tried", *RESULTS, "CPU s"), lines)]
     for title, changes in (
         ("Survived, and nobody has said why", [row.change for row in done.survivors]),
         ("Stale reasons: the change does not exist, or a test notices it", done.stale),
@@ -174,14 +183,15 @@ def study_text(done: Study) -> str:
     return "\n\n".join(blocks)
 
 
-def _line(name: str, counts: Sequence[int], seconds: float) -> tuple[str, ...]:
-    return name, str(sum(counts)), *map(str, counts), f"{seconds:.0f}"
+def _line(name: str, made: int, counts: Sequence[int], seconds: float) -> tuple[str, ...]:
+    return name, str(made), str(sum(counts)), *map(str, counts), f"{seconds:.0f}"
 
 
 def study_data(done: Study) -> dict[str, Any]:
     """For JSON: every mutant, the stale reasons, what is left out."""
     return {
         "counts": dict(Counter(row.result for row in done.rows)),
+        "made": dict(done.made),
         "mutants": [asdict(row) for row in done.rows],
         "stale_reasons": [asdict(change) for change in done.stale],
         "not_mutated": list(done.left_out),
@@ -194,6 +204,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog=f"python -m {PROGRAM}", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--modules", metavar="A,B", help="these only, or those of these packages")
+    parser.add_argument("--whole", action="store_true", help="all mutants of modules that the plan samples")
     parser.add_argument("--sample", type=int, metavar="N", help="so many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=0, help="of the sample")
     parser.add_argument(
@@ -226,6 +237,7 @@ def _run(options: argparse.Namespace, console: Console) -> ExitStatus:
         Store(plan, options.store),
         console,
         modules=options.modules.split(",") if options.modules else (),
+        whole=options.whole,
         sample=options.sample,
         seed=options.seed,
         workers=options.workers,

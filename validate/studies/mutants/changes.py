@@ -8,8 +8,9 @@ numbers change that name. Annotations, decorators and the text of messages are l
 from __future__ import annotations
 
 import ast
+import hashlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -93,6 +94,17 @@ def mutants(module: str, source: str) -> tuple[Mutant, ...]:
             where = range(lines.start + first, lines.stop + first)
             found.append(Mutant(replace(change, place=count[change]), before + text + after, where))
     return tuple(found)
+
+
+def sampled(found: Sequence[Mutant], count: int | None) -> tuple[Mutant, ...]:
+    """So many mutants of a module, drawn by their names: one that is drawn stays drawn for any larger count.
+
+    Other edits of the module draw no other ones, but for those that they make or take away.
+    """
+    if count is None or count >= len(found):
+        return tuple(found)
+    drawn = sorted(found, key=lambda mutant: hashlib.sha256(str(mutant.change).encode()).digest())[:count]
+    return tuple(mutant for mutant in found if mutant in set(drawn))
 
 
 def _pieces(source: str) -> Iterator[tuple[int, str, str, str]]:

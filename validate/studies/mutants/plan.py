@@ -5,6 +5,7 @@ mathematics = ["package.room"]   # what the study speaks of; modules of it that 
 [[part]]
 modules = ["package.room.module"]
 tests = ["tests/room/test_module.py"]   # files or folders
+sample = 12   # of each module so many mutants; without it all
 """
 
 from __future__ import annotations
@@ -22,10 +23,15 @@ PLAN = Path(__file__).with_name("plan.toml")
 
 @dataclass(frozen=True)
 class Part:
-    """Modules, and the files of tests that are to notice a change of them."""
+    """Modules, and the files of tests that are to notice a change of them.
+
+    Attributes:
+        sample: how many mutants of each module are tried; None: all.
+    """
 
     modules: tuple[str, ...]
     tests: tuple[str, ...]
+    sample: int | None = None
 
 
 @dataclass(frozen=True)
@@ -54,11 +60,15 @@ def read_plan(root: Path, path: Path = PLAN) -> Plan:
     """
     try:
         content: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
-        parts = tuple(Part(tuple(part["modules"]), tuple(part["tests"])) for part in content["part"])
+        parts = tuple(
+            Part(tuple(part["modules"]), tuple(part["tests"]), part.get("sample")) for part in content["part"]
+        )
         rooms = content["mathematics"]
     except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError) as error:
         raise UsageError(f"{path}: no plan of mutants ({error!r}); see {PLAN}") from error
     for part in parts:
+        if part.sample is not None and not (type(part.sample) is int and part.sample > 0):
+            raise UsageError(f"{path}: sample = {part.sample!r}; allowed: whole numbers from 1, or no sample")
         files = [source_of(root, module) for module in part.modules] + [root / test for test in part.tests]
         for file in files:
             if not file.exists():
