@@ -173,6 +173,19 @@ SHAPES: dict[str, str] = {
             *(f"{WORDS[n]},{cells(WHEELS[part, 'left'][n])},{cells(WHEELS[part, 'right'][n])}" for n in CAR),
         )
     ),
+    "headings under headings": "\n".join(
+        line
+        for part in ("rear", "front")
+        for line in (
+            f"{part.title()} axle,,,",
+            *(("Point,X,Y,Z",) if part == "rear" else ()),
+            *(
+                row
+                for side in ("left", "right")
+                for row in (f"{side.upper()},,,", *rows(str, WHEELS[part, side]))
+            ),
+        )
+    ),
     "wheels over the titles": "\n".join(
         [
             "," + ",".join(f"{' '.join(of)},," for of in WHEELS),
@@ -450,6 +463,7 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
         ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
         ("-3.5\t529\t122.84", "line 1: has coordinates without a name"),
         (on_its_side() + "\n" + on_its_side(), "line 6: has a second table that lies on its side"),
+        ("Point;Left;Right\nLBJ;(1, 2, 3);(1, -2, 3)", "line 2: has 2 places for 'LBJ'"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
         (
             "VERSION\n  15\nTEMP_SETTINGS\n  14\nDouble Wishbone, Push Rod",
