@@ -62,6 +62,13 @@ def test_what_a_series_left_out_and_newtons_step_count_together(
     assert not ends_on_branch(*(share * above for share in shares), u=u)
 
 
+@pytest.mark.parametrize("u", [1.0, 1e-3])
+def test_a_series_as_near_to_the_other_assembly_is_not_on_the_branch(u: float) -> None:
+    # The other one is 2 u away.
+    assert not ends_on_branch(u, 0.0, 0.0, u=u)
+    assert not ends_on_branch(0.0, 0.0, u, u=u)
+
+
 def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
     assert ends_on_branch(0.0, 0.0, 0.0, u=1.0)
     assert not ends_on_branch(0.0, 0.0, 0.0, u=-1.0)

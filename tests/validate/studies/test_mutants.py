@@ -11,8 +11,10 @@ import pytest
 from program import ENVIRONMENT
 
 from validate.studies.mutants.changes import Change, mutants, sampled
-from validate.studies.mutants.plan import read_plan
+from validate.studies.mutants.plan import Part, Plan, read_plan
 from validate.studies.mutants.reasons import read_reasons
+from validate.studies.mutants.store import Store
+from validate.studies.mutants.trial import Verdict
 
 SUM = '''"""A sum by a loop, and a sign that no test asks for."""
 
@@ -176,6 +178,23 @@ def test_the_projects_plan_and_reasons_are_read_and_speak_of_mutated_modules() -
     plan = read_plan(root)
     mutated = {module for part in plan.parts for module in part.modules}
     assert {change.module for change in read_reasons()} <= mutated
+
+
+def test_what_survives_one_file_of_tests_is_tried_again_when_its_part_has_another(tmp_path: Path) -> None:
+    for name in ("toy.py", "test_one.py", "test_other.py"):
+        (tmp_path / name).write_text("")
+    alone = Part(("toy",), ("test_one.py",))
+    both = Part(("toy",), ("test_one.py", "test_other.py"))
+    plan, lived, died = Plan(tmp_path, (both,), ()), Change("toy", "", "1", "2"), Change("toy", "", "1", "0")
+    for change, verdict in (
+        (lived, Verdict("survived", "", 0.0)),
+        (died, Verdict("killed", "test_one.py::test", 0.0)),
+    ):
+        Store(plan, tmp_path / "store").keep_verdict(alone, change, verdict)
+    store = Store(plan, tmp_path / "store")
+    assert store.verdict(alone, lived) == Verdict("survived", "", 0.0)
+    assert store.verdict(both, lived) is None
+    assert store.verdict(both, died) == store.verdict(alone, died)
 
 
 def test_a_sample_is_drawn_by_name_and_grows_with_its_count() -> None:

@@ -70,8 +70,10 @@ class Store:
             # Killed by a file of tests that has not changed.
             for file in self._files(part):
                 known = self._verdicts.get((held_to + self._digest((file,)), change))
-                if known is not None:
-                    break
+                # One that survived this file alone, when the part had no other, may be killed by another.
+                if known is not None and known.result == "killed":
+                    return known
+            return None
         return known
 
     def keep_verdict(self, part: Part, change: Change, verdict: Verdict) -> None:
