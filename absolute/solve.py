@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from absolute.description import Model
 from absolute.effects import effects_of
@@ -136,7 +137,7 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
         if not refined.closed[place]:
             raise _stalled(mechanism, bad, values[here], refined, place)
         if refined.kept[place]:
-            raise _overflow(mechanism, bad, series[here, 1:].tolist())
+            raise _overflow(mechanism, bad, series[here, 1:])
         if again == bad:
             raise branch_error(mechanism, bad, values[here], refined.world[place])
         again = bad
@@ -161,7 +162,7 @@ def _store(
         refined = refine(mechanism, found.part(part), targets[:, part], rates)
         good = refined.closed & refined.kept & refined.sure
         if rates:
-            good &= np.isfinite(refined.acceleration).all(axis=1)
+            good &= _in_range(mechanism, refined)
         count = len(good) if good.all() else int(np.argmin(good))
         record.store(refined, count)
         if count:
@@ -169,6 +170,14 @@ def _store(
         if count < len(good):
             return refined, count, before
     return None
+
+
+def _in_range(mechanism: Mechanism, refined: Refined) -> NDArray[np.bool_]:
+    """(N,) whether accelerations of all points are finite in mm: o'' + w' x r + w x (w x r), where no r is
+    longer than twice the size, so that no component is more than 8 (|a| + |v|^2) for the largest of the
+    numbers of the bodies."""
+    speed, second = (np.abs(rate).max(axis=1) for rate in (refined.velocity, refined.acceleration))
+    return np.asarray(np.isfinite(8.0 * (second + speed * speed) * max(1.0, mechanism.drawing.size)))
 
 
 def _stalled(
@@ -196,12 +205,15 @@ def _stalled(
     )
 
 
-def _overflow(mechanism: Mechanism, instant: int, rates: list[list[float]]) -> InputError:
+def _overflow(mechanism: Mechanism, instant: int, rates: Array) -> InputError:
     names = list(mechanism.model.inputs)
+    speed, second = np.abs(rates)
+    # The squares of speeds are accelerations.
+    fastest = int(np.argmax(np.maximum(speed, np.sqrt(second))))
     return InputError(
-        f"instant {instant}: rates and accelerations {rates} of the inputs {names} overflow; "
+        f"instant {instant}: rates and accelerations {rates.tolist()} of the inputs {names} overflow; "
         "give smaller ones",
-        names[0],
+        names[fastest],
         instant,
-        rates,
+        rates.tolist(),
     )

@@ -50,3 +50,63 @@ def test_an_estimate_by_matrices_is_that_of_each_point_and_component(
     monkeypatch.setattr(absolute.results, "sampled", sampled)
     absolute.solve(model, inputs, chassis, errors=True, input_errors=doubts)
     assert {*model.points, *model.moving} <= set(compared)
+
+
+def test_instants_of_a_long_motion_have_the_errors_they_have_alone(
+    model: absolute.Model, kind: kinds.Kind
+) -> None:
+    # More of them than are estimated together, and the chassis moves.
+    t = np.linspace(0.0, 1.0, 70)
+    inputs = kind.inputs(t)
+    random = np.random.default_rng(6)
+    chassis = random.normal(size=(70, 3, 3)) * 100.0
+    doubts = {"arm_angle": 1e-6 * random.uniform(size=(70, 3))}
+    long = absolute.solve(model, inputs, chassis, errors=True, conditions=True, input_errors=doubts)
+    for k in (0, 31, 32, 33, 63, 64, 69):
+        one = slice(k, k + 1)
+        alone = absolute.solve(
+            model,
+            {name: column[one] for name, column in inputs.items()},
+            chassis[one],
+            errors=True,
+            conditions=True,
+            input_errors={name: column[one] for name, column in doubts.items()},
+        )
+        assert long.condition is not None
+        assert alone.condition is not None
+        assert long.condition[k] == pytest.approx(alone.condition[0], rel=1e-9)
+        for kind_of in ("position_error", "velocity_error", "acceleration_error", "rotation_error"):
+            for name, error in getattr(alone, kind_of).items():
+                # What the input may be off is a million times what is rounded.
+                assert getattr(long, kind_of)[name][k] == pytest.approx(error[0], rel=1e-3, abs=1e-12), name
+
+
+def test_nothing_is_told_that_is_not_asked_for(model: absolute.Model, kind: kinds.Kind) -> None:
+    motion = absolute.solve(model, kind.inputs(np.linspace(0.0, 1.0, 3)))
+    assert motion.condition is None
+    assert not motion.position_error
+    assert not motion.velocity_error
+    assert not motion.acceleration_error
+    assert not motion.rotation_error
+    assert not motion.effects
+    assert not motion.effect_errors
+    assert motion.velocity.keys() == motion.acceleration.keys() == model.points.keys()
+    still = absolute.solve(model, kind.inputs(np.linspace(0.0, 1.0, 3)), rates=False, errors=True)
+    assert not still.velocity
+    assert not still.angular_acceleration
+    assert not still.acceleration_error
+    assert still.position_error.keys() == model.points.keys()
+
+
+def test_the_residual_is_told_in_millimetres(
+    model: absolute.Model, kind: kinds.Kind, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As if rows were off by so much of the size, which is the furthest that a point is drawn from the mean.
+    off = np.array([0.25, 0.5, 0.125])
+    solver = absolute.solve.__globals__
+    refine = solver["refine"]
+    monkeypatch.setitem(solver, "refine", lambda *arguments: refine(*arguments)._replace(residual=off))
+    motion = absolute.solve(model, kind.inputs(np.linspace(0.0, 1.0, 3)))
+    points = np.array(list(model.points.values()))
+    size = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
+    assert motion.residual == pytest.approx(off * size, rel=1e-12)

@@ -20,10 +20,13 @@ def jacobians(mechanism: Mechanism, turns: Array, seed: int = 4) -> Array:
 
 
 @pytest.mark.parametrize("furthest", [0.0, 1e-3, 0.1, 1.0])
-def test_shared_inverses_are_those_of_each_whole_jacobian(model: absolute.Model, furthest: float) -> None:
+@pytest.mark.parametrize("count", [1, 3, 33, 100])
+def test_shared_inverses_are_those_of_each_whole_jacobian(
+    model: absolute.Model, furthest: float, count: int
+) -> None:
     mechanism = Mechanism(model)
-    many = jacobians(mechanism, np.linspace(0.0, furthest, 100))
-    right_hand = np.random.default_rng(5).normal(size=(100, mechanism.stack.count))
+    many = jacobians(mechanism, np.linspace(0.0, furthest, count))
+    right_hand = np.random.default_rng(5).normal(size=(count, mechanism.stack.count))
     inverse, signs = inverses(mechanism.groups, many)
     found, expected = (
         times(mechanism.groups, inverse, right_hand),

@@ -243,10 +243,35 @@ def test_results_and_descriptions_cannot_be_changed(
         strut.points["strut_top"] = (0, 0, 0)
 
 
-def test_rates_too_large_for_floating_point_are_refused(strut: absolute.Model) -> None:
-    inputs = {"arm_angle": np.array([[1.6, 1e200, 0.0]]), "rack": np.zeros((1, 3))}
-    with pytest.raises(InputError, match="instant 0"):
+@pytest.mark.parametrize("instant", [0, 1, 300])
+@pytest.mark.parametrize(
+    ("name", "fast"), [("arm_angle", [1e200, 0.0]), ("rack", [1e300, 1e308]), ("rack", [0.0, 1.7e308])]
+)
+def test_rates_too_large_for_floating_point_are_refused_with_their_input_and_instant(
+    strut: absolute.Model, name: str, fast: list[float], instant: int
+) -> None:
+    # Of two seconds, so that instants before the 256th and after it are solved apart.
+    inputs = {"arm_angle": np.tile([1.6, 0.1, 0.2], (302, 1)), "rack": np.tile([5.0, 0.3, 0.4], (302, 1))}
+    inputs[name][instant, 1:] = fast
+    with pytest.raises(InputError, match=f"instant {instant}: ") as caught:
         absolute.solve(strut, inputs)
+    assert (caught.value.name, caught.value.instant) == (name, instant)
+    assert caught.value.value == [[column[instant, k] for column in inputs.values()] for k in (1, 2)]
+    kept = caught.value.partial
+    assert (0 if kept is None else len(kept.residual)) == instant
+
+
+@pytest.mark.parametrize("fast", np.logspace(150.0, 155.0, 11))
+def test_rates_are_finite_or_refused(strut: absolute.Model, fast: float) -> None:
+    # The bodies' own numbers, in units of the size, overflow a little later than those of points in mm.
+    inputs = {"arm_angle": np.array([[1.6, fast, 0.0]]), "rack": np.zeros((1, 3))}
+    # Squared 1e305, times 500 mm and the ratio of arms.
+    if fast > 3e152:
+        with pytest.raises(InputError, match="overflow"):
+            absolute.solve(strut, inputs)
+    else:
+        motion = absolute.solve(strut, inputs)
+        assert all(np.isfinite(array).all() for array in motion.acceleration.values())
 
 
 @pytest.mark.parametrize("tiny", [1e-258, 1e-160, 5e-324])

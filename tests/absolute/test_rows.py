@@ -228,3 +228,23 @@ def test_the_drift_is_rounded_no_more_than_its_terms_say(strut: absolute.Model, 
 
 def times(a: matrix, b: matrix) -> matrix:
     return matrix([a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)])
+
+
+def test_slopes_of_targets_are_their_derivatives(strut: absolute.Model) -> None:
+    mechanism = Mechanism(strut)
+    random = np.random.default_rng(4)
+    series = random.normal(size=(7, 3, 2)) * [[0.5, 50.0]]
+    series[:, 0, 0] += 1.6
+    slopes = mechanism.target_slopes(series)
+    driven = slice(mechanism.joint_rows, None)
+    h = 1e-5
+    for of in range(3):
+        off = np.zeros((3, 1))
+        off[of] = h
+        change = mechanism.target_series(series + off) - mechanism.target_series(series - off)
+        # Truncation h^2 / 6 times a third derivative below 100, and rounding of two values over 2 h.
+        assert np.abs(change[..., driven] / (2 * h) - slopes[of]).max() < 100 * h**2 / 6 + 8 * EPS / h
+    # One instant after the other is the same.
+    for k in range(7):
+        one = mechanism.targets(*series[k].tolist())
+        assert np.allclose(one, mechanism.target_series(series)[:, k], rtol=4 * EPS, atol=0)

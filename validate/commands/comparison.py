@@ -410,11 +410,11 @@ def _say_at_the_end(
     results: _Results, pairs: Sequence[tuple[str, str]], count: int, console: Console
 ) -> None:
     if results.printed:
-        console.say(report.findings_text(results.findings, results.printed) + "\n")
+        console.show((*report.findings_parts(results.findings, results.printed), ""))
     for name, why in results.unprinted:
         console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
     if results.paper:
-        console.say(report.paper_text(results.paper) + "\n")
+        console.show((*report.paper_parts(results.paper), ""))
     agreed = [results.agreed.get(pair, 0) for pair in pairs]
     counts = [report.agreeing(agreed[0], count), *(f"{more} of {count}" for more in agreed[1:])]
     told = [

@@ -1,8 +1,8 @@
 """A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
 
-A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`. A
-vehicle names the files of its suspensions and steering from Chrono's folder of data, and puts each suspension
-at a place of its chassis (WheeledVehicle.cpp).
+A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`.
+A vehicle names the files of its suspensions and steering from Chrono's folder of data, and puts each
+suspension at a place of its chassis (WheeledVehicle.cpp).
 """
 
 from __future__ import annotations
@@ -66,6 +66,8 @@ def _read(text: str, source: str, on_the_way: tuple[str, ...]) -> Contents:
     if kind == "Vehicle" and isinstance(data.get(AXLES), list):
         return _vehicle(data, clean, source)
     told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
+    if not isinstance(kind, str):
+        told = "is JSON without a Type, which every file of Chrono's has"
     raise HardpointFileError(source, _line(clean, "Type"), told, KINDS)
 
 

@@ -172,21 +172,21 @@ def agreement_line(outcome: Outcome) -> str:
     )
 
 
-def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
+def findings_parts(findings: Sequence[Finding], scenes: Sequence[str]) -> tuple[Part, ...]:
     """What the printed formulas get wrong, each beside its erratum."""
     if not findings:
-        return f"The paper's printed formulas agree in {', '.join(scenes)}."
+        return (f"The paper's printed formulas agree in {', '.join(scenes)}.",)
     rows = [
         (f.scene, QUANTITIES[f.quantity].words, _with_unit(f.worst.difference, f.worst.unit), f.erratum)
         for f in findings
     ]
-    lines = table(("scene", "wrong quantity", "largest difference", "erratum"), rows)
-    return "The paper's formulas as printed, against the mended ones:\n" + lines
+    head = ("scene", "wrong quantity", "largest difference", "erratum")
+    return "The paper's formulas as printed, against the mended ones:", _table(head, rows)
 
 
-def paper_text(rows: Sequence[PaperRow]) -> str:
+def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
     """Tables 2 and 3, printed and computed."""
-    blocks = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
+    parts: list[Part] = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
     for number_of_table, label in ((2, "theta [deg]"), (3, "S [mm]")):
         mine = [row for row in rows if row.printed.table == number_of_table]
         lines = [
@@ -214,9 +214,9 @@ def paper_text(rows: Sequence[PaperRow]) -> str:
             "alpha apart",
             "slip of print",
         )
-        blocks.append(f"Table {number_of_table}\n" + table(head, lines))
-    blocks.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
-    return "\n".join(blocks)
+        parts += [f"Table {number_of_table}", _table(head, lines)]
+    parts.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
+    return tuple(parts)
 
 
 def _vector(vector: Sequence[float], form: str) -> str:

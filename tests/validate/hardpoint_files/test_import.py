@@ -364,6 +364,10 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,"), "line 3: x of 'CHAS_LowAft' is ''"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,nan"), "line 3: x of 'CHAS_LowAft' is 'NaN'"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,1e999999"), "line 3: x of 'CHAS_LowAft' is"),
+        (
+            table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,-5e9999999999999"),
+            "line 3: x of 'CHAS_LowAft' is",
+        ),
         (table().replace("CHAS_LowAft,", ","), "line 3: has coordinates without a name"),
         (table() + "CHAS_LowAft,1,2,3\n", "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
         (table(titles="Point,X,Y\n"), "line 1: has no column of z"),
@@ -376,6 +380,7 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
             LEFT_CHRONO.replace('"Suspension"', '"Steering"'),
             "line 3: is a file of Chrono's of Type 'Steering'",
         ),
+        ('{"UPRI_LowPnt_L": [1, 2, 3]}', "is JSON without a Type, which every file of Chrono's has"),
         (LEFT_CHRONO.replace("DoubleWishbone", "SolidAxle"), "called 'SolidAxle'"),
         (LEFT_CHRONO.replace("0.718", '"x"'), "line 7: y of 'Spindle: COM' is 'x'"),
         (LEFT_CHRONO.replace("0.718", "NaN"), "NaN is no number"),

@@ -261,6 +261,19 @@ def test_hard_cases_are_drawn_as_errors_over_the_distance_and_a_wrong_one_is_tol
     assert not [given for _, given in shown.tags if "onload" in given]
 
 
+def test_formulations_that_refuse_at_one_place_have_crosses_of_their_own_below_every_error() -> None:
+    names = ("pointcoord", "absolute", "relative")
+    refused = [answer("refused", None, 1e-9) | {"formulation": name} for name in names]
+    right = [answer("right", 1e-12 / value, value) for value in (1e-1, 1e-3, 1e-5)]
+    shown = read(Run(head("hard"), hard=HardCases.of(hard_document(*right, *refused))))
+    ((_, plot),) = shown.plots.items()
+    crosses = {one["name"]: one["y"][0] for one in plot["data"] if one["name"].endswith("refuses")}
+    assert list(crosses) == [f"{name} refuses" for name in names]
+    heights = np.log10(sorted([*crosses.values(), 1e-11]))
+    # A cross is 8 pixels high, and some 150 are as many decades as the errors take and half as many more.
+    assert np.diff(heights).min() > 8 / 150 * 1.5 * 4
+
+
 def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path: Path) -> None:
     wrong = answer("wrong", 0.5, 1e-7)
     for unexpected, status in (([], 0), ([wrong], 1)):

@@ -15,7 +15,6 @@ CAPTION = (
 )
 # A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
 MOST_THAT_AGREE, MOST = 1000, 1500
-TITLES = 100
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -50,7 +49,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     if left_out:
         more = ", ".join(f"{count} {verdict}" for verdict, count in left_out.items())
         caption += f" Not in this table: {more}; the data beside this page have them all."
-    return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows)), *_titles(run)]
+    return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows))]
 
 
 def _heading(row: Comparison) -> str:
@@ -95,15 +94,6 @@ def _cell(row: Comparison, short: bool) -> Cell:
         of = "" if row.name == _heading(row) else f"{row.name}, "
         told += f": {of}{when(row, 4)}"
     return Cell(row.verdict, told, row.verdict)
-
-
-def _titles(run: Run) -> Iterator[Block]:
-    """What the scenes are, in their own words."""
-    titled = [(one.examined.name, one.examined.title) for one in run.told if one.examined.title]
-    more = f" Of {len(titled)} titles the first {TITLES}." if len(titled) > TITLES else ""
-    if titled:
-        rows = tuple((Cell(name), Cell(title)) for name, title in titled[:TITLES])
-        yield Grid(f"The titles of the scenes.{more}", ("scene", "title"), rows)
 
 
 SECTION = Section("agreement", "Agreement", 20, _blocks)
