@@ -64,7 +64,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         return
     where = f"{metafunc.definition.nodeid}: {marks[0].name}"
     if ARGUMENT not in metafunc.fixturenames:
-        raise pytest.UsageError(f"{where}: the test takes no argument {ARGUMENT!r}; add it")
+        raise pytest.Collector.CollectError(f"{where}: the test takes no argument {ARGUMENT!r}; add it")
     found = scenes_of(where, marks)
     metafunc.parametrize(ARGUMENT, list(found.values()), ids=list(found))
 
@@ -73,7 +73,7 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
     """What some marks stand for, by the names that the tests get.
 
     Raises:
-        UsageError: one of them cannot be followed, or none of them leaves a scene.
+        CollectError: one of them cannot be followed, or none of them leaves a scene.
     """
     try:
         _require_ours()
@@ -81,7 +81,7 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
 
         scenes = import_module("validate.testing.scenes")
     except ImportError as error:
-        raise pytest.UsageError(f"{where}: {_line(error)}") from None
+        raise pytest.Collector.CollectError(f"{where}: {_line(error)}") from None
     made: dict[str, Callable[..., Mapping[str, Scene]]] = {
         "suspension_scenes": scenes.scenes_to_try,
         "impossible_scenes": scenes.impossible_scenes,
@@ -93,11 +93,11 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
         except TypeError as error:
             arguments = MARKS[mark.name][0]
             problem = _line(error).partition("() ")[2] or _line(error)
-            raise pytest.UsageError(f"{where}: {problem}; it takes {arguments}") from None
+            raise pytest.Collector.CollectError(f"{where}: {problem}; it takes {arguments}") from None
         except (SceneError, ValueError) as error:
-            raise pytest.UsageError(f"{where}: {_line(error)}") from None
+            raise pytest.Collector.CollectError(f"{where}: {_line(error)}") from None
     if not found:
-        raise pytest.UsageError(f"{where}: no scene is as the mark says; leave `suspension` out")
+        raise pytest.Collector.CollectError(f"{where}: no scene is as the mark says; leave `suspension` out")
     return found
 
 

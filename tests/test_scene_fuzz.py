@@ -203,7 +203,7 @@ def test_a_strut_that_lies_flat_defeats_the_printed_formulas_only(tmp_path: Path
     path = _bounce_with(tmp_path, flat)
     seen = run("validate", path)
     assert (seen.status, complaints(seen.err)) == (0, [])
-    assert "1 of 1 scenes agree" in seen.out
+    assert "1 of 1 scene agrees" in seen.out
     seen = run("validate", path, "--second", "printed")
     assert (seen.status, len(seen.err.splitlines())) == (3, 1)
     assert "; refused by printed (" in seen.err

@@ -27,7 +27,7 @@ def carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str])
     """
     base, first, second = (drawing.vectors[point] for point in carriers)
     e1, e2 = first - base, second - base
-    normal = cross(*np.broadcast_arrays(e1, e2)) if e1.ndim != e2.ndim else cross(e1, e2)
+    normal = cross(e1, e2)
     frame = np.stack([np.broadcast_to(edge, normal.shape) for edge in (e1, e2, normal)], axis=-1)
     if not (lengths(normal) > 8 * EPS * lengths(e1) * lengths(e2)).all():
         raise MechanismError(

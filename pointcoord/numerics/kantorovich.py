@@ -143,7 +143,7 @@ def certify(
         doubted = gamma * np.abs(matrix) + system.jacobian_uncertainty(data + np.abs(low))
         defect = np.abs(np.eye(n) - inverse @ matrix) + magnitude @ doubted
         z = defect.sum(axis=-1).max(axis=-1)
-        omega = system.lipschitz(inverse, np.ones((*y.shape[:-1], n)))
+        omega = system.lipschitz(inverse)
         found = ball(eta, z, omega)
     return Certificate(
         radius=found.radius,

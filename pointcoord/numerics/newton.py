@@ -183,6 +183,8 @@ def refine_plainly(
         previous[active] = size
         y[active, :n] += np.where(usable[:, None], step, 0.0)
         wanted = allowed[active]
+        # What ends in noise has no more left than that, whatever a step before it left.
+        left[active] = 0.0
         if (usable & ~small & (wanted > 0.0)).any():
             rest = what_is_left(system, local, step)
             left[active] = np.where(small, 0.0, rest)

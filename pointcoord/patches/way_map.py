@@ -81,9 +81,7 @@ class WayMap:
     @property
     def lookup(self) -> Lookup:
         """Which patch each of the smallest boxes lies in."""
-        if self.patches is None:
-            nothing = np.zeros((0, len(self.domain.free)), dtype=np.int64)
-            return Lookup.of(self.domain, nothing, nothing)
+        assert self.patches is not None  # nothing is looked up where nothing is covered
         return Lookup.of(self.domain, self.patches.low, self.patches.high)
 
 

@@ -193,7 +193,8 @@ class _Step:
             return out
         fallen = self._decay(length) if np.isfinite(length) else None
         shortest = SHORTEST * (course.stop - course.start)
-        good = np.ones(joint.y.shape[-1], dtype=bool)
+        # Where already the first length is too short for all of them, none is confirmed.
+        good = np.zeros(joint.y.shape[-1], dtype=bool)
         for _ in range(8):
             if length < shortest and joint.instant + length < limit:
                 break
@@ -254,7 +255,7 @@ class _Step:
         ]
         self.moving = [columns.driven.index(place) for place in moving]
         self.begun = ColumnSeries.begin(columns.map, self.factors, joint.y, moving, most, self.spare)
-        self.sizes = np.zeros((1, joint.y.shape[-1]))
+        self.sizes = np.abs(joint.y[None, : columns.map.unknowns]).max(axis=1)
 
     def _expand(self, order: int) -> None:
         if self.begun is None:
@@ -267,9 +268,8 @@ class _Step:
         with np.errstate(all="ignore"):
             while self.series.count <= order:
                 self.series.carry_on(self.law[self.series.count, self.moving])
-            first = len(self.sizes) if len(self.sizes) > 1 else 0
-            new = np.abs(self.series.y[first : self.series.count, :n]).max(axis=1)
-            self.sizes = new if first == 0 else np.concatenate([self.sizes, new])
+            new = np.abs(self.series.y[len(self.sizes) : self.series.count, :n]).max(axis=1)
+            self.sizes = np.concatenate([self.sizes, new])
 
     def _logs(self) -> tuple[Array, Array]:
         with np.errstate(divide="ignore"):

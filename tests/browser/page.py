@@ -21,10 +21,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from made_rows import measured
 from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from validate.cli import main
+from validate.cost.report import Report
+from validate.cost.ways.registry import WAYS
+from validate.html.page import page as page_of
+from validate.html.run import Run
+from validate.output.document import Head
 
 Array = NDArray[np.float64]
 
@@ -558,6 +564,44 @@ def test_nothing_is_wider_than_the_window_and_no_label_is_cut(page: Page, size: 
     assert page.evaluate(CUT) == []
 
 
+def test_a_table_wider_than_a_phone_says_so_until_its_end_is_seen(page: Page) -> None:
+    page.set_viewport_size(PHONE)
+    table = page.locator("#agreement .scroll")
+    hint = page.locator("#agreement .hint")
+    table.scroll_into_view_if_needed()
+    until(page, "document.querySelector('#agreement .more-right')")
+    assert hint.is_visible()
+    table.evaluate("(one) => { one.scrollLeft = one.scrollWidth; }")
+    until(page, "document.querySelector('#agreement .more-left:not(.more-right)')")
+    table.evaluate("(one) => { one.scrollLeft = 0; }")
+    page.set_viewport_size({"width": 2000, "height": 900})
+    until(page, "document.querySelector('#agreement .hint').hidden")
+    assert not hint.is_visible()
+
+
+def test_on_a_phone_every_entry_of_a_long_legend_is_seen(browser: Browser, tmp_path: Path) -> None:
+    rows = tuple(
+        measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5) for k, way in enumerate(WAYS)
+    )
+    run = Run(Head.of("cost", ("pointcoord", "cost")), cost=Report("rows", None, "", False, rows))
+    (tmp_path / "index.html").write_text(page_of(run, {}), encoding="utf-8")
+    phone = opened(browser, tmp_path, viewport=PHONE)
+    settled(phone.page)
+    shown = phone.page.evaluate(
+        """() => {
+            const plot = document.querySelector("[data-plot]");
+            const box = plot.querySelector(".legend .bg").getBoundingClientRect();
+            return [...plot.querySelectorAll(".legendtext")].filter((one) => {
+                const { top, bottom } = one.getBoundingClientRect();
+                return top > box.top - 2 && bottom < box.bottom + 2;
+            }).map((one) => one.textContent);
+        }"""
+    )
+    phone.page.context.close()
+    assert sorted(shown) == sorted(way.name for way in WAYS)
+    assert phone.complaints == []
+
+
 def test_paper_shows_all_of_it_in_ink_on_white_and_in_plots_no_wider_than_their_places(page: Page) -> None:
     settled(page)
     first = page.locator("details[open]").count()
@@ -623,7 +667,7 @@ def test_a_scene_that_is_called_as_a_script_shows_as_text(browser: Browser, tmp_
     assert NAME in one.page.locator("#agreement tbody th").first.inner_text()
     assert NAME in one.page.locator("h3").first.inner_text()
     assert one.page.get_by_role("button", name=NAME).count() >= 1
-    assert one.page.locator("script").count() == 3  # plotly and two of our own
+    assert one.page.locator("script").count() == 4  # plotly and three of our own
     assert one.page.locator("img").count() == 0
     one.page.context.close()
     assert one.complaints == []

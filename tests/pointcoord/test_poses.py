@@ -144,3 +144,14 @@ def test_a_box_does_not_hold_what_lies_beside_it(monkeypatch: pytest.MonkeyPatch
     for point in scene_mechanism(scene).topology.moving:
         off = np.abs(elsewhere.position[point] - right.position[point]).max(axis=-1)
         assert (off <= elsewhere.bound + right.bound).all()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_series_along_the_directions_tell_every_monomial(count: int) -> None:
+    for degree in range(1, unrelated_poses._order(count) + 1):
+        monomials = unrelated_poses._monomials(count, degree)
+        table = np.array(
+            [[np.prod(v[list(m)]) for m in monomials] for v in unrelated_poses._directions(count)]
+        )
+        # What solving for them takes from the digits is far less than the series need.
+        assert np.linalg.cond(table) < 1e5

@@ -283,3 +283,46 @@ def test_few_instants_of_a_huge_law_are_those_of_many_and_warn_of_nothing(size: 
         warnings.simplefilter("error")
         few, many = (Polynomial((1.0, size, size)).series(np.full(count, 0.2), 2) for count in (1, FEW + 1))
     assert np.array_equal(few[0], many[0], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("instant", "meant"),
+    [(-1.0, (6.0, -8.0, 5.0)), (1.0, (10.0, 12.0, 5.0)), (0.0, (3.0, 2.0, 5.0)), (-0.0, (3.0, 2.0, 5.0))],
+)
+def test_a_polynomial_at_small_whole_instants_is_what_sums_by_hand_give(
+    instant: float, meant: tuple[float, ...]
+) -> None:
+    law = Polynomial((3.0, 2.0, 5.0))
+    assert tuple(law.series(instant, 2).tolist()) == meant
+    assert law.series(np.full(FEW + 1, instant), 2)[-1].tolist() == list(meant)
+
+
+SPANS: list[tuple[TimeFunction, float]] = [
+    (Polynomial((1.0, 2.0, -3.0, 0.5)), 6.0 + 3.0),
+    (Polynomial((1.5,)), 0.0),
+    (Sine(0.3, 7.0, 0.2, 1.5), 0.3 * 49.0),
+    (Sine(-0.3, 40.0, 3.0, -1.0), 0.3 * 1600.0),
+    (Table((0.0, 1.0, 2.0, 3.0), (0.0, 1.0, 8.0, 27.0)), 18.0),  # t^3
+]
+
+
+@pytest.mark.parametrize(("law", "bend"), SPANS, ids=lambda case: type(case).__name__)
+def test_over_a_span_a_law_stays_where_it_says_and_hardly_less(law: TimeFunction, bend: float) -> None:
+    """Beyond the values it takes there it says at most what its second derivative allows."""
+    edges = np.linspace(0.0, 1.0, 33)
+    first, last = edges[:-1], edges[1:]
+    low, high = law.values_over(first, last)
+    values = law.series(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 65), 0)[..., 0]
+    assert (values >= low[:, None]).all()
+    assert (values <= high[:, None]).all()
+    # A slope about the middle changes by bend h / 2 to either end, so that the ends are too far out by
+    # bend h^2 / 4 at most, and between samples a value may be missed by bend (h / 64)^2 / 8.
+    spare = bend * (edges[1] - edges[0]) ** 2 * (0.25 + 0.01) + 1e-13
+    assert (high - values.max(axis=1) <= spare).all()
+    assert (values.min(axis=1) - low <= spare).all()
+    middle = 0.5 * (first + last)
+    low, high = law.values_over(middle, middle)
+    at_once = law.series(middle, 0)[:, 0]
+    assert (low <= at_once).all()
+    assert (at_once <= high).all()
+    assert (high - low <= 1e-12).all()

@@ -103,6 +103,17 @@ def test_a_narrow_terminal_shows_every_cell_in_full() -> None:
         assert not re.search("[─━]", shown)
 
 
+def test_a_terminal_of_eighty_columns_shows_a_table_of_whole_words_within_them() -> None:
+    if find_spec("rich"):
+        piped, shown = run("validate", "double-wishbone").stdout, COLOURS.sub("", validated(columns=80))
+        lines = [line.rstrip() for line in shown.replace("\r\n", "\n").splitlines()]
+        begin = next(i for i, line in enumerate(lines) if set(line) == {"─"})
+        end = next(i for i, line in enumerate(lines) if "double-wishbone: " in line and i > begin)
+        assert end - begin > 7
+        assert max(map(len, lines[begin - 2 : begin + 8])) <= 80
+        assert sorted(cells(shown)) == sorted(cells(piped))
+
+
 def test_progress_comes_after_two_seconds_and_goes_away() -> None:
     if find_spec("rich"):
         work = "with console.working('cases', 3) as told:\n    told('first', 1)\n    time.sleep({0})\n"

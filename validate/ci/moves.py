@@ -16,7 +16,7 @@ ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given no
 
 
 def worst_moves(since: Since) -> list[Move]:
-    """For each formulation and quantity the move that comes closest to its bound, or exceeds it the most."""
+    """For each formulation and quantity the move that uses most of its bound, or exceeds it the most."""
     worst: dict[tuple[str, str], Move] = {}
     for move in since.moves:
         if move.verdict in ALONE:

@@ -105,6 +105,8 @@ def fault_of(row: Comparison, outcome: Outcome) -> str:
 
 def why_undecided(row: Comparison, outcome: Outcome) -> str:
     """The reason of a row that says nothing: who does not give it, or what makes its tolerance too wide."""
+    if row.why:
+        return row.why
     words = QUANTITIES[row.quantity].words
     if fault := fault_of(row, outcome):
         return fault

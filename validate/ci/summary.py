@@ -14,7 +14,7 @@ from validate.ci.moves import told_apart, worst_moves
 from validate.ci.record import Record, explained, why_undecided
 from validate.comparison.compare import Comparison, Outcome
 from validate.exit_status import MEANINGS, ExitStatus
-from validate.output.report import about, heading, held_to, when
+from validate.output.report import about, agreeing, heading, held_to, when
 from validate.plain_text import shown
 
 # A service shows no more than a megabyte of it (GitHub: 1 MiB a step); a line has some 200 characters.
@@ -63,7 +63,7 @@ def _verdict(record: Record, status: ExitStatus) -> str:
     count = len(record.names)
     agree = sum(one.status is ExitStatus.AGREE for one in record.examined)
     wrong = sum(any(outcome.disagreements for outcome in one.outcomes) for one in record.examined)
-    parts = [f"{agree} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"]
+    parts = [agreeing(agree, count)]
     if wrong:
         parts.append(f"{wrong} {'disagrees' if wrong == 1 else 'disagree'}")
     silent = len(record.examined) - agree - wrong

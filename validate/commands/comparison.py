@@ -54,7 +54,8 @@ _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
 Solve each scene by two formulations and compare every number that it asks for. Each
 formulation claims how far off its numbers may be, and a difference is held to the sum of both
-claims. For each quantity the row is printed that comes closest to that.
+claims, its tolerance. Of each quantity the largest difference is printed, and how much of its
+tolerance any number of it uses at most.
 
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
@@ -227,7 +228,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         # Most runs compare no file.
         from validate.commands.data import run as run_data
 
-        return run_data(options, console)
+        return run_data(options, console, page_of(options))
     return compare_scenes(options, console, page_of(options))
 
 
@@ -272,7 +273,7 @@ def compare_scenes(
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
         files.closing(record, recorder, console),
-        console.working("scenes", len(names)) as told,
+        console.working("scenes", len(names), lines=brief) as told,
     ):
         for place, (name, scene) in enumerate(_loaded(names, console)):
             since = None
@@ -304,6 +305,7 @@ def compare_scenes(
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
         if page is not None and telling is not None:
+            told("the page", len(names))
             whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
             ending.status = whole.status
             if brief:
@@ -401,22 +403,22 @@ def _say(examined: Examined, explained: Explained, console: Console) -> None:
 
 
 def _finished(results: _Results, names: Sequence[str]) -> str:
-    return f"{len(results.scenes)} of {len(names)} scenes"
+    return f"{len(results.scenes)} of {report.counted_as(len(names), 'scene')}"
 
 
 def _say_at_the_end(
     results: _Results, pairs: Sequence[tuple[str, str]], count: int, console: Console
 ) -> None:
     if results.printed:
-        console.say(report.findings_text(results.findings, results.printed) + "\n")
+        console.show((*report.findings_parts(results.findings, results.printed), ""))
     for name, why in results.unprinted:
         console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
     if results.paper:
-        console.say(report.paper_text(results.paper) + "\n")
+        console.show((*report.paper_parts(results.paper), ""))
+    agreed = [results.agreed.get(pair, 0) for pair in pairs]
+    counts = [report.agreeing(agreed[0], count), *(f"{more} of {count}" for more in agreed[1:])]
     told = [
-        f"{results.agreed.get(pair, 0)} of {count} {'scenes agree ' if i == 0 else ''}between {pair[0]} and "
-        f"{pair[1]}"
-        for i, pair in enumerate(pairs)
+        f"{words} between {first} and {second}" for words, (first, second) in zip(counts, pairs, strict=True)
     ]
     # No agreement is no disagreement yet: what was not compared is counted apart.
     record = results.record

@@ -77,7 +77,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"{SCENE_HELP}; none: the scenes of the study",
     )
     parser.add_argument("--list", action="store_true", help="name the ways, scenes and parts, and end")
-    parser.add_argument("--quick", action="store_true", help="a first look, in about a minute")
+    parser.add_argument("--quick", action="store_true", help="a first look at one scene, in under a minute")
     parser.add_argument("--ways", metavar="A,B", help="measure these ways only; --list names them")
     parser.add_argument(
         "--parts",

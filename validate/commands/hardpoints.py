@@ -42,7 +42,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--side", metavar="|".join(SIDES), help="the wheel, of a file that has both or does not say"
     )
-    parser.add_argument("--part", metavar="|".join(PARTS), help="the axle, of a file that has both")
+    parser.add_argument(
+        "--part",
+        metavar="|".join(PARTS),
+        help="the axle, of a file that has several; a number of three or more",
+    )
     parser.add_argument(
         "--names",
         metavar="FILE.toml",

@@ -21,6 +21,7 @@ from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
 from validate.output.console import Console
 from validate.output.document import Head
+from validate.output.progress import progress
 from validate.plain_text import shown
 from validate.published.tables import compare_published
 
@@ -64,12 +65,27 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         OutputError: the report cannot be written.
     """
     if options.data is not None:
-        raise UsageError("--data is about a file of results, of which there is no page; give it to validate")
+        return _of_file(options, console)
     _require_folder_first(options.folder)
     hard = None if options.hard is None else read_hard_cases(options.hard)
     cost = None if options.cost is None else _kept_cost(options)
     page = Page(options.folder, partial(_with_more, options, hard, cost, console), option="")
     return compare_scenes(options, console, page, brief=True)
+
+
+def _of_file(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """The page of a file of results."""
+    # Most pages are of no file.
+    from validate.commands.data import run as run_data
+
+    _require_folder_first(options.folder)
+    for option, value in (("--hard", options.hard), ("--cost", options.cost)):
+        if value is not None:
+            raise UsageError(
+                f"{option} is not about a file of results; leave it out with --data, or give {option} to "
+                "pointcoord report DIR without --data"
+            )
+    return run_data(options, console, Page(options.folder, option=""), brief=True)
 
 
 def _require_folder_first(folder: str) -> None:
@@ -96,7 +112,7 @@ def _with_more(
     if hard is None and whole:
         hard = _some_hard_cases(run.head, console)
     if cost is None and whole:
-        cost = _first_look_at_cost(run.head)
+        cost = _first_look_at_cost(run.head, console)
     if options.hard is None:
         what = "more than a few hard cases" if whole else "hard cases"
         left_out.append(
@@ -121,7 +137,7 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
     from validate.hard.catalogue import chosen
 
     cases = chosen(HARD)
-    with console.working("hard cases", len(cases)) as at:
+    with console.working("hard cases", len(cases), lines=True) as at:
         done: list[str] = []
 
         def tell(one: hard_run.Examined) -> None:
@@ -134,7 +150,7 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
     return HardCases.of(mine.document(hard_report.results_data(results), status, complete=True))
 
 
-def _first_look_at_cost(head: Head) -> Report:
+def _first_look_at_cost(head: Head, console: Console) -> Report:
     # So does the study of cost.
     from validate.cost.accuracy import accuracy_rows
     from validate.cost.scenes import own_scene, study_scene
@@ -144,7 +160,8 @@ def _first_look_at_cost(head: Head) -> Report:
     command = shlex.join(head.command)
     store = Store(None, Header.here(command))
     scenes = (study_scene(SCENE, own_scene(SCENE)),)
-    rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True)
+    with progress(console, "a first look at cost") as told:
+        rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True, progress=told)
     return Report("in this run", store.header, command, True, tuple(rows))
 
 

@@ -26,19 +26,23 @@ def add_report(parser: argparse.ArgumentParser) -> None:
     )
 
 
-# What a page of each kind can hold, and the command that makes a page with it.
-ELSEWHERE = {
-    "validate": ("scenes held to two formulations", "pointcoord report DIR SCENE"),
+# What pages hold, and the command that makes one with it; those of a kind of run hold that.
+OF_A_KIND = {
+    "validate": ("scenes in motion, held to two formulations", "pointcoord report DIR SCENE"),
     "hard": ("hard cases", "pointcoord hard --report DIR"),
     "cost": ("accuracy against time", "pointcoord cost --report DIR"),
-    "": ("the paper's figures, tables and errata, other programs' tables", "pointcoord report DIR"),
 }
+OF_THE_PAPER = ("the paper's figures, tables and errata", "pointcoord report DIR")
+OF_OTHERS = ("other programs' tables", "pointcoord report DIR")
 
 
 def _nothing_more(run: Run) -> Run:
     """The run as it is, which names what else pages hold."""
-    there = {run.head.kind, *([""] if run.paper else ())}
-    return replace(run, left_out=tuple(row for kind, row in ELSEWHERE.items() if kind not in there))
+    # Of a file's scene no motion is solved and no other model.
+    kind = "" if run.files else run.head.kind
+    rows = [row for name, row in OF_A_KIND.items() if name != kind]
+    rows += [row for row, there in ((OF_THE_PAPER, run.paper), (OF_OTHERS, run.published)) if not there]
+    return replace(run, left_out=tuple(rows))
 
 
 @dataclass(frozen=True)

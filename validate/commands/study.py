@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 LOCAL = "local"
 
 METHODS = ("pointcoord", "pointcoord-map", "pointcoord-newton")
+SOON = 2.0  # seconds before the first line of how far a study is, which waits for others
 MOTIONS = 20  # poses for each motion, unless they are counted
 
 DESCRIPTION = """\
@@ -174,7 +175,8 @@ def _worked_out(
         cluster = None
         if options.scheduler != LOCAL and not folder.exists():
             # A wrong address leaves no folder behind.
-            cluster = stack.enter_context(scheduler.opened(options.scheduler))
+            with progress(console, f"the scheduler {shown(options.scheduler)} is asked", SOON):
+                cluster = stack.enter_context(scheduler.opened(options.scheduler))
         there = stack.enter_context(records.adding_to(folder, records.Head.of(study)))
         recorded = there.recorded()
         missing = [number for number in numbers if number not in recorded]
@@ -193,7 +195,7 @@ def _worked_out(
             if missing:
                 console.written = [f"{held(0)}; the same command goes on"]
                 with (
-                    progress(console, "processes start", lines=True) as told,
+                    progress(console, "processes start", SOON) as told,
                     _open(scheduler, cluster, options) as workers,
                 ):
                     begun = True

@@ -45,6 +45,7 @@ class Comparison:
         rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
         place: where that is in a file of results, whose instants may be travels; empty of a scene's instants.
         telling: whether it would disagree if a solver gave back what it was given, where that is decided.
+        why: it is not tested, of a file of results; empty where the tolerance says it.
     """
 
     scene: str
@@ -62,6 +63,7 @@ class Comparison:
     part: float
     place: str = ""
     telling: bool = True
+    why: str = ""
 
 
 @dataclass(frozen=True, repr=False)

@@ -63,6 +63,31 @@ class Printed:
 
 
 @dataclass(frozen=True)
+class Spoilt:
+    """A line that would be a point and is none.
+
+    Attributes:
+        point: its name, line and wheel, without a place. error: what is wrong with it as a point.
+        value: the first number that it has; empty if it has none.
+    """
+
+    point: FilePoint
+    error: HardpointFileError
+    value: str
+
+    def __str__(self) -> str:
+        return f"{short(self.point.name)} {self.value}".strip() + f" on line {self.point.line}"
+
+
+@dataclass(frozen=True)
+class SpinAxis:
+    """Where a wheel's spin axis points, forward, outboard and up, and what that is taken from."""
+
+    direction: tuple[float, float, float]
+    words: str
+
+
+@dataclass(frozen=True)
 class Contents:
     """A file, read.
 
@@ -71,16 +96,23 @@ class Contents:
         called: what it calls its suspension, by part; empty if it does not say.
         unit: of its lengths, if it says so.
         angles: static angles that it prints, by part and its own words, deg.
-        spin_axis: where its wheel's spin axis points, forward, outboard and up, if said without a point.
-        spin_words: what that is taken from.
+        spin_axes: by part, where its wheel's spin axis points, if said without a point.
+        axes: where x, y and z point, if it says so. turned: words of axes of its own that are not known here.
+        spoilt: lines that hold no point; right unless they are called like one.
+        notes: by part, what the user should know of its points. doubts: by part, what may make them another
+            car than the file's.
     """
 
     points: tuple[FilePoint, ...]
     called: Mapping[str, str] = field(default_factory=dict)
     unit: str = ""
     angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
-    spin_axis: tuple[float, float, float] | None = None
-    spin_words: str = ""
+    spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
+    axes: tuple[str, ...] = ()
+    turned: str = ""
+    spoilt: tuple[Spoilt, ...] = ()
+    notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
@@ -103,7 +135,7 @@ def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
         HardpointFileError: it is not finite, or farther off than any car.
     """
     # The exponent first: 1e-999999999 compares as small and has a billion digits.
-    if not number.is_finite() or abs(number) > FARTHEST or int(number.as_tuple().exponent) < -1100:
+    if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
         raise HardpointFileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
     return number
 
@@ -111,6 +143,11 @@ def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
 def plain(name: str) -> str:
     """A name without capitals and signs: `CHAS_LowFor` and `chas lowfor` are one."""
     return " ".join(re.findall(r"[^\W_]+", name.casefold()))
+
+
+def words_of(text: str) -> frozenset[str]:
+    """The words of a text."""
+    return frozenset(plain(text).split())
 
 
 def short(text: str) -> str:

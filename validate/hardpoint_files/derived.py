@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 
-from validate.hardpoint_files.contents import Place
+from validate.hardpoint_files.contents import Place, SpinAxis
 
 # mm from the wheel centre to the inner point of an axis that is known by its direction only.
 INWARD = 100.0
 # A coordinate of that point is rounded to 1e-12 mm, which is 1e-14 rad of the axis's direction.
 DIGITS = Decimal("1e-12")
-
-
-@dataclass(frozen=True)
-class SpinAxis:
-    """Where a wheel's spin axis points, forward, outboard and up, and what that is taken from."""
-
-    direction: tuple[float, float, float]
-    words: str
 
 
 def on_the_spin_axis(places: Sequence[Place], out: int, axis: SpinAxis | None) -> tuple[Place, str] | None:

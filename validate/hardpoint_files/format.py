@@ -16,7 +16,8 @@ from typing import Any
 from pointcoord.errors import UnknownName
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, plain
+from validate.hardpoint_files.contents import Contents, HardpointFileError, plain
+from validate.hardpoint_files.vocabulary import Vocabulary
 
 FORMATS = Path(__file__).parent / "formats"
 FORMS: Mapping[str, Callable[[str, str], Contents]] = {
@@ -47,13 +48,13 @@ class Names:
     """A suspension in the words of a format.
 
     Attributes:
-        called: a pattern of what the format calls it; empty if it does not say.
+        called: what the format calls it, for people, with a pattern of each; empty if it does not say.
         names: what it calls each of our points, any of several names.
         derived: points that follow from others where the file does not have them.
         notes: what the user should know of these points.
     """
 
-    called: str
+    called: Mapping[str, str]
     names: Mapping[str, tuple[str, ...]]
     derived: Mapping[str, Derived]
     notes: tuple[str, ...] = ()
@@ -68,7 +69,11 @@ class Format:
         known_by: a pattern by which the beginning of a file shows it; empty fits every file.
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
-        endings: sides and axles by what a point's name ends with.
+        axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
+        endings, beginnings: sides and axles by what a point's name ends or begins with. beside: the same of
+            letters that mean so only where names with another letter, by which they stand here, are there.
+        vocabulary: other words for those of its names; None if names are as they are listed.
+        refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
         our_own_names: whether its points may have our own names; where all do, its axes are ours as well.
@@ -82,11 +87,36 @@ class Format:
     axes: Axes
     unit: str
     side: str
+    axes_told_by: str
     endings: Mapping[str, Mapping[str, str]]
+    beginnings: Mapping[str, Mapping[str, str]]
+    beside: Mapping[str, Mapping[str, Mapping[str, str]]]
+    vocabulary: Vocabulary | None
+    refused: str
+    refused_words: str
     angles: Mapping[str, str]
     not_needed: tuple[str, ...]
     our_own_names: bool
     suspensions: Mapping[str, Names]
+
+    def called(self, said: str) -> str | None:
+        """Our type of the suspension that a file calls so; None if it is none of ours."""
+        return next(
+            (
+                kind
+                for kind, words in self.suspensions.items()
+                if any(re.fullmatch(pattern, said, re.IGNORECASE) for pattern in words.called.values())
+            ),
+            None,
+        )
+
+    @property
+    def known_suspensions(self) -> str:
+        """The suspensions that this format has, in its own words and ours."""
+        return ", ".join(
+            f"{' or '.join(words.called)} ({kind})" if words.called else kind
+            for kind, words in self.suspensions.items()
+        )
 
     def read(self, text: str, source: str) -> Contents:
         """What a file of this format holds.
@@ -117,13 +147,21 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
         axes=Axes.of(table["axes"]),
         unit=table["unit"],
         side=table.get("side", ""),
-        endings={plain(ending): sense for ending, sense in table.get("endings", {}).items()},
+        axes_told_by=table.get("axes_told_by", ""),
+        endings=_senses(table.get("endings", {})),
+        beginnings=_senses(table.get("beginnings", {})),
+        beside={plain(letter): _senses(senses) for letter, senses in table.get("beside", {}).items()},
+        vocabulary=Vocabulary.of(table["vocabulary"], table["idle"]["words"])
+        if "vocabulary" in table
+        else None,
+        refused=table.get("refused", {}).get("known_by", ""),
+        refused_words=table.get("refused", {}).get("words", ""),
         angles=table.get("angles", {}),
         not_needed=tuple(table.get("not_needed", {}).get("names", ())),
         our_own_names=table.get("our_own_names", False),
         suspensions={
             kind: Names(
-                called=own.get("called", ""),
+                called=own.get("called", {}),
                 names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
                 derived={
                     ours: Derived(rule["rule"], tuple(rule["of"]))
@@ -136,13 +174,21 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
     )
 
 
-def format_of(text: str, name: str | None) -> Format:
+def _senses(table: Mapping[str, Mapping[str, str]]) -> dict[str, Mapping[str, str]]:
+    return {plain(word): sense for word, sense in table.items()}
+
+
+def format_of(text: str, name: str | None, source: str) -> Format:
     """The format that is named, or the first that the beginning of a text shows.
 
     Raises:
         UnknownName: there is none of that name.
+        HardpointFileError: it is a file of a known program that is not read.
     """
     known = formats()
+    for one in known.values():
+        if one.refused and re.search(one.refused, text):
+            raise HardpointFileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
     if name is not None:
         if name not in known:
             raise UnknownName("format", name, known)

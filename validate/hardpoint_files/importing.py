@@ -7,7 +7,8 @@ without a name of ours, points of ours that the file lacks.
 from __future__ import annotations
 
 import codecs
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from math import radians, tan
@@ -18,9 +19,18 @@ from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.scene_text import read_file
 from pointcoord.suspensions import SUSPENSIONS
-from validate.hardpoint_files.axes import OUR_AXES, UNITS, Axes, axes_seen
-from validate.hardpoint_files.contents import Contents, FilePoint, HardpointFileError, Place, plain, short
-from validate.hardpoint_files.derived import RULES, SpinAxis
+from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, UNITS, Axes, axes_seen
+from validate.hardpoint_files.contents import (
+    Contents,
+    FilePoint,
+    HardpointFileError,
+    Place,
+    SpinAxis,
+    Spoilt,
+    plain,
+    short,
+)
+from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import Format, Names, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
@@ -111,7 +121,7 @@ def import_hardpoints(
     source = str(path)
     text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
     own_names = NO_NAMES if names is None else read_names(names)
-    found = format_of(text, format)
+    found = format_of(text, format, source)
     return _Import(source, choices, found, found.read(text, source), own_names).result()
 
 
@@ -119,12 +129,13 @@ def _known_choices(choices: Choices) -> None:
     allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
         ("suspension", choices.suspension, SUSPENSIONS),
         ("side", choices.side, SIDES),
-        ("part", choices.part, PARTS),
         ("unit", choices.unit, UNITS),
     )
     for kind, chosen, names in allowed:
         if chosen is not None and chosen not in names:
             raise UnknownName(kind, chosen, names)
+    if choices.part is not None and not choices.part.isdecimal() and choices.part not in PARTS:
+        raise UnknownName("part", choices.part, (*PARTS, "1", "2", "3"))
 
 
 def _decoded(data: bytes, source: str) -> str:
@@ -155,20 +166,23 @@ class _Import:
 
     def result(self) -> Imported:
         kind = self.suspension()
-        words = self.format.suspensions.get(kind, Names("", {}, {}))
+        words = self.format.suspensions.get(kind, Names({}, {}, {}))
         topology = SUSPENSIONS[kind].closures["drawn"]
-        ours, others, side_said = self.chosen(kind)
-        axis = self.spin_axis()
-        self.require_all(kind, topology, words, ours, others, axis)
-        doubts: list[str] = []
-        (axes, axes_by), unit = self.axes(ours), self.unit()
+        ours, others, part, side_said = self.chosen(kind)
+        axis = self.spin_axis(part)
+        values = self.values(part, side_said)
+        self.require_all(kind, topology, words, ours, others, axis, values)
+        doubts = list(self.contents.doubts.get(part, ()))
+        (axes, axes_by), unit = self.axes(topology, ours, side_said), self.unit()
         doubts += self.against_axes(axes, axes_by, topology, ours)
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned, axes)
         points = self.placed(topology, words, ours, turned, axis, side)
         facts = [self.turning(axes, axes_by, unit)]
-        facts += words.notes
+        facts += (*self.contents.notes.get(part, self.contents.notes.get("", ())), *words.notes)
+        if values:
+            facts.append(f"lines without a point: {_some(values)}")
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -188,8 +202,8 @@ class _Import:
             scene=Scene.from_mapping(bounce.added_to(drawn), self.source),
             text=text,
             points=tuple(points.values()),
-            not_needed=tuple(point for point in others if self.format.holds_nothing(point.name)),
-            unknown=tuple(point for point in others if not self.format.holds_nothing(point.name)),
+            not_needed=tuple(point for point in others if self.holds_nothing(point)),
+            unknown=tuple(point for point in others if not self.holds_nothing(point)),
             angles=self.angles(bounce.angles, topology, ours, unit),
             bounce=bounce,
             facts=tuple(facts),
@@ -203,14 +217,15 @@ class _Import:
         if self.choices.suspension:
             return self.choices.suspension
         called = self.contents.called
-        said = called.get(self.choices.part or "") or next(iter(called.values()), "")
-        if said:
-            for kind, words in self.format.suspensions.items():
-                if words.called and words.called in said.casefold():
-                    return kind
+        if called:
+            part = self.one_of("part", "axle", self.choices.part, {*called})
+            said = called.get(part) or next(iter(called.values()))
+            kind = self.format.called(said)
+            if kind is not None:
+                return kind
             raise self.refuse(
-                f"holds a suspension called {short(said)}",
-                f"{', '.join(self.format.suspensions)}; if it is like one of these, say so with --suspension",
+                f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
+                f"{self.format.known_suspensions}; a like one by another name: say so with --suspension",
             )
         missing = {
             kind: len(self.missing(SUSPENSIONS[kind].closures["drawn"], self.named(kind)[0]))
@@ -226,7 +241,7 @@ class _Import:
 
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        words = self.format.suspensions.get(kind, Names("", {}, {})).names
+        words = self.format.suspensions.get(kind, Names({}, {}, {})).names
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in SUSPENSIONS[kind].points}
@@ -235,24 +250,76 @@ class _Import:
         taken = self.own.names.keys() | self.own.points.keys()
         ours = {their: our for their, our in ours.items() if our not in taken} | said
 
+        by_words = self.format.vocabulary
+        worded = {} if by_words is None else {by_words.words(their): our for their, our in ours.items()}
+
+        def known(name: str) -> str:
+            return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
+
+        meant = self.meant_letters(known)
+
         def found(point: FilePoint) -> tuple[str, FilePoint]:
-            name = plain(point.name)
-            base, _, ending = name.rpartition(" ")
-            if name not in ours and base in ours and ending in self.format.endings:
-                sense = self.format.endings[ending]
-                own = replace(point, side=sense.get("side", point.side), part=sense.get("part", point.part))
-                return ours[base], own
-            return ours.get(name, ""), point
+            for base, begins, ends in self.readings(point.name):
+                if our := known(base):
+                    senses = [meant.get(begins, self.format.beginnings.get(begins, {}))] if begins else []
+                    senses += [meant.get(ends, self.format.endings.get(ends, {}))] if ends else []
+                    if not all(senses):
+                        return "", point
+                    for sense in senses:
+                        if point.side and sense.get("side", point.side) != point.side:
+                            raise self.refuse(
+                                f"has {short(point.name)} for the {point.side} wheel", "one side", point.line
+                            )
+                        point = replace(
+                            point, side=sense.get("side", point.side), part=sense.get("part", point.part)
+                        )
+                    return our, point
+            return "", point
 
         return found
 
+    def readings(self, name: str) -> Iterator[tuple[str, str, str]]:
+        """A name whole, and without the words of a wheel that it begins or ends with, and these words."""
+        yield name, "", ""
+        begins, ends = (
+            self.format.beginnings.keys() | self.format.beside,
+            self.format.endings.keys() | self.format.beside,
+        )
+        words = re.findall(r"[^\W_]+", name)
+        for ahead, behind in ((0, 1), (2, 0), (1, 0), (2, 1), (1, 1)):
+            base = words[ahead : len(words) - behind]
+            first, last = plain(" ".join(words[:ahead])), plain(" ".join(words[len(words) - behind :]))
+            if base and (not ahead or first in begins) and (not behind or last in ends):
+                yield " ".join(base), first, last
+
+    def holds_nothing(self, point: FilePoint) -> bool:
+        """Whether a point is known and not needed, whatever tells its wheel."""
+        return any(self.format.holds_nothing(base) for base, _, _ in self.readings(point.name))
+
+    def meant_letters(self, known: Callable[[str], str]) -> Mapping[str, Mapping[str, str]]:
+        """What letters mean that other letters decide; nothing for those that are in doubt."""
+        there = {
+            edge
+            for point in self.contents.points
+            for base, *edges in self.readings(point.name)
+            if known(base)
+            for edge in edges
+        }
+        meant: dict[str, Mapping[str, str]] = {}
+        for letter, senses in self.format.beside.items():
+            if letter in there:
+                others = {edge for edge in there if len(edge) == 1} - senses.keys()
+                meant |= {edge: ({} if others else sense) for edge, sense in senses.items()}
+        return meant
+
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names, and the others."""
-        found = [self.lookup(kind)(point) for point in self.contents.points]
+        find = self.lookup(kind)
+        found = [find(point) for point in self.contents.points]
         return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
-    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str]:
-        """The points of one wheel by our names, the file's other points, and the side that the file says."""
+    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str, str]:
+        """The points of one wheel by our names, the file's others, and the axle and side by the file."""
         known, others = self.named(kind)
         unused = [
             their
@@ -261,33 +328,63 @@ class _Import:
         ]
         if unused:
             raise UnknownName(f"point in {self.source}", unused[0], {p.name for p in self.contents.points})
-        part = self.one_of("part", "axle", self.choices.part, {point.part for _, point in known})
+        parts = {point.part for _, point in known}
+        part = self.one_of("part", "axle", self.choices.part, parts)
+        # A file that does not say its axle is of the one that is said.
+        part = part if part in parts else ""
         known = [(ours, point) for ours, point in known if point.part in ("", part)]
         others = [point for point in others if not part or point.part in ("", part)]
         labels = {point.side for _, point in known} - {""}
         side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
+        others = [point for point in others if not side or point.side in ("", side)]
         found: dict[str, FilePoint] = {}
         for ours, point in known:
             if point.side not in ("", side):
                 continue
             other = found.setdefault(ours, point)
             if other.place != point.place:
+                same = other.name == point.name
                 raise self.refuse(
                     f"has {ours} twice, {short(other.name)} on line {other.line} and {short(point.name)} "
                     "elsewhere",
-                    "one of them, or a file of names (--names) that says which",
+                    "one of them; the points of one wheel of one axle"
+                    if same
+                    else "one of them, or a file of names (--names) that says which",
                     point.line,
                 )
-        return found | dict(self.own.points), others, side
+        find = self.lookup(kind)
+        for spoilt, point in self.spoilt(part, side):
+            our, own = find(point)
+            fits = own.part in ("", part) and own.side in ("", side)
+            if fits and our and our not in found and our not in self.own.points:
+                raise spoilt.error
+        return found | dict(self.own.points), others, part, side
+
+    def spoilt(self, part: str, side: str) -> list[tuple[Spoilt, FilePoint]]:
+        """The lines without a point that may speak of this wheel."""
+        return [
+            (one, one.point)
+            for one in self.contents.spoilt
+            if (not part or one.point.part in ("", part)) and (not side or one.point.side in ("", side))
+        ]
+
+    def values(self, part: str, side: str) -> list[str]:
+        """The lines without a point that give a number."""
+        return list(dict.fromkeys(str(one) for one, _ in self.spoilt(part, side) if one.value))
 
     def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
         """The part or side of a file that may hold several."""
         labels = sorted(there - {""})
         if chosen and labels and chosen not in labels:
-            raise self.refuse(f"has no points of the {chosen} {what}", f"--{option} {labels[0]}")
-        if not chosen and len(labels) > 1:
             raise self.refuse(
-                f"has points of the {' and of the '.join(labels)} {what}",
+                f"has no points of {what} {chosen}",
+                " or ".join(f"--{option} {label}" for label in labels),
+            )
+        if not chosen and len(labels) > 1:
+            called = self.contents.called
+            told = [f"{label} ({called[label]})" if label in called else label for label in labels]
+            raise self.refuse(
+                f"has points of more than one {what}: {', '.join(told)}",
                 " or ".join(f"--{option} {label}" for label in labels),
             )
         return chosen or (labels[0] if labels else "")
@@ -308,6 +405,7 @@ class _Import:
         ours: Mapping[str, FilePoint],
         others: Sequence[FilePoint],
         axis: SpinAxis | None,
+        values: Sequence[str],
     ) -> None:
         lacking = self.missing(topology, ours.items())
         # The rule of the spin axis gives nothing without a direction.
@@ -320,15 +418,15 @@ class _Import:
             else name
             for name in lost
         ]
-        unknown = [point for point in others if not self.format.holds_nothing(point.name)]
-        listed = ", ".join(f"{short(point.name)} on line {point.line}" for point in unknown[:12])
-        if len(unknown) > 12:
-            listed += f" and {len(unknown) - 12} more"
+        unknown = [point for point in others if not self.holds_nothing(point)]
+        listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
         advice = f'a file of names (--names) with {lost[0]} = "its name" or {lost[0]} = [x, y, z]'
         if any(name in words.derived and words.derived[name].rule == "spin axis" for name in lost):
-            advice += "; for the spin axis --camber and --toe will do"
+            advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
         raise self.refuse(
-            f"lacks {', '.join(theirs)} of a {kind}" + (f"; not known in it: {listed}" if listed else ""),
+            f"lacks {', '.join(theirs)} of a {kind}"
+            + (f"; not known in it: {listed}" if listed else "")
+            + (f"; no points: {_some(values)}" if values else ""),
             advice,
         )
 
@@ -338,13 +436,13 @@ class _Import:
             return False
         return RULES[rule.rule]([ours[other].place for other in rule.of], 1, axis) is not None
 
-    def spin_axis(self) -> SpinAxis | None:
+    def spin_axis(self, part: str) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
         camber, toe = self.choices.camber, self.choices.toe
-        if self.contents.spin_axis is not None:
+        if part in self.contents.spin_axes:
             if camber is not None or toe is not None:
                 raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
-            return SpinAxis(self.contents.spin_axis, self.contents.spin_words)
+            return self.contents.spin_axes[part]
         if camber is None or toe is None:
             if camber is not None or toe is not None:
                 raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")
@@ -358,20 +456,48 @@ class _Import:
 
     # Axes, unit and side, and what speaks against them.
 
-    def axes(self, ours: Mapping[str, FilePoint]) -> tuple[Axes, str]:
+    def axes(self, topology: Topology, ours: Mapping[str, FilePoint], side: str) -> tuple[Axes, str]:
         """Where x, y and z point, and who says so; points under our own names have our own axes."""
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
+        if self.contents.axes:
+            return Axes.of(self.contents.axes), "its titles"
         read = {name: point for name, point in ours.items() if name not in self.own.points}
         if self.format.our_own_names and all(self.is_our_own(*one) for one in read.items()):
             return OUR_AXES, "its points' names, which are ours"
-        return self.format.axes, "its format"
+        told_by = self.format.axes_told_by
+        telling = (
+            [point for point in read.values() if re.fullmatch(told_by, plain(point.name))] if told_by else []
+        )
+        if not self.contents.turned and (not told_by or telling):
+            return self.format.axes, f"names such as {short(telling[0].name)}" if telling else "its format"
+        told = (
+            f"has a {self.contents.turned}" if self.contents.turned else "does not say where x, y and z point"
+        )
+        seen, outboard, words = self.seen(topology, ours)
+        if seen is None:
+            raise self.refuse(told, f"--axes with {ALLOWED}")
+        # Which way is left no point shows; a wheel of a known side does.
+        ways = [
+            f"--axes {one.option} of a {wheel} wheel"
+            for one in (seen, seen.other_handed)
+            for wheel in [_seen_side(one, outboard)]
+            if wheel == (self.choices.side or side or wheel)
+        ]
+        raise self.refuse(told, f"{' or '.join(ways)}, as {words} lie; or others, if they are so")
+
+    def seen(self, topology: Topology, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
+        """The axes in which a car's points lie as these, where outboard is, and what shows it."""
+        (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
+        pairs = ((front, rear), (topology.wheel_centre, topology.inboard), (high, low))
+        ends = [(ours[one].place, ours[other].place) for one, other in pairs]
+        forward, outboard, upward = (_difference(one, other) for one, other in ends)
+        return axes_seen(forward, upward), outboard, f"{front} seen from {rear} and {high} from {low}"
 
     def is_our_own(self, ours: str, point: FilePoint) -> bool:
-        """Whether a point of the file has our own name, with or without a side and an axle."""
-        name = plain(point.name)
-        base, _, ending = name.rpartition(" ")
-        return plain(ours) in (name, base if ending in self.format.endings else name)
+        """Whether a point of the file has our own name as we write it, with or without a side and an axle."""
+        base, _, ending = point.name.rpartition("_")
+        return ours in (point.name, base if plain(ending) in self.format.endings else "")
 
     def unit(self) -> str:
         said, chosen = self.contents.unit, self.choices.unit
@@ -393,12 +519,7 @@ class _Import:
         self, axes: Axes, axes_by: str, topology: Topology, ours: Mapping[str, FilePoint]
     ) -> list[str]:
         """Refuse axes that nobody said and the car's points speak against; doubt those of the user."""
-        (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
-        inner, wheel = topology.inboard, topology.wheel_centre
-        pairs = ((front, rear), (wheel, inner), (high, low))
-        ends = [(ours[one].place, ours[other].place) for one, other in pairs]
-        forward, outboard, upward = (_difference(one, other) for one, other in ends)
-        seen = axes_seen(forward, upward)
+        seen, outboard, words = self.seen(topology, ours)
         # A left-handed choice may differ in the way of left only, which no point can show.
         said = set(zip("xyz", axes.directions, strict=True))
         shown = set() if seen is None else set(zip("xyz", seen.directions, strict=True))
@@ -408,10 +529,7 @@ class _Import:
         }
         if seen is None or (said - sideways == shown - sideways and same_line):
             return []
-        told = (
-            f"has axes {axes.words} by {axes_by}, but "
-            f"{front} seen from {rear} and {high} from {low} lie as in {seen.words}"
-        )
+        told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
         # Which way is left no point shows: it decides which wheel this is.
@@ -501,6 +619,11 @@ class _Import:
 def _seen_side(axes: Axes, outboard: Place) -> str:
     """The wheel whose outboard direction this is, in these axes."""
     return SIDES[axes.to_scene(outboard, "mm")[1] > 0]
+
+
+def _some(words: Sequence[str]) -> str:
+    """The first of many."""
+    return ", ".join(words[:12]) + (f" and {len(words) - 12} more" if len(words) > 12 else "")
 
 
 def _difference(one: Place, other: Place) -> Place:

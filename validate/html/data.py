@@ -16,6 +16,7 @@ from validate.published.tables import Published
 
 RESULTS, COMPARISONS = "results.json", "comparisons.csv"
 PUBLISHED, HARD_JSON, HARD_CSV = "published.csv", "hard.json", "hard.csv"
+NUMBERS = "numbers.csv"
 COST_JSON, COST_CSV = "cost.json", "cost.csv"
 OF_COST = {
     "report.md": "the sentences and full tables",
@@ -26,6 +27,7 @@ OF_COST = {
 WORDS = {
     RESULTS: "the run, as --json writes it",
     COMPARISONS: "a line for each point, body or angle that was compared",
+    NUMBERS: "a line for each number of the file of results that was compared, beside ours",
     PUBLISHED: "a line for each number of other programs' tables",
     HARD_JSON: "the hard cases, as pointcoord hard --json writes them",
     HARD_CSV: "a line for each answer of a hard case",
@@ -42,6 +44,9 @@ def data_files(run: Run) -> Mapping[str, str]:
     files = {RESULTS: json_text(run.document)}
     if run.told:
         files[COMPARISONS] = _text(_head(Comparison), _comparisons(run))
+    if run.files:
+        names = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
+        files[NUMBERS] = _text(names, _numbers(run))
     if run.published:
         files[PUBLISHED] = _text(
             ("table", "over", "at", "quantity", "name", "unit", "printed", "computed"),
@@ -75,6 +80,16 @@ def _comparisons(run: Run) -> Iterator[Iterable[object]]:
     for one in run.told:
         for outcome in one.examined.outcomes:
             yield from (asdict(row).values() for row in outcome.rows)
+
+
+def _numbers(run: Run) -> Iterator[Iterable[object]]:
+    """Numbers of a file, and what they were held to in the comparison."""
+    for file in run.files:
+        for i, (row, at) in enumerate(zip(file.rows, file.at.tolist(), strict=True)):
+            for held in file.columns:
+                what, allowed = held.series.meaning, run.factor * held.tolerance[i]
+                told = (held.series.values[i], held.ours[i], held.gap[i], allowed)
+                yield (row, file.over, at, held.series.column, what.words, what.unit, *map(float, told))
 
 
 def _published(tables: Iterable[Published]) -> Iterator[Iterable[object]]:

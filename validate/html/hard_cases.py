@@ -43,6 +43,11 @@ class Answer:
     error: float
     bound: float
 
+    @property
+    def refused(self) -> bool:
+        """Whether there is no answer, with a reason."""
+        return self.outcome == "refused"
+
 
 @dataclass(frozen=True)
 class Case:

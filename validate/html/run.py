@@ -15,9 +15,10 @@ from validate.cost.report import Report
 from validate.diagnosis import Explanation
 from validate.exit_status import ExitStatus, combined
 from validate.html.hard_cases import HardCases
+from validate.measured.comparing import DataOutcome
 from validate.output import report
 from validate.output.document import Head
-from validate.output.results_text import data_of
+from validate.output.results_text import data_of, examined_data_of
 from validate.paper.tables import PaperRow
 from validate.published.tables import Published
 
@@ -40,7 +41,9 @@ class Told:
         scene: None where its file could not be read.
         motion: as pointcoord solves it, or the part that could be solved; None if nothing could.
         explained: of each of its comparisons, what would explain that it disagrees.
-        drawn: whether the page draws it; of another one the numbers were let go, and tables tell of it.
+        drawn: whether the page draws it; of another one the numbers were let go, and tables tell of it. Of a
+            file's scene nothing is drawn but the file's own columns.
+        file: of results that the scene's car was held to, if it is about one.
     """
 
     examined: Examined
@@ -48,6 +51,7 @@ class Told:
     motion: Motion | None = None
     explained: tuple[Sequence[Explanation], ...] = ()
     drawn: bool = True
+    file: DataOutcome | None = None
 
     @property
     def verdict(self) -> str:
@@ -97,6 +101,10 @@ class Telling:
         else:
             one = replace(one, examined=without_numbers(examined))
         self.told.append(one)
+
+    def add_file(self, examined: Examined, scene: Scene, found: DataOutcome) -> None:
+        """Take in what came of a file of results."""
+        self.told.append(Told(examined, scene, None, (found.explanations,), drawn=False, file=found))
 
     def run(
         self, head: Head, record: Record, paper: Sequence[PaperRow], baseline: Mapping[str, Any] | None
@@ -161,7 +169,7 @@ class Run:
     @property
     def sentence(self) -> str:
         """The verdict in a sentence; what does not agree is named."""
-        parts = [*self._of_scenes(), *self._since()]
+        parts = [*(self._of_files() if self.files else self._of_scenes()), *self._since()]
         wrong = [one.table.title for one in self.published if not one.found.outcome.agreed]
         if wrong:
             parts.append(f"other programs' tables disagree: {', '.join(wrong)}")
@@ -170,6 +178,27 @@ class Run:
         if self.cost is not None and not self.told:
             parts.append((*self.cost.sentences, "nothing was measured")[0].rstrip("."))
         return f"{'; '.join(parts)}."
+
+    @property
+    def files(self) -> tuple[DataOutcome, ...]:
+        """The files of results that the run is about."""
+        return tuple(one.file for one in self.told if one.file is not None)
+
+    def _of_files(self) -> list[str]:
+        parts = []
+        for one in self.told:
+            if one.file is None:
+                continue
+            rows, (file, _) = one.file.outcome.rows, one.file.outcome.solutions
+            by_verdict: dict[str, list[str]] = {}
+            for row in rows:
+                by_verdict.setdefault(row.verdict, []).append(report.about(row.quantity, row.name))
+            agreeing = len(by_verdict.pop("agrees", ()))
+            told = f"{file.formulation} and the car of {one.examined.name}: {agreeing} of {len(rows)} agree"
+            parts += [told, *(f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))]
+        if self.factor != 1.0:
+            parts.append(report.held_to(self.factor))
+        return parts
 
     def _of_scenes(self) -> list[str]:
         not_run = () if self.record is None else self.record.not_run
@@ -181,7 +210,7 @@ class Run:
             word = f"{one.verdict} ({one.why_not})" if one.why_not else one.verdict
             by_verdict.setdefault(word, []).append(one.examined.name)
         agreeing = len(by_verdict.pop("agrees", ()))
-        parts = [f"{agreeing} of {count} scenes agree"]
+        parts = [report.agreeing(agreeing, count)]
         parts += [f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items())]
         if self.record is not None and not_run:
             parts.append(f"not run ({self.record.stopped}): {named(not_run)}")
@@ -234,7 +263,12 @@ class Run:
             for one in self.published
         ]
         return {
-            "scenes": [report.examined_data(one.examined, one.explained) for one in self.told],
+            "scenes": [
+                report.examined_data(one.examined, one.explained)
+                if one.file is None
+                else examined_data_of(one.examined, one.file)
+                for one in self.told
+            ],
             "printed_formulas": [report.finding_data(finding) for finding in self.findings],
             "printed_tables": report.paper_data(self.paper) if self.paper else None,
             **({"published_tables": published} if published else {}),

@@ -57,7 +57,7 @@ class Grid:
     """A table; the first cell of a row is its name."""
 
     template: ClassVar[str] = "grid.html"
-    scripts: ClassVar[tuple[str, ...]] = ()
+    scripts: ClassVar[tuple[str, ...]] = ("grid.js",)
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
@@ -82,7 +82,8 @@ class Section:
 def which(run: Run) -> list[Block]:
     """Which scenes are drawn, where these are not all."""
     drawn, all_of_them = len(run.drawn), len(run.told)
-    if drawn == all_of_them:
+    if drawn == all_of_them or run.files:
+        # Of a file's scene no motion is solved, which the page says in a place of its own.
         return []
     return [
         Paragraph(

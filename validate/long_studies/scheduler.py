@@ -354,10 +354,13 @@ def _require_scheduler(distributed: Any, address: str, words: str) -> None:
         if not isinstance(answer, Mapping) or answer.get("type") != "Scheduler":
             raise ValueError("something else answers")
     except Exception as error:
-        # A limit of time that runs out has no words of its own.
+        # A limit of time that runs out has no words of its own, and what another program says may be taken
+        # for the size of an answer.
         told = one_line(str(error)) or (
             "no answer" if isinstance(error, TimeoutError) else type(error).__name__
         )
+        if isinstance(error, MemoryError):
+            told = "something else answers"
         waited = f"{told}, after {time.monotonic() - began:.1f} s"
         raise NoCluster(
             f"{words} does not answer as a Dask scheduler ({waited}); give --scheduler an address such as "

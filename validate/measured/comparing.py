@@ -23,7 +23,7 @@ has in the file, no number of it could tell its curve from a level line: it is n
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -41,7 +41,7 @@ from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import Found, Numbers, asked_scene, poses_of
+from validate.measured.poses import SPEED, Found, Numbers, asked_scene, poses_of
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -51,6 +51,10 @@ EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 TRIED_RADIUS = 300.0  # mm, of a wheel: any would do
 SECANTS = 4
+TOO_COARSE = (
+    "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
+)
+NO_NUMBERS = "no row has a number of it that can be held to anything"
 # Rows out of reach, or columns, that are named one by one.
 NAMED = 3
 
@@ -63,6 +67,7 @@ class Held:
         ours, tolerance: (N,), NaN where there is nothing to compare.
         swing: the part of the tolerance that the independent columns' rounding makes, (N,).
         bound: the part that is our own proven bound, (N,).
+        unknown: why ours are not known, in words.
     """
 
     series: Series
@@ -70,6 +75,7 @@ class Held:
     tolerance: Array
     swing: Array
     bound: Array
+    unknown: str = ""
 
     @property
     def gap(self) -> Array:
@@ -99,6 +105,7 @@ class DataOutcome:
         accuracy: how far the file's numbers may be off beside their digits, in their columns' units.
         absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
             the outcome, so that it agrees where all that is given does.
+        columns: each beside ours. rows: what to call each row of these.
     """
 
     outcome: Outcome
@@ -106,6 +113,21 @@ class DataOutcome:
     absent: tuple[str, ...]
     explanations: tuple[Explanation, ...] = ()
     accuracy: float = 0.0
+    columns: tuple[Held, ...] = ()
+    rows: tuple[str, ...] = ()
+
+    @property
+    def at(self) -> Array:
+        """Values of the independent column, or numbers of rows, (N,)."""
+        return self.outcome.solutions[0].times
+
+    def columns_of(self, row: Comparison) -> tuple[Held, ...]:
+        """The columns that a row of the outcome is of."""
+        return tuple(
+            held
+            for held in self.columns
+            if (held.series.meaning.quantity, held.series.meaning.label) == (row.quantity, row.name)
+        )
 
 
 def compare_results(
@@ -135,7 +157,9 @@ def compare_results(
     explanations = _explained(scene, measured, held, ours, outcome, factor)
     if outcome.disagreements:
         explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
-    return DataOutcome(outcome, _over(measured), absent, explanations, accuracy or 0.0)
+    outcome = replace(outcome, explanations=explanations)
+    over = _over(measured)
+    return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
 
 
 def _other_travel(
@@ -207,6 +231,8 @@ def _explained(
         for quantity, part in _by_name(held).items()
         for name, columns in part.items()
         if len(columns) == (1 if QUANTITIES[quantity].of == "car" else 3)
+        # Of points kinds of faults read where they are, by name.
+        and not (columns[0].series.meaning.per and QUANTITIES[quantity].of != "car")
         and any(np.isfinite(h.gap).any() for h in columns)
     }
     if not wrong & whole.keys():
@@ -267,32 +293,32 @@ def _held(
     measured: Measured, scene: Scene, accuracy: float | None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
     poses = poses_of(scene, measured)
-    values = [s.values for s in measured.independent]
-    here = poses.at(values)
+    values = [s.values for s in (*measured.independent, *measured.rates)]
+    first = len(measured.independent)
+    here = poses.at(values[:first], values[first:])
     notes = [*measured.notes, *poses.notes, *_out_of_reach(measured, here)]
     if not here.reached.any():
-        first = min(here.reasons)
-        problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[first]})"
-        raise ResultsError(
-            measured.source, measured.rows[first], problem, "rows that the scene's car can have"
-        )
+        row = min(here.reasons)
+        problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
+        raise ResultsError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
-    stated = replace(here, bounds=_taken_for_granted(measured, scene, here)) if unsaid else here
+    stated = _taken_for_granted(measured, scene, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
     around: list[tuple[Found, Found]] = []
-    for i, s in enumerate(measured.independent):
+    for i, s in enumerate((*measured.independent, *measured.rates)):
         off = s.off + poses.extra(s)
         if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
             off = off + scene.tolerance
         if off.any():
             ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
-            around.append((poses.at(ends[0]), poses.at(ends[1])))
+            sides = [poses.at(end[:first], end[first:]) for end in ends]
+            around.append((sides[0], sides[1]))
     found, unknown = [], []
-    largest: dict[str, float] = {}
+    largest: dict[tuple[str, str], float] = {}
     for s in measured.numbers:
-        here_too = largest.get(s.meaning.quantity, 0.0)
-        largest[s.meaning.quantity] = max(here_too, float(np.nanmax(np.abs(s.values), initial=0.0)))
+        of = s.meaning.quantity, s.meaning.per
+        largest[of] = max(largest.get(of, 0.0), float(np.nanmax(np.abs(s.values), initial=0.0)))
     for s in measured.numbers:
         mine, bound = ours_of(s, here, scene)
         if mine is None or bound is None:
@@ -307,14 +333,15 @@ def _held(
             swing = swing + np.max(change, axis=0)
         ours = np.full(len(swing), np.nan) if mine is None else mine
         own_accuracy = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
-        rounding = 4.0 * EPS * largest[s.meaning.quantity]
+        rounding = 4.0 * EPS * largest[s.meaning.quantity, s.meaning.per]
         allowed = s.off + swing + rounding
         allowed = allowed + sum(0.0 if part is None else part for part in (own_accuracy, bound))
         own = np.zeros(len(swing)) if bound is None else np.asarray(bound)
-        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, own))
+        why = "" if mine is not None else here.unrated or NO_NUMBERS
+        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, own, why))
     if unknown:
         names = ", ".join(shown(s.column) for s in unknown)
-        notes.append(f"{names} is not tested: rates need a column of {TIME}")
+        notes.append(f"{names} is not tested: {here.unrated or NO_NUMBERS}")
     notes += _widened(measured, found)
     instants = _instants(measured)
     count = len(instants)
@@ -326,20 +353,40 @@ def _held(
     return found, solution, tuple(notes)
 
 
-def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Numbers:
-    """What placing every point to the scene's tolerance makes of each number; NaN where it says nothing."""
+def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Found:
+    """Ours, held to what placing every point to the scene's tolerance makes of each number.
+
+    Where that says nothing of a number, its bound is NaN.
+    """
     # Their packages are an extra that printed files need not.
     from validate.formulations.input_rates import rates
-    from validate.solvers.held import accuracy_at
 
-    rows = here.reached
+    rows, asked = here.reached, asked_scene(scene, measured)
     if measured.independent[0].meaning.kind == TIME:
         times = measured.independent[0].values[rows]
         laws = {name: rates(law, times) for name, law in scene.inputs.items()}
     else:
-        laws = {name: value[rows, None] * np.array([1.0, 0.0, 0.0]) for name, value in here.inputs.items()}
+        laws = {n: np.column_stack([value[rows], here.laws[n][rows]]) for n, value in here.inputs.items()}
+    bounds = _stated(asked, here, laws)
+    slopes, nothing = {}, np.zeros((int(rows.sum()), 2))
+    for per, slope in here.slopes.items():
+        speeds = bounds[SPEED]
+        if slope.laws:
+            going = {n: np.column_stack([law[:, 0], nothing]) for n, law in laws.items()}
+            for name, law in slope.laws.items():
+                going[name][:, 1] = law[rows]
+            speeds = _stated(asked, here, going)[SPEED]
+        slopes[per] = replace(slope, bounds=speeds)
+    return replace(here, bounds=bounds, slopes=slopes)
+
+
+def _stated(asked: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
+    """What placing every point to the scene's tolerance makes of each number, by inputs and their rates."""
+    from validate.solvers.held import accuracy_at
+
+    rows = here.reached
     places = {name: place[rows] for name, place in here.numbers[_PLACES].items()}
-    stated = accuracy_at(asked_scene(scene, measured), scene.tolerance, places, laws)
+    stated = accuracy_at(asked, asked.tolerance, places, laws)
     blind = np.zeros(int(rows.sum()), dtype=bool) if stated.blind is None else stated.blind
     found: Numbers = {}
     for quantity, part in stated.claims.items():
@@ -375,6 +422,8 @@ def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, A
     """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
     meaning = series.meaning
     part = found.numbers.get(meaning.quantity, {})
+    if meaning.per:
+        return _derivative(series, found, scene)
     if meaning.name not in part:
         return None, None
     if series.definition == ARCSINE:
@@ -402,6 +451,39 @@ def _arcsine(series: Series, found: Found, scene: Scene) -> tuple[Array | None, 
     off = np.max([np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds], axis=0)
     bound = 2.0 * math.sqrt(3.0) * off / long / np.sqrt(1.0 - sine**2)
     return np.asarray(np.arcsin(sine)), np.asarray(bound)
+
+
+def _derivative(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+    """A coordinate or an angle of a line by an independent column.
+
+    With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
+    """
+    meaning, angle = series.meaning, angle_of(series.meaning)
+    if meaning.per not in found.slopes:
+        return None, None
+    slopes = found.slopes[meaning.per]
+    if angle is None:
+        if meaning.name not in slopes.places:
+            return None, None
+        return slopes.places[meaning.name][:, meaning.axis], slopes.bounds[meaning.name][:, meaning.axis]
+    part = scene.mechanism
+    axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+    start, end = angle.ends(part.topology)
+    parts, offs = [], []
+    for places, bounds in ((found.numbers[_PLACES], found.bounds[_PLACES]), (slopes.places, slopes.bounds)):
+        line = places[end] - places[start]
+        parts += [axes.component(line, angle.sine), axes.component(line, angle.cosine)]
+        # Each end may be off by that along each axis.
+        ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
+        offs.append(2.0 * math.sqrt(3.0) * np.max(ends, axis=0))
+    s, c, s_, c_ = parts
+    off, off_ = offs
+    square = s**2 + c**2
+    value = (s_ * c - c_ * s) / square
+    changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
+    # To first order; what is left is smaller by the bound / the line's length.
+    bound = 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
+    return np.asarray(value), np.asarray(bound)
 
 
 _PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
@@ -454,7 +536,7 @@ def _by_name(held: Sequence[Held]) -> dict[str, dict[str, list[Held]]]:
     for quantity in QUANTITIES:
         for h in held:
             if h.series.meaning.quantity == quantity:
-                found.setdefault(quantity, {}).setdefault(h.series.meaning.name, []).append(h)
+                found.setdefault(quantity, {}).setdefault(h.series.meaning.label, []).append(h)
     return found
 
 
@@ -475,14 +557,15 @@ def _row(
     scene: str, measured: Measured, quantity: str, name: str, columns: Sequence[Held], factor: float
 ) -> Comparison:
     """The comparison of a point, body or angle by the columns that are given of it."""
-    unit = QUANTITIES[quantity].unit
+    unit = columns[0].series.meaning.unit
     gaps = np.stack([h.gap for h in columns])
     allowed = factor * np.stack([h.tolerance for h in columns])
     ends = (scene, measured.source, OURS, quantity, name, unit)
     compared = np.isfinite(gaps) & np.isfinite(allowed)
     if not compared.any():
         nan = math.nan
-        return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan)
+        why = next((h.unknown for h in columns if h.unknown), NO_NUMBERS)
+        return Comparison(*ends, nan, nan, nan, nan, "not tested", measured.source, nan, why=why)
     shares = np.where(compared, gaps / (allowed + SMALLEST), -1.0)
     share = float(shares.max())
     # The largest difference; of a column that disagrees, the largest of those that are too large.
@@ -503,6 +586,7 @@ def _row(
         measured.source,
         1.0,
         measured.rows[when],
+        why=TOO_COARSE if verdict == "not tested" else "",
     )
 
 
@@ -510,7 +594,7 @@ def _lacking(scene: Scene, measured: Measured) -> tuple[tuple[str, ...], tuple[s
     """What the scene asks for and the file does not give, in lines; and quantities of which it gives none."""
     given: dict[str, set[str]] = {}
     for s in measured.numbers:
-        given.setdefault(s.meaning.quantity, set()).add(s.meaning.name)
+        given.setdefault(s.meaning.quantity, set()).add(s.meaning.label)
     lines, absent = [], []
     for quantity, names in asked_numbers(scene).items():
         words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"

@@ -10,7 +10,9 @@ A map is TOML:
     rack = 0.0
 
     [columns.camber]              # by the name in the file
-    is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore
+    is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore;
+                                  # input.NAME.rate or .acceleration, travel.POINT.rate or .acceleration;
+                                  # d(QUANTITY.NAME)/d(COLUMN)
     unit = "deg"                  # if the file does not say it
     sign = -1                     # ours = sign * theirs + offset, the offset in the column's unit
     offset = 0.0
@@ -22,6 +24,10 @@ A map is TOML:
 lowest point of a thin disc of the rolling radius about the wheel's centre. Names are those of the files that
 `pointcoord simulate -o` writes; the last part of a name will do where nothing else ends so.
 
+An angle or a coordinate in its unit by that of the independent column, such as "toe [deg/mm]" over a travel,
+is the derivative by that one, others as they are; d(toe)/d(bump) says the same where several could be meant.
+Rates by time are there over time, or where every input that is no constant has its own rate in the file.
+
 Columns that a map does not name are found by their own names all the same: numbers whose unit the file says
 and which no other column is said to be, and times, inputs and travels by their whole names.
 """
@@ -29,7 +35,8 @@ and which no other column is said to be, and times, inputs and travels by their 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any, Literal
 
@@ -44,13 +51,18 @@ from pointcoord.scene.messages import meant
 from pointcoord.scene.scene_text import parsed, read_file
 from validate.measured.errors import ResultsError
 from validate.measured.reading import Columns, read_columns
-from validate.measured.units import allowed_units, factor_of, is_unit
+from validate.measured.units import allowed_units, below_of, factor_of, is_unit
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
 
 AXES = "xyz"
+BELOW = {"mm": "a length", "rad": "an angle", "s": "a time"}
+# d(toe)/d(bump), or dtoe/dbump.
+_DERIVATIVE = re.compile(r"d\(?(.+?)\)?/d\(?(.+?)\)?")
+_PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
 TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
+RATES = ("rate", "acceleration")
 PROJECTED, ARCSINE = "projected", "arcsine"
 DEFINITIONS = (PROJECTED, ARCSINE)
 KEYS = ("independent", "rolling_radius", "solve_for", "held", "columns")
@@ -66,20 +78,32 @@ class Meaning:
         quantity: of a number. name: of the input, of the point that travels, or of the number.
         axis: 0 to 2 of a component of a vector; None of what the car has one number of.
         unit: ours.
+        per: what the independent column is, in words, of a derivative by it; empty of what is none.
+        order: of the time derivative of an input or a travel; its name is then that of the whole, input.NAME.
     """
 
-    kind: Literal["time", "input", "travel", "number"]
+    kind: Literal["time", "input", "travel", "number", "rate"]
     name: str
     unit: str
     quantity: str = ""
     axis: int | None = None
+    per: str = ""
+    order: int = 0
+
+    @property
+    def label(self) -> str:
+        """Under which name it is compared: that of the number, and by what it is a derivative."""
+        return f"{self.name} per {self.per}" if self.per else self.name
 
     @property
     def words(self) -> str:
         """Its name as a map says it."""
         if self.kind == "number":
             end = () if self.axis is None else (AXES[self.axis],)
-            return ".".join((self.quantity, self.name, *end))
+            whole = ".".join((self.quantity, self.name, *end))
+            return f"d({whole})/d({self.per})" if self.per else whole
+        if self.kind == "rate":
+            return f"{self.name}.{RATES[self.order - 1]}"
         return TIME if self.kind == TIME else f"{self.kind}.{self.name}"
 
 
@@ -124,6 +148,8 @@ class Measured:
         rolling_radius: mm; NaN if not said. solve_for: the input that reaches a travel; empty if not said.
         rows: what to call each row.
         notes: what was left out.
+        rates: of inputs and travels by time, where rows are not taken by it.
+        held_rates: likewise, that are the same in every row.
     """
 
     source: str
@@ -134,6 +160,8 @@ class Measured:
     solve_for: str = ""
     rows: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    rates: tuple[Series, ...] = ()
+    held_rates: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_results(file: str, map: str | None, scene: Scene) -> Measured:
@@ -169,7 +197,9 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     map = _Map(where, content, columns, scene)
     found = map.series()
     independent = map.independent(found)
-    taken = {s.column for s in independent}
+    over_time = independent[0].meaning.kind == TIME
+    rates = () if over_time else tuple(s for s in found if s.meaning.kind == "rate")
+    taken = {s.column for s in (*independent, *rates)}
     numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
     if not numbers:
         raise ResultsError(
@@ -196,11 +226,13 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
             columns.source,
             independent,
             numbers,
-            map.held,
+            {name: value for name, value in map.held.items() if map.meanings[name].kind != "rate"},
             map.number_at("rolling_radius", math.nan),
             map.solve_for,
             columns.rows,
             tuple(notes),
+            rates,
+            {name: value for name, value in map.held.items() if map.meanings[name].kind == "rate"},
         )
     )
 
@@ -269,11 +301,12 @@ class _Map:
         """Inputs and travels that every row has, by their names here: input.NAME and travel.POINT."""
         found, part = {}, self._part("held")
         for name in part:
-            every = (*self.scene.mechanism.topology.inputs, *self._travels)
+            rates = tuple(words for words, one in self.meanings.items() if one.kind == "rate")
+            every = (*self.scene.mechanism.topology.inputs, *self._travels, *rates)
             if name not in every:
                 problem = f"no input or travel is called {shown(name)!r}{meant(name, every)}"
                 raise ResultsError(self.where, "held", problem, ", ".join(every))
-            key = name if name in self._travels else f"{INPUT}.{name}"
+            key = name if name in (*self._travels, *rates) else f"{INPUT}.{name}"
             found[key] = self.number_at(name, 0.0, part, "held.")
         return found
 
@@ -291,6 +324,11 @@ class _Map:
             found[f"{INPUT}.{name}"] = Meaning("input", name, unit)
         for name in self._travels:
             found[name] = Meaning("travel", name.partition(".")[2], "mm")
+        for whole, one in [*found.items()]:
+            for order in (1, 2) if one.kind != TIME else ():
+                unit = f"{one.unit}/{'s' if order == 1 else 's^2'}"
+                rate = Meaning("rate", whole, unit, order=order)
+                found[rate.words] = rate
         every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
         for effect in (*ALWAYS, *EFFECTS.values()):
             for quantity, names in effect.gives_numbers.items():
@@ -369,21 +407,27 @@ class _Map:
         return bool(unit)
 
     def _named(self, name: str) -> Meaning | None:
-        """By its whole name, or by an end of it that nothing else has."""
+        """By its whole name, or by an end of it that nothing else has; a derivative by what it is of."""
         meanings = self.meanings
+        if (parts := _DERIVATIVE.fullmatch(name)) is not None:
+            of = self._named(parts.group(1))
+            return replace(of, per=parts.group(2)) if of is not None and of.kind == "number" else None
         if name in meanings:
             return meanings[name]
         ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
-        ends = [one for one in ends if one.kind != "travel"]
+        ends = [one for one in ends if one.kind != "travel" and not one.name.startswith(f"{TRAVEL}.")]
         return ends[0] if len(ends) == 1 else None
 
     def series(self) -> list[Series]:
         """Every column that means something, in our units."""
         found: dict[str, Series] = {}
-        for i, column in enumerate(self.columns.names):
-            meaning = self._meaning(column)
-            if meaning is None:
-                continue
+        meant_by = {column: self._meaning(column) for column in self.columns.names}
+        by_column = {column: one for column, one in meant_by.items() if one is not None}
+        slopes = [column for column, one in by_column.items() if self._is_slope(column, one)]
+        for column in sorted(by_column, key=lambda column: column in slopes):
+            i, meaning = self.columns.names.index(column), by_column[column]
+            if column in slopes:
+                meaning = self._derivative(column, meaning, self.independent([*found.values()]))
             if meaning.words in found:
                 first = found[meaning.words].column
                 problem = f"columns {shown(first)!r} and {shown(column)!r} are both {meaning.words}"
@@ -400,12 +444,75 @@ class _Map:
             )
         return list(found.values())
 
+    def _unit_of(self, column: str) -> str:
+        """The unit of a column as the map or the file says it; empty where neither does."""
+        said = self._part("columns").get(column, {}).get("unit")
+        if said is not None and not isinstance(said, str):
+            return ""
+        return said or self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
+
+    def _is_slope(self, column: str, meaning: Meaning) -> bool:
+        """Whether a column is a derivative by the independent one: by its name, or by its unit."""
+        return meaning.kind == "number" and bool(meaning.per or below_of(self._unit_of(column), meaning.unit))
+
+    def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
+        """What a derivative is by, of the columns that rows are taken by."""
+        place, unit = f"column {shown(column)!r}", self._unit_of(column)
+        if "/" in meaning.unit or (meaning.quantity != _PLACES and angle_of(meaning) is None):
+            problem = f"is a derivative of {replace(meaning, per='').words}"
+            raise ResultsError(
+                self.columns.source, place, problem, "one of a coordinate or an angle of a line"
+            )
+        below = below_of(unit, meaning.unit)
+        over = " and ".join(f"{shown(s.column)} [{s.meaning.unit}]" for s in independent)
+        every = ", ".join(f"{meaning.unit}/{s.meaning.unit}" for s in independent)
+        if not below:
+            problem = f"{shown(unit)!r} is no unit of a derivative of {replace(meaning, per='').words}"
+            problem = problem if unit else "its unit is not said, neither behind its name nor in a map"
+            raise ResultsError(
+                self.columns.source,
+                place,
+                problem,
+                f"{every}, or deg/m and the like: rows are taken by {over}",
+            )
+        named = [
+            s
+            for s in independent
+            if meaning.per in ("", s.column, s.meaning.words) or s.meaning.words.endswith(f".{meaning.per}")
+        ]
+        if not named:
+            problem = f"is a derivative by {shown(meaning.per)!r}, and rows are taken by {over}"
+            allowed = ", ".join(map_shown(s.column for s in independent))
+            raise ResultsError(self.columns.source, place, problem, allowed)
+        chosen = [s for s in named if s.meaning.unit == below]
+        if not chosen:
+            problem = f"{shown(unit)!r} is by {BELOW[below]}, and rows are taken by {over}"
+            raise ResultsError(self.columns.source, place, problem, f"{every}, or what stands for these")
+        if len(chosen) > 1:
+            name = replace(meaning, per="").words
+            problem = f"{shown(unit)!r} may be by {' or by '.join(map_shown(s.column for s in chosen))}"
+            allowed = f'is = "d({name})/d({shown(chosen[0].column)})" in a map'
+            raise ResultsError(self.columns.source, place, problem, allowed)
+        of = chosen[0].meaning
+        return replace(meaning, per=of.words, unit=f"{meaning.unit}/{of.unit}")
+
+    def _sign_of(self, words: str) -> float:
+        """The sign that the map gives to the column of a meaning."""
+        for column, part in self._part("columns").items():
+            named = self._meaning(column)
+            if named is not None and named.words == words:
+                return self.number_at("sign", 1.0, part, f"columns.{column}.")
+        return 1.0
+
     def _one(self, i: int, column: str, meaning: Meaning) -> Series:
         part, place = self._part("columns").get(column, {}), f"columns.{column}."
         factor = self._factor(i, column, meaning, part)
         sign = self.number_at("sign", 1.0, part, place)
         if abs(sign) != 1.0:
             raise self._wrong(f"{place}sign", part["sign"], "1 or -1")
+        if meaning.per:
+            # By their own column, which goes the other way than ours where the map says so.
+            sign *= self._sign_of(meaning.per)
         offset = self.number_at("offset", 0.0, part, place)
         values = factor * (sign * self.columns.values[i] + offset)
         steps = self.columns.steps[i]
@@ -417,7 +524,7 @@ class _Map:
         definition = part.get("definition", PROJECTED)
         if definition not in DEFINITIONS:
             raise self._wrong(f"{place}definition", definition, ", ".join(DEFINITIONS))
-        if definition != PROJECTED and angle_of(meaning) is None:
+        if definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
             allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
             raise self._wrong(f"{place}definition", definition, allowed)
         accuracy = self.number_at("accuracy", 0.0, part, place) if "accuracy" in part else None
@@ -505,7 +612,7 @@ def _without_repeats(measured: Measured) -> Measured:
         ResultsError: two rows are at the same pose and say different things.
     """
     keys = np.stack([s.values for s in measured.independent], axis=-1)
-    whole = np.stack([s.values for s in measured.numbers], axis=-1)
+    whole = np.stack([s.values for s in (*measured.numbers, *measured.rates)], axis=-1)
     seen: dict[tuple[float, ...], int] = {}
     again: list[int] = []
     for i, key in enumerate(map(tuple, keys.tolist())):
@@ -538,6 +645,7 @@ def _without_repeats(measured: Measured) -> Measured:
         measured,
         independent=tuple(s.taken(keep) for s in measured.independent),
         numbers=tuple(s.taken(keep) for s in measured.numbers),
+        rates=tuple(s.taken(keep) for s in measured.rates),
         rows=rows,
         notes=tuple(notes),
     )

@@ -5,6 +5,12 @@ so the pose that has a travel is a root, bracketed on the part about the drawing
 the place where it turns back two poses have the same travel, and a file does not say which. Bisection ends
 at neighbouring doubles; what is left is that h itself is off by twice the map's proven bound, which counts
 as a rounding of the travel.
+
+Rates over inputs and travels are those of the inputs' own rates, as far as the file gives them; one that is
+the same in every row has none. That of an input which is solved for follows from the travel's, v = h': the
+input goes so that x' = (v - w) / h_x, w the part of v that the others make, and its second derivative
+likewise. A derivative by an independent column is the rate where that goes at 1 per unit and the others stand
+still. An h_x that is off by b puts its rates off by b / |h_x| of themselves.
 """
 
 from __future__ import annotations
@@ -27,12 +33,13 @@ from pointcoord import (
 )
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
+from validate.formulations.asked_numbers import per_second
 from validate.measured.errors import ResultsError
-from validate.measured.mapping import CONTACT, INPUT, TIME, TRAVEL, Measured, Series
+from validate.measured.mapping import CONTACT, INPUT, RATES, TIME, TRAVEL, Measured, Series
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -45,6 +52,21 @@ WIDEST = {"rad": 1.2, "mm": 0.5}
 GRID = 256  # parts of that to either side, on which travels are seen to go one way
 HALVINGS = 60  # of one such part: rounding
 ROWS = 4096  # that are solved for at a time
+SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 1)
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of all places by one of the independent columns.
+
+    Attributes:
+        places, bounds: by point, (N, 3), NaN where there is no pose.
+        laws: what every input changes by it, (N,); none over time.
+    """
+
+    places: Mapping[str, Array]
+    bounds: Mapping[str, Array]
+    laws: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -56,6 +78,9 @@ class Found:
         reached: at which rows there is a pose, (N,).
         reasons: by row, why there is none.
         inputs: at each row, (N,), as far as they are known; none over time.
+        laws: their rates and second derivatives likewise, (N, 2), 0 as far as they are not known.
+        slopes: of the columns that derivatives are by.
+        unrated: why there are no rates, in words; empty where there are.
     """
 
     numbers: Numbers
@@ -63,6 +88,9 @@ class Found:
     reached: Bools
     reasons: Mapping[int, str]
     inputs: Mapping[str, Array] = field(default_factory=dict)
+    laws: Mapping[str, Array] = field(default_factory=dict)
+    slopes: Mapping[str, Slopes] = field(default_factory=dict)
+    unrated: str = ""
 
 
 class Poses(Protocol):
@@ -73,8 +101,8 @@ class Poses(Protocol):
         """What was taken without being told."""
         ...
 
-    def at(self, values: Sequence[Array]) -> Found:
-        """Our numbers at values of the independent columns, each (N,)."""
+    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
+        """Our numbers at values of the independent columns and of the file's rates, each (N,)."""
         ...
 
     def extra(self, series: Series) -> float:
@@ -91,8 +119,13 @@ def poses_of(scene: Scene, measured: Measured) -> Poses:
     """
     scene = asked_scene(scene, measured)
     if measured.independent[0].meaning.kind == TIME:
-        return OverTime(simulate(scene))
+        return OverTime(simulate(scene), bool(slopes_of(measured)))
     return OverMap.of(scene, measured)
+
+
+def slopes_of(measured: Measured) -> tuple[str, ...]:
+    """The columns that derivatives in a file are by, in words."""
+    return tuple(dict.fromkeys(s.meaning.per for s in measured.numbers if s.meaning.per))
 
 
 def asked_scene(scene: Scene, measured: Measured) -> Scene:
@@ -109,6 +142,8 @@ def asked_scene(scene: Scene, measured: Measured) -> Scene:
 
 def _gives(effect: Effect, series: Series) -> bool:
     quantity, name = series.meaning.quantity, series.meaning.name
+    if series.meaning.per and SPEED in effect.gives_numbers:
+        return True
     if quantity not in effect.gives_numbers:
         return False
     names = effect.gives_numbers[quantity]
@@ -120,6 +155,7 @@ class OverTime:
     """By the motion of the scene's own laws."""
 
     motion: Motion
+    sloped: bool = False
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -130,7 +166,7 @@ class OverTime:
         """None: times are what they are."""
         return 0.0
 
-    def at(self, values: Sequence[Array]) -> Found:
+    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Inside the scene's time; each number with its proven bound."""
         (times,) = values
         start, stop = float(self.motion.times[0]), float(self.motion.times[-1])
@@ -149,7 +185,10 @@ class OverTime:
             for quantity, channel in samples.numbers.items():
                 numbers[quantity] = {n: _spread(a[places], reached) for n, a in channel.items()}
                 bounds[quantity] = {n: _spread(a[places], reached) for n, a in proven[quantity].items()}
-        return Found(numbers, bounds, reached, reasons)
+        slopes = {}
+        if self.sloped and reached.any():
+            slopes[TIME] = Slopes(numbers[SPEED], bounds[SPEED], {})
+        return Found(numbers, bounds, reached, reasons, slopes=slopes)
 
 
 def _spread(array: Array, reached: Bools) -> Array:
@@ -230,6 +269,9 @@ class OverMap:
         drawn: the inputs of the closed drawing.
         radius: the rolling radius, mm.
         taken: what was taken without being told.
+        sloped: the columns that derivatives are asked by, in words.
+        rated: the rates that rows give, likewise.
+        rates: those that every row has.
     """
 
     map: KinematicMap
@@ -240,6 +282,9 @@ class OverMap:
     drawn: Mapping[str, float]
     radius: float
     taken: tuple[str, ...]
+    sloped: tuple[str, ...] = ()
+    rated: tuple[str, ...] = ()
+    rates: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> OverMap:
@@ -257,7 +302,10 @@ class OverMap:
                 ranges[name] = _sensible(mechanism, name, (drawn[name] - wide, drawn[name] + wide))
                 continue
             if name in held:
-                ranges[name] = (held[name], held[name])
+                rated = {*measured.held_rates, *(s.meaning.words for s in measured.rates)}
+                # A map takes no rate of an input that it holds.
+                wide = 1e-3 * wide if any(f"{INPUT}.{name}.{word}" in rated for word in RATES) else 0.0
+                ranges[name] = _sensible(mechanism, name, (held[name] - wide, held[name] + wide))
                 continue
             s = next(s for s in measured.independent if s.meaning.name == name)
             low, high = float(np.min(s.values - s.off)), float(np.max(s.values + s.off))
@@ -272,7 +320,19 @@ class OverMap:
             wide = 1e-3 * _widest(mechanism, name)
             ranges[name] = (ranges[name][0] - wide, ranges[name][0] + wide)
         map = kinematic_map(scene, ranges)
-        return cls(map, plan.kinds, plan.solved, held, plan.level, drawn, measured.rolling_radius, plan.taken)
+        return cls(
+            map,
+            plan.kinds,
+            plan.solved,
+            held,
+            plan.level,
+            drawn,
+            measured.rolling_radius,
+            plan.taken,
+            slopes_of(measured),
+            tuple(s.meaning.words for s in measured.rates),
+            measured.held_rates,
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -283,7 +343,7 @@ class OverMap:
         """What the map leaves of a travel."""
         return 2.0 * self.map.bound.position if series.meaning.kind == TRAVEL else 0.0
 
-    def at(self, values: Sequence[Array]) -> Found:
+    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Where the map is proven; each number with its proven bound."""
         count = len(values[0])
         inputs = {name: np.full(count, value) for name, value in self.held.items()}
@@ -327,7 +387,11 @@ class OverMap:
         if not covered.any():
             return Found({}, {}, covered, reasons)
         moved = {n: inputs[n] for n in self.map.mechanism.topology.chassis_motion if n in inputs}
-        poses = self.map({n: v[covered] for n, v in (free | moved).items()}, bounds=True)
+        mine = {n: np.asarray(v[covered]) for n, v in (free | moved).items()}
+        given = dict(zip(self.rated, (rate[covered] for rate in rates), strict=True))
+        laws, unrated = self._laws(mine, given)
+        rates_of, bends_of = (*laws, None, None)[:2]
+        poses = self.map(mine, rates_of, bends_of, bounds=True)
         numbers = {
             quantity: {name: _spread(np.asarray(array), covered) for name, array in channel.items()}
             for quantity, channel in poses.numbers.items()
@@ -337,7 +401,116 @@ class OverMap:
             quantity: {name: _spread(np.asarray(array), covered) for name, array in part.items()}
             for quantity, part in poses.bounds.items()
         }
-        return Found(numbers, bounds, covered, reasons, inputs)
+        self._widen(numbers, bounds, mine, laws, covered)
+        known = {name: np.zeros((count, 2)) for name in inputs}
+        for order, law in enumerate(laws):
+            for name, rate in law.items():
+                known[name][covered, order] = rate
+        slopes = {words: self._slopes(words, mine, covered) for words in self.sloped}
+        return Found(numbers, bounds, covered, reasons, inputs, known, slopes, unrated)
+
+    def _laws(
+        self, here: Mapping[str, Array], given: Mapping[str, Array]
+    ) -> tuple[list[dict[str, Array]], str]:
+        """Time derivatives of what the map takes as far as they are known, and why there are no more."""
+        count = len(next(iter(here.values())))
+        moving = {f"{kind}.{name}" for kind, name in self.kinds}
+        constant = {f"{INPUT}.{name}" for name in self.held}
+        constant |= set() if self.level is None else {f"{TRAVEL}.{self.level[0]}"}
+        found: list[dict[str, Array]] = []
+        for word in RATES:
+            lacking = [
+                f"{whole}.{word}"
+                for whole in sorted(moving)
+                if f"{whole}.{word}" not in (*given, *self.rates)
+            ]
+            if lacking:
+                what = "rates need" if not found else "second derivatives need"
+                said = " and ".join(lacking)
+                return found, f"{what} a column of {TIME}, or {said}: a column, or held by a map"
+            known = {
+                whole: given.get(f"{whole}.{word}", np.full(count, self.rates.get(f"{whole}.{word}", 0.0)))
+                for whole in (*moving, *constant)
+            }
+            law = {n: known[f"{INPUT}.{n}"] for n in here if n != self.solved and n not in self._fixed}
+            if self.solved:
+                law[self.solved] = self._followed(here, [*found, law], known[f"{TRAVEL}.{self._travelling}"])
+            found.append(law)
+        return found, ""
+
+    @property
+    def _fixed(self) -> frozenset[str]:
+        """Inputs that the map holds."""
+        return frozenset(n for n, (low, high) in self.map.ranges.items() if low == high)
+
+    @property
+    def _travelling(self) -> str:
+        """The point whose travel is given or held; empty where none is solved for."""
+        names = [name for kind, name in self.kinds if kind == TRAVEL]
+        names += [] if self.level is None else [self.level[0]]
+        return names[0] if names else ""
+
+    def _followed(
+        self, here: Mapping[str, Array], laws: Sequence[Mapping[str, Array]], wanted: Array
+    ) -> Array:
+        """The solved input's derivative where the travel's is given; the last of the laws lacks it."""
+        zero = np.zeros(len(wanted))
+        states = [np.stack([here[n] for n in self.map.inputs], axis=-1)]
+        states += [np.stack([law.get(n, zero) for n in self.map.inputs], axis=-1) for law in laws]
+        rest = self._heights(self._travelling, *states)[-1]
+        return np.asarray((wanted - rest) / self._steepness(here))
+
+    def _steepness(self, here: Mapping[str, Array]) -> Array:
+        """How much the travel changes with the solved input, (N,)."""
+        place = np.stack([here[n] for n in self.map.inputs], axis=-1)
+        alone = np.zeros_like(place)
+        alone[:, self.map.inputs.index(self.solved)] = 1.0
+        return self._heights(self._travelling, place, alone)[1]
+
+    def _part_off(self, here: Mapping[str, Array]) -> Array:
+        """By what part of itself the solved input's rate may be off, as the slope of the travel is."""
+        # The height of a contact turns with two points of the spin axis beside the centre's own movement.
+        off = 3.0 * self.map.bound.velocity[self.solved]
+        return np.asarray(2.0 * off / np.abs(self._steepness(here)))
+
+    def _slopes(self, words: str, here: Mapping[str, Array], covered: Bools) -> Slopes:
+        """Derivatives of all places by an independent column."""
+        count = int(covered.sum())
+        travelled = words.startswith(f"{TRAVEL}.")
+        law = {n: np.full(count, float(words == f"{INPUT}.{n}")) for n in here if n not in self._fixed}
+        if self.solved:
+            del law[self.solved]
+            law[self.solved] = self._followed(here, [law], np.full(count, float(travelled)))
+        poses = self.map(here, law, bounds=True)
+        places = {n: np.asarray(a) for n, a in poses.numbers[SPEED].items()}
+        bounds = {n: np.asarray(a) for n, a in poses.bounds[SPEED].items()}
+        if self.solved:
+            part = self._part_off(here)[:, None]
+            bounds = {n: b + part * np.abs(places[n]) for n, b in bounds.items()}
+        return Slopes(
+            {n: _spread(a, covered) for n, a in places.items()},
+            {n: _spread(a, covered) for n, a in bounds.items()},
+            {n: _spread(a, covered) for n, a in law.items()},
+        )
+
+    def _widen(
+        self,
+        numbers: Mapping[str, Mapping[str, Array]],
+        bounds: Mapping[str, dict[str, Array]],
+        here: Mapping[str, Array],
+        laws: Sequence[Mapping[str, Array]],
+        covered: Bools,
+    ) -> None:
+        """Adds to the bounds of rates what the solved input's own are off by."""
+        if not self.solved or not laws:
+            return
+        part = _spread(self._part_off(here), covered)[:, None]
+        for quantity, own in bounds.items():
+            order = per_second(quantity)
+            for name in own if order else ():
+                # All of it may be the solved input's; its square is in a second derivative.
+                largest = np.abs(numbers[quantity][name])
+                own[name] = own[name] + 2.0 * order * part * largest
 
     def _why(self, inputs: Mapping[str, float]) -> str:
         try:
@@ -409,17 +582,31 @@ class OverMap:
         return {name: np.array([self.drawn[name]]) for name in self.map.inputs}
 
     def _height(self, point: str, free: Mapping[str, Array]) -> Array:
+        return self._heights(point, np.stack([free[name] for name in self.map.inputs], axis=-1))[0]
+
+    def _heights(self, point: str, *states: Array) -> list[Array]:
+        """Height of a point and its time derivatives, by those of the map's inputs, each (N, inputs)."""
         mechanism = self.map.mechanism
         topology, up = mechanism.topology, mechanism.drawing.vectors["up"]
-        states = self.map.evaluate(np.stack([free[name] for name in self.map.inputs], axis=-1))[0]
-        places = {name: states[..., i, :] for i, name in enumerate(self.map.points)}
+        found = self.map.evaluate(*states)
+        number = {name: i for i, name in enumerate(self.map.points)}
         if point != CONTACT:
-            return np.asarray(places[point] @ up)
-        inner, outer = (places[name] for name in topology.wheel_axis)
-        spin = outer - inner
-        lean = (spin @ up) / np.linalg.norm(spin, axis=-1)
+            return [np.asarray(state[..., number[point], :] @ up) for state in found]
+        inner, outer = (number[name] for name in topology.wheel_axis)
+        spins = [state[..., outer, :] - state[..., inner, :] for state in found]
+        # The knuckle carries both ends: the spin axis keeps its length.
+        long = np.linalg.norm(spins[0], axis=-1)
+        lean, *leaning = [(spin @ up) / long for spin in spins]
+        flat = np.sqrt(1.0 - lean**2)
         # The lowest point of a thin disc: centre - R unit(up - (up . n) n).
-        return np.asarray(places[topology.wheel_centre] @ up - self.radius * np.sqrt(1.0 - lean**2))
+        centre = [state[..., number[topology.wheel_centre], :] @ up for state in found]
+        heights = [np.asarray(centre[0] - self.radius * flat)]
+        if leaning:
+            heights.append(np.asarray(centre[1] + self.radius * lean * leaning[0] / flat))
+        if len(leaning) > 1:
+            bend = (leaning[0] ** 2 + lean * leaning[1]) / flat + (lean * leaning[0]) ** 2 / flat**3
+            heights.append(np.asarray(centre[2] + self.radius * bend))
+        return heights
 
 
 def _one_way(curve: Array, home: int) -> tuple[int, int, str]:

@@ -1,4 +1,4 @@
-"""Units of files, and what they are in ours: mm, s and rad, and these by times."""
+"""Units of files, and what they are in ours: mm, s and rad, and these by times, lengths and angles."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ANGLES = {
 }
 TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0}
 KINDS = {"mm": LENGTHS, "rad": ANGLES, "s": TIMES}
-_PARTS = re.compile(r"([^/]+)(?:/([a-z]+)(?:\^|\*\*)?([12]?))?")
+_PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([12]?))?")
 
 
 def factor_of(unit: str, ours: str) -> float | None:
@@ -32,6 +32,18 @@ def factor_of(unit: str, ours: str) -> float | None:
     return theirs[0] / own[0]
 
 
+def below_of(unit: str, ours: str) -> str:
+    """By what a unit is that is one of ours by something: mm, s or rad; empty where it is none such.
+
+    >>> below_of("deg/m", "rad"), below_of("deg", "rad")
+    ('mm', '')
+    """
+    theirs, own = _taken_apart(unit), _taken_apart(ours)
+    if theirs is None or own is None or own[3] or theirs[1] != own[1] or theirs[3] != 1:
+        return ""
+    return theirs[2]
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of any kind."""
     return _taken_apart(text) is not None
@@ -43,16 +55,18 @@ def allowed_units(ours: str) -> str:
     return ", ".join(f"{unit}{slash}{below}" for unit in KINDS[base])
 
 
-def _taken_apart(unit: str) -> tuple[float, str, int] | None:
-    """Its size in ours, the kind of what is above the fraction, and how often a time is below."""
+def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
+    """Its size in ours, the kinds of what is above and below the fraction, and how often the one below is."""
     text = unit.strip().replace(" ", "").replace("\N{SUPERSCRIPT TWO}", "^2")
     found = _PARTS.fullmatch(text)
     if found is None:
         return None
     above, below, power = found.group(1), found.group(2), found.group(3)
     kind = next((kind for kind, units in KINDS.items() if above in units), None)
-    if kind is None or (below is not None and below not in TIMES):
-        return None
+    under = next((kind for kind, units in KINDS.items() if below in units), "")
     times = 0 if below is None else int(power or 1)
-    size = KINDS[kind][above] / (TIMES[below] ** times if below is not None else 1.0)
-    return size, kind, times
+    # A square is in use of a time only.
+    if kind is None or (below is not None and not under) or (times > 1 and under != "s"):
+        return None
+    size = KINDS[kind][above] / (KINDS[under][below] ** times if below is not None else 1.0)
+    return size, kind, under, times

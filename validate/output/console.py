@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable
+from validate.output.lines import PAUSE, Lines
 from validate.output.terminal import Part, Working, laid_out, rich_for, text_of
 from validate.plain_text import one_line
 
@@ -32,6 +33,7 @@ class Console:
         self._reader_gone = False
         self._in_progress = False
         self._working: Working | None = None
+        self._lines: Lines | None = None
 
     def require(self, what_else: str) -> None:
         """Refuse a closed standard output, before anything is solved.
@@ -130,24 +132,36 @@ class Console:
             self._working.resume()
 
     @contextmanager
-    def working(self, message: str, total: int | None = None) -> Iterator[Callable[..., None]]:
+    def working(
+        self, message: str, total: int | None = None, lines: bool = False, first: float = PAUSE
+    ) -> Iterator[Callable[..., None]]:
         """A terminal's standard error says how far the block is, once it takes over two seconds.
 
-        It does so where `rich` is installed; nothing is said elsewhere, or if the run is quiet.
+        It does so where `rich` is installed; a quiet run says nothing anywhere.
 
+        Args:
+            lines: whether a plain line says it now and then where standard error is no terminal, the first
+                one after so many seconds.
         Yields:
             What tells it what is being done and how much of the total is; and of another total, if it is one.
         """
-        rich = None if self.quiet else rich_for(sys.stderr)
-        if rich is None or sys.stderr is None:
-            yield lambda message, done, total=None: None
+        told: Working | Lines | None = None
+        if self._lines is not None:
+            # Who says already what is being done says this as well.
+            self._lines.told(message, 0, total or 0)
+            yield self._lines.told
             return
-        working = self._working = Working(message, total, sys.stderr, rich)
+        if not self.quiet and sys.stderr is not None:
+            if (rich := rich_for(sys.stderr)) is not None:
+                told = self._working = Working(message, total, sys.stderr, rich)
+            elif lines and not sys.stderr.isatty():
+                told = self._lines = Lines(self.note, message, total, first)
         try:
-            yield working.told
+            yield (lambda message, done, total=None: None) if told is None else told.told
         finally:
-            self._working = None
-            working.end()
+            self._working = self._lines = None
+            if told is not None:
+                told.end()
 
     def progress(self, message: str) -> None:
         """A line on a terminal's standard error, in the place of the one before; nothing elsewhere."""

@@ -9,33 +9,32 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from validate.output.console import Console
+from validate.output.lines import PAUSE as LINES
 from validate.output.terminal import rich_for
 
-PAUSE = 0.2  # seconds between two lines on a terminal
-LINES = 60.0  # and between two lines in a pipe, for the log of a machine that nobody looks at
+PAUSE = 0.2  # seconds between two words on a terminal
 Told = Callable[[str, int, int], None]
 """Takes what is done now, how much has been done, and of how much."""
 
 
 @contextmanager
-def progress(console: Console, message: str, lines: bool = False) -> Iterator[Told]:
-    """Says on standard error how far the block is: where `rich` is installed as everything else does.
+def progress(console: Console, message: str, first: float = LINES) -> Iterator[Told]:
+    """Says on standard error how far the block is, unless the run is quiet.
+
+    On a terminal as everything else does where `rich` is installed, and else in a line that is written again;
+    in a pipe in a plain line now and then.
 
     Args:
-        message: what is done, until something else is told.
-        lines: whether anything is said where there is no terminal; a quiet run says nothing anywhere.
+        message: what is done, until something else is told. first: seconds before the first line in a pipe.
     """
     terminal = sys.stderr is not None and sys.stderr.isatty()
-    with console.working(message, 0) as told:
+    with console.working(message, 0, lines=True, first=first) as told:
         try:
-            if rich_for(sys.stderr) is not None:
-                yield Progress(lambda what, done, of: told(what, done, of), PAUSE, counted=False)
-            elif terminal:
+            if terminal and rich_for(sys.stderr) is None:
+                console.progress(message)
                 yield Progress(lambda what, done, of: console.progress(what), PAUSE)
-            elif lines:
-                yield Progress(lambda what, done, of: console.note(what), LINES, patient=True)
             else:
-                yield lambda what, done, of: None
+                yield Progress(lambda what, done, of: told(what, done, of), PAUSE, counted=False)
         finally:
             console.end_progress()
 
@@ -47,18 +46,14 @@ class Progress:
         say: takes it in words, with how much is done and of how much.
         pause: seconds between two of them.
         counted: whether the words hold how much is done.
-        patient: whether the first one is told after such a pause only.
     """
 
-    def __init__(
-        self, say: Callable[[str, int, int], None], pause: float, counted: bool = True, patient: bool = False
-    ) -> None:
+    def __init__(self, say: Callable[[str, int, int], None], pause: float, counted: bool = True) -> None:
         self._say = say
         self._pause = pause
         self._counted = counted
         self._began = time.monotonic()
-        self._told = self._began if patient else -math.inf
-        self._patient = patient
+        self._told = -math.inf
         self._first: int | None = None  # how much was done when it was told first
 
     def __call__(self, what: str, done: int, of: int) -> None:
@@ -67,7 +62,7 @@ class Progress:
         begins = self._first is None or done < self._first or not done
         if begins:
             self._began, self._first = now, done
-        if now - self._told < self._pause and (self._patient or not begins):
+        if now - self._told < self._pause and not begins:
             return
         self._told = now
         rest = self._rest(now, done, of)

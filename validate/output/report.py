@@ -72,7 +72,7 @@ def heading(quantity: str, name: str) -> str:
 
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
-    """For each quantity the row that comes closest to its tolerance, or exceeds it the most."""
+    """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
     # A solver that is held to what it states need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
@@ -145,6 +145,11 @@ def counted_as(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def agreeing(agreed: int, count: int) -> str:
+    """How many scenes agree: 1 of 1 scene agrees, 2 of 3 scenes agree."""
+    return f"{agreed} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
+
+
 def verdict_lines(outcome: Outcome) -> list[str]:
     """What cannot be used, and why there is no verdict where the rows do not say it."""
     why = [f"  no verdict: {outcome.why_no_verdict}"] if outcome.why_no_verdict else []
@@ -157,32 +162,31 @@ def explained_lines(explanations: Sequence[Explanation]) -> list[str]:
 
 
 def agreement_line(outcome: Outcome) -> str:
-    """One line for a pair that agrees: how close its closest quantity comes to its tolerance."""
+    """One line for a pair that agrees: how much of its tolerance a difference uses at most."""
     first, second = (s.formulation for s in outcome.solutions)
     worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
     return (
-        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; the difference "
-        f"that comes closest to its tolerance is {worst.share:.1e} of it "
-        f"({about(worst.quantity, worst.name)})"
+        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; no difference "
+        f"uses more than {worst.share:.1e} of its tolerance ({about(worst.quantity, worst.name)})"
         + (f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else "")
     )
 
 
-def findings_text(findings: Sequence[Finding], scenes: Sequence[str]) -> str:
+def findings_parts(findings: Sequence[Finding], scenes: Sequence[str]) -> tuple[Part, ...]:
     """What the printed formulas get wrong, each beside its erratum."""
     if not findings:
-        return f"The paper's printed formulas agree in {', '.join(scenes)}."
+        return (f"The paper's printed formulas agree in {', '.join(scenes)}.",)
     rows = [
         (f.scene, QUANTITIES[f.quantity].words, _with_unit(f.worst.difference, f.worst.unit), f.erratum)
         for f in findings
     ]
-    lines = table(("scene", "wrong quantity", "largest difference", "erratum"), rows)
-    return "The paper's formulas as printed, against the mended ones:\n" + lines
+    head = ("scene", "wrong quantity", "largest difference", "erratum")
+    return "The paper's formulas as printed, against the mended ones:", _table(head, rows)
 
 
-def paper_text(rows: Sequence[PaperRow]) -> str:
+def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
     """Tables 2 and 3, printed and computed."""
-    blocks = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
+    parts: list[Part] = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
     for number_of_table, label in ((2, "theta [deg]"), (3, "S [mm]")):
         mine = [row for row in rows if row.printed.table == number_of_table]
         lines = [
@@ -210,9 +214,9 @@ def paper_text(rows: Sequence[PaperRow]) -> str:
             "alpha apart",
             "slip of print",
         )
-        blocks.append(f"Table {number_of_table}\n" + table(head, lines))
-    blocks.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
-    return "\n".join(blocks)
+        parts += [f"Table {number_of_table}", _table(head, lines)]
+    parts.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
+    return tuple(parts)
 
 
 def _vector(vector: Sequence[float], form: str) -> str:

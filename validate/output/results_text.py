@@ -7,9 +7,11 @@ from typing import Any
 
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, counted
+from validate.comparison.examined import Examined
 from validate.measured.comparing import DataOutcome
 from validate.output.report import (
     counted_as,
+    examined_data,
     explained_lines,
     outcome_data,
     table,
@@ -60,6 +62,11 @@ def _sentence(found: DataOutcome) -> str:
     verdicts = dict.fromkeys(row.verdict for row in rows)
     told = ", ".join(counted(sum(row.verdict == v for row in rows), v) for v in verdicts)
     return f"Of {len(rows)} that the file gives: {told}."
+
+
+def examined_data_of(examined: Examined, found: DataOutcome) -> dict[str, Any]:
+    """What came of a file and the scene that it is about, as plain data."""
+    return examined_data(examined) | {"comparisons": [data_of(found)]}
 
 
 def data_of(found: DataOutcome) -> dict[str, Any]:

@@ -106,23 +106,56 @@ def laid_out(parts: Sequence[Part], stream: TextIO | None) -> str | None:
 
 
 def _show(table: Table, console: Any, rich: Any) -> None:
-    """A table, or a list of its cells for each row where it is wider than the terminal."""
+    """A table; one that is wider than the terminal with its cells folded, or as a list for each row."""
     wide = max(len(line) for line in table.text.splitlines()) + len(table.head)
-    if wide > console.width:
-        indent = " " * table.indent
+    widths = None if wide <= console.width else _folded(table, console.width)
+    if wide > console.width and widths is None:
         for row in table.rows:
-            for i, (name, cell) in enumerate(zip(table.head, row, strict=True)):
-                if cell:
-                    words = rich.text.Text(f"{indent}{'' if i == 0 else f'  {name}: '}")
-                    console.print(words.append(cell, style=_style(table.head[i], cell, i)), soft_wrap=True)
+            _list(table, row, console, rich)
         return
-    grid = rich.table.Table(box=rich.box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    padding = (0, 1) if widths is None else (0, 0)
+    grid = rich.table.Table(box=rich.box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=padding)
     for i, name in enumerate(table.head):
-        grid.add_column(rich.text.Text(name), justify="left" if table.to_left(i) else "right", no_wrap=True)
+        justify = "left" if table.to_left(i) else "right"
+        width = None if widths is None else widths[i]
+        grid.add_column(rich.text.Text(name), justify=justify, no_wrap=widths is None, width=width)
     for row in table.rows:
         cells = zip(table.head, row, strict=True)
         grid.add_row(*(rich.text.Text(c, style=_style(n, c, 1)) for n, c in cells))
     console.print(rich.padding.Padding(grid, (0, 0, 0, table.indent)) if table.indent else grid)
+
+
+def _folded(table: Table, room: int) -> list[int] | None:
+    """Widths of columns whose cells are folded between words; None where no word may be cut for it."""
+    columns = [[name, *(row[i] for row in table.rows)] for i, name in enumerate(table.head)]
+    widths = [max(len(word) for cell in column for word in cell.split() or [""]) for column in columns]
+    rest = room - table.indent - sum(widths) - (len(widths) - 1)
+    if rest < 0:
+        return None
+    # Whole cells in as many columns as there is room for, and what is left over to the next one.
+    lacking = [max(map(len, column)) - width for column, width in zip(columns, widths, strict=True)]
+    for i in sorted(range(len(widths)), key=lambda i: lacking[i]):
+        more = min(lacking[i], rest)
+        widths[i] += more
+        rest -= more
+    return widths
+
+
+def _list(table: Table, row: Sequence[str], console: Any, rich: Any) -> None:
+    """A row as its first cell, and below it the others by name, as many in a line as there is room for."""
+    indent = " " * table.indent
+    console.print(rich.text.Text(indent + row[0], style=_style(table.head[0], row[0], 0)), soft_wrap=True)
+    line = rich.text.Text()
+    for i, (name, cell) in enumerate(zip(table.head, row, strict=True)):
+        if not i or not cell:
+            continue
+        if len(line) and len(line) + 2 + len(name) + 2 + len(cell) > console.width:
+            console.print(line, soft_wrap=True)
+            line = rich.text.Text()
+        line.append(f"  {name}: " if len(line) else f"{indent}  {name}: ")
+        line.append(cell, style=_style(name, cell, i))
+    if len(line):
+        console.print(line, soft_wrap=True)
 
 
 def _style(name: str, cell: str, column: int) -> str:

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 
 from flint import arb, arb_mat, ctx
 
@@ -131,11 +132,5 @@ def _identity(size: int) -> arb_mat:
 
 
 def _largest(numbers: Sequence[arb]) -> arb:
-    """Greatest upper bound; not a number if one of them is not."""
-    bounds = [number.abs_upper() for number in numbers]
-    if not all(bound.is_finite() for bound in bounds):
-        return arb.nan()
-    largest = bounds[0]
-    for bound in bounds[1:]:
-        largest = largest.max(bound)
-    return largest
+    """Greatest upper bound; not finite if one of them is not."""
+    return reduce(arb.max, (number.abs_upper() for number in numbers))

@@ -18,6 +18,8 @@ from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.reported_bounds import ROUNDINGS
 from pointcoord.effects.angle import WHEEL, WheelAngles
 from pointcoord.effects.effect import Effect, Poses
+from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
+from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
@@ -285,3 +287,53 @@ def test_an_angle_along_any_other_direction_is_found(name: str, direction: str, 
         return
     with pytest.raises(AssertionError):
         check(changed, car, mechanism)
+
+
+@each_effect
+@pytest.mark.parametrize("scene", ["off-axis-strut", "double-wishbone"])
+def test_a_point_that_is_not_reported_is_evaluated_only_for_what_is_made_of_it(name: str, scene: str) -> None:
+    topology = mechanism_of(scene).topology
+    states = name in ("position", "velocity", "acceleration")
+    for left_out in topology.points:
+        plan = plan_effects([name] if name in EFFECTS else [], unreported=(left_out,))
+        made_of_it = not states and left_out in EVERY[name].needs(topology)
+        assert (left_out in plan.derivatives(topology)) == made_of_it
+
+
+class Lossless(LeastSquares):
+    """As if the formula lost nothing."""
+
+    def loss(self, edges: tuple[Array, Array], rates: tuple[Array, Array]) -> Array:
+        return np.ones((len(edges[0]), 1))
+
+
+def test_of_a_needle_that_turns_as_much_more_is_expected_as_its_formula_loses() -> None:
+    mechanism = mechanism_of("double-wishbone")
+    body = mechanism.topology.knuckle
+    first, second, third, *_ = mechanism.topology.bodies[body]
+    rng = np.random.default_rng(8)
+    for thin, least in ((1e-7, 50.0), (1e-6, 1.5), (0.3, 1.0)):
+        car = moving_car(rng, mechanism)
+        start, end = (rounded(car.points[name][0]) for name in (first, second))
+        off = 0.4 * (end - start) + thin * np.cross(end - start, rng.normal(size=3))
+        place = tuple(mpf(float(c)) for c in start + off)
+        car.points[third] = (place, *car.points[third][1:])
+        poses, numbers = exact_poses_of(car, mechanism), KNUCKLE_RATES.evaluate(poses_of(car, mechanism))
+        edges = rounded(car.points[second][0]) - start, rounded(place) - start
+        k = (np.dot(edges[0], edges[0]) + np.dot(edges[1], edges[1])) / np.linalg.norm(np.cross(*edges))
+        loss = 1.0 + 4e3 * 2.0 * U * k**2
+        assert loss >= least
+        said, plain = (
+            replace(KNUCKLE_RATES, formula=formula).errors(poses, numbers)["angular_velocity"][body][1]
+            for formula in (LeastSquares(), Lossless())
+        )
+        np.testing.assert_allclose(said, loss * plain, rtol=1e-3)
+
+
+def test_the_loss_of_many_bodies_is_that_of_each() -> None:
+    edges = tuple(np.random.default_rng(9).normal(size=(2, 5, 3)) * [1.0, 1e-6, 1e-6])
+    together = LeastSquares().loss((edges[0], edges[1]), (edges[0], edges[1]))
+    assert together.shape == (5, 1)
+    for i in range(5):
+        one = (edges[0][i : i + 1], edges[1][i : i + 1])
+        assert LeastSquares().loss(one, one)[0, 0] == pytest.approx(together[i, 0], rel=1e-12)

@@ -119,6 +119,33 @@ def test_an_axis_needs_two_points_apart_and_a_body_that_is_no_line() -> None:
         AXIS.placed(LAYOUT, Drawing(flat, np.array(1.0)))
 
 
+def test_a_body_carries_an_axis_until_its_triangle_is_a_line_to_sixteen_roundings() -> None:
+    def thin(height: float) -> Drawing:
+        ends = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.5, height, 0.0)}
+        axis = {"tail": (0.0, 0.0, 1.0), "head": (0.0, 0.0, 2.0)}
+        return Drawing({n: np.array(p) for n, p in {**ends, **axis}.items()}, np.array(1.0))
+
+    # |e1 x e2| = height against 16 u |e1| |e2| = 8 u
+    AXIS.placed(LAYOUT, thin(8.02 * U))
+    with pytest.raises(MechanismError, match="base, first, second lie in one line"):
+        AXIS.placed(LAYOUT, thin(7.98 * U))
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("axes", [(1, 2, 0), (2, 0, 1), (1, 0, 2), (0, 2, 1), (2, 1, 0)])
+def test_no_axis_of_the_frame_is_special_to_a_place_in_a_body_or_to_its_doubt(
+    seed: int, axes: tuple[int, int, int]
+) -> None:
+    points = drawn(seed, "anywhere", 1.0)
+    turned = {name: place[list(axes)] for name, place in points.items()}
+    _, plain = AXIS.placed(LAYOUT, Drawing(points, np.array(1.0)))
+    _, other = AXIS.placed(LAYOUT, Drawing(turned, np.array(1.0)))
+    # Of a mirrored car the normal is the other way round. Of a doubt that is a sum of sizes only the last
+    # digits depend on the order of its terms and of the elimination; a tenth is the smallest of the terms.
+    np.testing.assert_allclose(np.abs(other.values), np.abs(plain.values), rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(np.asarray(other.doubt), np.asarray(plain.doubt), rtol=1e-2)
+
+
 def test_cars_drawn_together_have_the_constants_that_they_have_alone() -> None:
     cars = [drawn(seed, "anywhere", 1.0) for seed in range(5)]
     together = Drawing({n: np.stack([car[n] for car in cars]) for n in cars[0]}, np.ones(5))

@@ -1,12 +1,15 @@
 """Points carried by a body, for random rigid motions."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from pointcoord.linkage.carried_points import carried_series
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.carried_points import carried_gain, carried_place, carried_series, carrier_weights
+from pointcoord.linkage.drawing import Drawing
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -46,3 +49,45 @@ def test_carried_point_moves_with_its_carriers_and_keeps_its_distance(seed: int)
     for p in carriers:
         kept = np.linalg.norm(whole - turned @ p)
         assert abs(kept - np.linalg.norm(rider - p)) <= 1e-6 * size
+
+
+@pytest.mark.parametrize(
+    "batched", [("base",), ("first",), ("base", "second"), ("base", "first", "second", "rider")]
+)
+def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
+    batched: tuple[str, ...],
+) -> None:
+    rng = np.random.default_rng(len(batched))
+    names = ("base", "first", "second", "rider")
+    vectors = {name: rng.normal(size=(6, 3) if name in batched else 3) for name in names}
+    together = Drawing(vectors, np.ones(6))
+    carriers = ("base", "first", "second")
+    weights = carrier_weights("rider", together, carriers)
+    assert weights.shape == (6, 3)
+    gains = []
+    for i in range(6):
+        own = {name: place[i] if name in batched else place for name, place in vectors.items()}
+        alone = carrier_weights("rider", Drawing(own, np.array(1.0)), carriers)
+        # One solve of a system of the condition number of the frame.
+        frame = np.stack([own["first"] - own["base"], own["second"] - own["base"]])
+        spread = np.linalg.cond(np.vstack([frame, np.cross(*frame)]))
+        np.testing.assert_allclose(weights[i], alone, rtol=0.0, atol=64 * EPS * spread * np.abs(alone).max())
+        place = carried_place(alone, *(own[name] for name in carriers))
+        size = max(np.abs(alone).max(), 1.0) * max(np.abs(v).max() for v in own.values()) ** 2
+        np.testing.assert_allclose(place, own["rider"], rtol=0.0, atol=64 * EPS * spread * size)
+        gains.append(carried_gain(alone, Drawing(own, np.array(1.0)), carriers))
+    # Of a batch it is the largest.
+    assert carried_gain(weights, together, carriers) == pytest.approx(max(gains), rel=1e-9)
+
+
+def test_a_point_is_carried_until_its_carriers_are_a_line_to_eight_roundings() -> None:
+    def thin(height: float) -> Drawing:
+        places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.5, height, 0.0)}
+        return Drawing(
+            {n: np.array(p) for n, p in {**places, "rider": (0.2, 0.3, 0.4)}.items()}, np.array(1.0)
+        )
+
+    # |e1 x e2| = height against 8 eps |e1| |e2| = 4 eps
+    carrier_weights("rider", thin(4.01 * EPS), ("base", "first", "second"))
+    with pytest.raises(MechanismError, match="in one line, so they cannot carry rider"):
+        carrier_weights("rider", thin(3.99 * EPS), ("base", "first", "second"))

@@ -229,3 +229,11 @@ def test_batch_of_cars_is_each_of_them(car: SampleCar) -> None:
         assert np.array_equal(batch.drawn[i], one.drawn)
         assert np.array_equal(batch.origin[i], one.origin)
         assert batch.unit[i] == one.unit
+        # Directions are the same for all of them, points are not.
+        alone = batch.taken(i)
+        for name, place in one.drawing.vectors.items():
+            assert np.array_equal(alone.drawing.vectors[name], place)
+        for part in ("drawn", "drawn_lacks", "drawn_doubt", "origin", "unit"):
+            assert np.array_equal(getattr(alone, part), getattr(one, part))
+        some = batch.taken(np.array([i, 0]))
+        assert np.array_equal(some.drawn, batch.drawn[[i, 0]])

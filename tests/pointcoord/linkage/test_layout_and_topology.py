@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pointcoord import UnknownName
+from pointcoord import InputOutOfRange, UnknownName
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.method import SERIES
@@ -105,3 +105,40 @@ def test_inputs_by_name_are_checked(strut: Mechanism) -> None:
     assert caught.value.name == "roll"
     with pytest.raises(UnknownName, match="rack"):
         strut.known_series({"arm_angle": one})
+
+
+@pytest.mark.parametrize("bad", [np.inf, -np.inf, np.nan])
+def test_an_input_or_rate_that_is_not_finite_is_refused_by_name(strut: Mechanism, bad: float) -> None:
+    laws = {"arm_angle": np.array([1.0, 0.5, 0.0]), "rack": np.array([2.0, bad, 0.0])}
+    with pytest.raises(InputOutOfRange, match="finite values and rates of every order") as caught:
+        strut.known_series(laws)
+    assert caught.value.name == "rack"
+    assert np.array_equal(caught.value.value, bad, equal_nan=True)
+
+
+def test_rates_whose_products_are_not_finite_are_refused_with_the_largest(strut: Mechanism) -> None:
+    laws = {"rack": np.array([2.0, 5.0, 0.0]), "arm_angle": np.array([1.0, -1e200, 0.0])}
+    with pytest.raises(InputOutOfRange, match="stay finite in every product") as caught:
+        strut.known_series(laws)
+    assert (caught.value.name, caught.value.value) == ("arm_angle", 1e200)
+
+
+@by_name
+def test_of_a_force_in_one_row_its_constraint_takes_part_and_no_other(topology: Topology) -> None:
+    row = 0
+    for constraint in topology.constraints:
+        for _ in constraint.labels:
+            forces = np.zeros(len(topology.labels))
+            forces[row] = -3.0
+            assert topology.strongest(forces) == (constraint.name,)
+            row += 1
+    assert row == len(topology.labels)
+
+
+@by_name
+def test_a_constraint_takes_part_from_a_tenth_of_the_largest_force(topology: Topology) -> None:
+    one, *_, other = topology.constraints
+    forces = np.zeros(len(topology.labels))
+    for share, both in ((0.11, True), (-0.11, True), (0.09, False)):
+        forces[0], forces[-1] = 2.0, 2.0 * share
+        assert set(topology.strongest(forces)) == ({one.name, other.name} if both else {one.name})

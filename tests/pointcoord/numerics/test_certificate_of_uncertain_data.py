@@ -1,5 +1,6 @@
 """The certificate where the known coordinates are uncertain, on systems whose solutions are at hand."""
 
+from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.numerics.kantorovich import Certificate, certify
+from pointcoord.numerics.kantorovich import Certificate, ball, certify
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
@@ -37,6 +38,29 @@ def certified(matrix: Array, right: Array, u: Array, doubt: Array) -> Certificat
     data = np.concatenate([np.zeros(n), doubt, [0.0, 0.0]])
     system = linear_map(n)
     return certify(system, y, factorise(system.jacobian(y)), data)
+
+
+@plain
+@given(z=st.floats(0.0, 0.99), constant=st.floats(1e-9, 0.99), omega=st.floats(1e-3, 1e3))
+def test_the_ball_is_the_smallest_that_the_test_holds_for(z: float, constant: float, omega: float) -> None:
+    eta = constant * (1.0 - z) ** 2 / (2.0 * omega)
+    found = ball(np.array(eta), np.array(z), np.array(omega))
+    assert found.proven
+
+    def holds(radius: Fraction) -> bool:
+        return Fraction(eta) + Fraction(z) * radius + Fraction(omega) * radius**2 / 2 <= radius
+
+    radius, outer = (Fraction(float(number)) for number in (found.radius, found.outer))
+    # What is said has a millionth to spare for its own rounding.
+    less, more = 1 - Fraction(1, 10**5), 1 + Fraction(1, 10**5)
+    assert holds(radius)
+    assert not holds(radius * less)
+    assert holds(outer)
+    assert not holds(outer * more)
+    turned = Fraction(z) + Fraction(omega) * radius
+    tail = Fraction(z) * radius + Fraction(omega) * radius**2 / 2
+    assert turned <= Fraction(float(found.contraction)) <= turned * more
+    assert tail <= Fraction(float(found.tail)) <= tail * more
 
 
 @plain

@@ -7,7 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import doubled_residual, exact_square, two_product, two_sum
+from pointcoord.numerics.double_double import (
+    doubled_residual,
+    exact_square,
+    pair_cross,
+    pair_product,
+    pair_sum,
+    two_product,
+    two_sum,
+)
 
 U = Fraction(1, 2**53)
 numbers = st.floats(-1e100, 1e100, allow_nan=False, allow_subnormal=False).filter(
@@ -60,6 +68,42 @@ def test_doubled_residual_is_right_to_within_what_it_says_itself(
         if not moved:
             # One rounding of the result is all that is left of it, and squares of roundings.
             assert least <= 3 * float(U) * abs(found) + 1e-28
+
+
+def test_residuals_of_a_batch_are_those_of_its_members(strut: Mechanism) -> None:
+    rng = np.random.default_rng(4)
+    y = strut.drawn + rng.normal(size=(2, 3, strut.map.size))
+    low, data = 1e-17 * rng.normal(size=y.shape), 1e-12 * rng.random(y.shape)
+    value, doubt = doubled_residual(strut.map, y, low, data)
+    for member in np.ndindex(2, 3):
+        alone = doubled_residual(strut.map, y[member], low[member], data[member])
+        assert np.array_equal([value[member], doubt[member]], alone)
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_sums_and_products_of_pairs_keep_twice_the_digits(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    high = rng.normal(size=(2, 3))
+    low = float(U) * high * rng.uniform(-1.0, 1.0, size=high.shape)
+    a, b = ((high[i], low[i]) for i in (0, 1))
+    x, y = (
+        [Fraction(p) + Fraction(q) for p, q in zip(*(part.tolist() for part in pair), strict=True)]
+        for pair in (a, b)
+    )
+    sums, products = pair_sum(a, b), pair_product(a, b)
+    cross = pair_cross(a, b)
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        size = abs(x[j] * y[k]) + abs(x[k] * y[j])
+        for pair, exact, largest in (
+            (sums, x[i] + y[i], abs(x[i]) + abs(y[i])),
+            (products, x[i] * y[i], abs(x[i] * y[i])),
+            (cross, x[j] * y[k] - x[k] * y[j], size),
+        ):
+            # Some twenty roundings of low parts, each below u of them.
+            assert (
+                abs(Fraction(float(pair[0][i])) + Fraction(float(pair[1][i])) - exact) <= 20 * U**2 * largest
+            )
 
 
 def test_squared_lengths_lack_what_they_have_rounded(strut: Mechanism) -> None:

@@ -51,6 +51,18 @@ def largest(*groups: Enclosed) -> float:
     return max(float(each.reach.max()) for each in groups if isinstance(each, EnclosedGroups))
 
 
+def test_a_change_loses_a_rounding_of_itself() -> None:
+    rng = np.random.default_rng(2)
+    first = rng.normal(size=(GROUPS, 1, 3))
+    exact = fraction(first) + fraction(1e-3 * rng.normal(size=(GROUPS, COUNT, 3)))
+    change = (exact - fraction(first)).astype(float)
+    found = EnclosedGroups.around(Enclosed.of(first), change)
+    for radius in found.radius:
+        # It is found again to a rounding of the largest change, and no more than that is said.
+        assert (np.abs(middle(found) - exact) <= fraction(radius)).all()
+        assert radius.max() <= 1.1 * U * np.abs(change).max()
+
+
 @some
 @given(seed=seeds)
 def test_sums_and_products_enclose_those_of_every_number_within(seed: int) -> None:

@@ -39,6 +39,17 @@ def test_sums_and_products_of_any_numbers_within_the_radii_lie_within_theirs(
     assert (a * b).radius[0] <= 1.001 * own + 17 * U**2 * abs(float(a.high * b.high)) + 2e-300
 
 
+def test_a_power_of_two_rounds_nothing_but_what_falls_below_the_normal_numbers() -> None:
+    # Exact, with a low part, zero; each with a radius.
+    numbers = Enclosed.of(np.array([0.7, 0.7, 0.0, 1.0]), np.array([0.0, 1e-20, 0.0, 0.0]), 2.0**-80)
+    for factor in (0.25, 8.0):
+        assert np.array_equal(numbers.scaled(factor).radius, factor * numbers.radius)
+    for high, low in ((1.0 + U, 0.0), (0.7, 3.1e-20), (0.7, 0.0)):
+        one, factor = Enclosed.of(high, low), 2.0**-1030
+        lost = abs(exact(one.scaled(factor)) - exact(one) * Fraction(factor))
+        assert lost <= Fraction(float(one.scaled(factor).radius[0]))
+
+
 @given(st.lists(NUMBERS, min_size=6, max_size=6))
 def test_vector_products_keep_their_digits_where_they_cancel(parts: list[float]) -> None:
     a, b = np.array(parts[:3]), np.array(parts[3:])

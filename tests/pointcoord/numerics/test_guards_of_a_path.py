@@ -24,10 +24,10 @@ S = 0.5
 
 
 def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float = 1.0) -> bool:
-    """A series of order 3 that ends at (u, u^2): Newton's first step and its last terms at the end."""
+    """A series of order 4 that ends at (u, u^2): Newton's first step and its last terms at the end."""
     y = np.array([u, u * u, 0.0, 1.0])
-    series = np.zeros((4, 4))
-    series[2, 0], series[3, 0] = last_but_one / S**2, last / S**3
+    series = np.zeros((5, 4))
+    series[3, 0], series[4, 0] = last_but_one / S**3, last / S**4
     factors = factorise(PARABOLA.jacobian(y))
     reached = Converged(
         y=y,

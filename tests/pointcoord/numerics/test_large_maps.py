@@ -60,6 +60,10 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
     assert by_blocks.condition == pytest.approx(plain.condition, rel=1e-10)
     x = by_blocks.solve(right)
     assert (np.abs(x - plain.solve(right)).max(axis=-1) <= 8 * EPS * plain.condition * np.abs(x).max()).all()
+    # One of the matrices for several right sides.
+    one, several = by_blocks.taken(np.array([0])).reshaped(()), rng.uniform(-1.0, 1.0, (4, N))
+    for side, found in zip(several, one.solve(several), strict=True):
+        assert np.abs(found - one.solve(side)).max() <= 8 * EPS * one.condition * np.abs(found).max()
     for some in (
         by_blocks.taken(np.array([2, 0])),
         by_blocks.reshaped((1, 3)).reshaped((3,)).taken(np.array([2, 0])),
@@ -90,11 +94,13 @@ def test_by_blocks_a_nearby_matrix_with_entries_of_its_own_is_solved_with_its_ow
 @pytest.mark.parametrize("columns", [30, N, 200])
 def test_products_with_few_entries_are_the_products(columns: int) -> None:
     rng = np.random.default_rng(9)
-    left = rng.uniform(-1.0, 1.0, (2, 1, N, N))
+    every = rng.uniform(-1.0, 1.0, (2, 1, 7, N))
     right = rng.uniform(-1.0, 1.0, (3, N, columns)) * (rng.uniform(0.0, 1.0, (N, columns)) < 0.03)
-    found = product_of_few_entries(left, right)
-    # Sums of at most N products of numbers below 1, of either way.
-    assert np.abs(found - left @ right).max() <= 2 * N * EPS
+    for left in (every, every[0, 0]):
+        found = product_of_few_entries(left, right)
+        assert found.shape == (left @ right).shape
+        # Sums of at most N products of numbers below 1, of either way.
+        assert np.abs(found - left @ right).max() <= 2 * N * EPS
 
 
 def test_one_large_matrix_is_factorised_by_blocks_as_a_batch_is() -> None:
@@ -153,6 +159,9 @@ def test_the_lipschitz_constant_is_the_sum_over_all_pairs_of_unknowns(unknowns: 
         wanted = (np.einsum("kji,j,k->i", bent, g, g) / g).max()
         assert found[one, member] == pytest.approx(wanted, rel=1e-12)
         assert system.lipschitz(inverse[member], g) == pytest.approx(wanted, rel=1e-12)
+    plain = np.abs(np.einsum("kjr,mir->mkji", curvature, inverse)).sum(axis=(1, 2)).max(axis=-1)
+    assert system.lipschitz(inverse) == pytest.approx(plain, rel=1e-12)
+    assert system.lipschitz(inverse[0]) == pytest.approx(plain[0], rel=1e-12)
 
 
 def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
 from pointcoord.numerics.newton import newton_refine, refine_plainly
+from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.solve.assembly import Pose, assemble
 
 Array = NDArray[np.float64]
@@ -98,6 +99,17 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
         assert np.abs(reached.y[member] - alone.y).max() <= 2 * float(pose.bound / strut.unit)
 
 
+def test_the_factors_are_those_that_the_last_step_was_made_with(
+    strut: Mechanism, pose: Pose, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(newton, "LIMIT", 1)
+    start = displaced(pose, 4, 1e-3)
+    for reached in (newton_refine(strut.map, start), refine_plainly(strut.map, start)):
+        # Rows are scaled by powers of two.
+        matrix = reached.factors.matrix / reached.factors.row_scale[:, None]
+        assert np.array_equal(matrix, strut.map.jacobian(start))
+
+
 def test_work_counts_every_member_at_every_step(strut: Mechanism, pose: Pose) -> None:
     batch = np.stack([displaced(pose, 1, 1e-3), pose.y, pose.y])
     reached = newton_refine(strut.map, batch)
@@ -134,6 +146,24 @@ def test_one_start_takes_the_steps_that_it_takes_in_a_batch(
         assert abs(found - right) <= noise + 1e-6 * right
     # Noise may end the iteration one step sooner or later.
     assert abs(int(one.iterations) - int(plainly.iterations)) <= (1 if tolerance == 0.0 else 0)
+
+
+@pytest.mark.parametrize("start", [2.0, 1.2, 1.01, 0.9])
+def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) -> None:
+    """u^2 = 1 from above, which is the equation that Newton and Kantorovich's bound is reached by."""
+    # y = (u, w, 0, 1)
+    parabola = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], 1, 4)
+    y = np.array([start, 1.0, 0.0, 1.0])
+    after = (start + 1.0 / start) / 2.0
+    for found in (newton_refine(parabola, y, 0.0, np.inf), refine_plainly(parabola, y, 0.0, np.inf)):
+        assert found.converged
+        assert found.iterations == 1
+        assert found.y[0] == pytest.approx(after, rel=4 * EPS)
+        # Five roundings of numbers near 1 in what is left.
+        if start > 1.0:
+            assert found.left == pytest.approx(after - 1.0, abs=16 * EPS)
+        assert after - 1.0 <= found.left + 16 * EPS
+    assert newton_refine(parabola, y, 0.0, np.inf).noise == 0.0
 
 
 @pytest.mark.parametrize("value", BAD.values(), ids=BAD.keys())

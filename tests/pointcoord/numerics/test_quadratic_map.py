@@ -154,6 +154,25 @@ def test_uncertainty_of_one_product_is_reached_at_a_corner_of_the_data(seed: int
 
 @plain
 @given(seed=seeds)
+def test_the_jacobian_moves_by_its_uncertainty_at_most_and_at_a_corner(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    system, y, data = random_map(rng), integers(rng, 4), np.abs(integers(rng, 4))
+    bound = system.jacobian_uncertainty(data)
+    for _ in range(5):
+        moved = y + data * rng.integers(-1, 2, y.shape)
+        assert (np.abs(system.jacobian(moved) - system.jacobian(y)) <= bound).all()
+    # Of one product of four coordinates both differences move by two coordinates' worth.
+    a, b, c, d = rng.permutation(SIZE)[:4].tolist()
+    one = quadratic_map([(Product(-3.0, (a, b), (c, d)),)], UNKNOWNS, SIZE)
+    corner = y.copy()
+    corner[:, [a, c]] += data[:, [a, c]]
+    corner[:, [b, d]] -= data[:, [b, d]]
+    change = np.abs(one.jacobian(corner) - one.jacobian(y))
+    assert np.array_equal(change, one.jacobian_uncertainty(data))
+
+
+@plain
+@given(seed=seeds)
 def test_lipschitz_constant_bounds_the_change_of_the_preconditioned_jacobian(seed: int) -> None:
     rng = np.random.default_rng(seed)
     system = random_map(rng)

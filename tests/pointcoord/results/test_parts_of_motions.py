@@ -31,6 +31,7 @@ def test_a_whole_motion_is_complete_and_a_part_of_one_says_what_stopped_it(
 ) -> None:
     whole = simulate(make_scene(ARM, samples=24, stop=LAST), method)
     assert whole.status is COMPLETE
+    assert whole.status.complete
     assert whole.status.error(whole) is None
     error = stopped_by(AssemblyError, make_scene(ARM, samples=31, stop=1.5), method)
     part = error.partial

@@ -1,5 +1,7 @@
 """Designs solved together are the designs solved one by one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,10 +10,12 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
 from pointcoord.simulation import chain_settings, pose_tolerance, prepare_task
-from pointcoord.solve import designs
+from pointcoord.solve import chains_together, designs
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
+from pointcoord.solve.status import TooRough
 from pointcoord.solve.taylor import Chain, build_chain
+from pointcoord.sweeping.solving import way_of_inputs
 
 WISHBONE = Scene.load("double-wishbone")
 # Of these heights of the lower ball joint, mm, the last two cannot be steered as far as the scene does.
@@ -146,7 +150,7 @@ def test_designs_as_columns_take_no_plain_form_where_all_goes_well(monkeypatch: 
 
 def test_a_design_that_asks_for_shorter_segments_is_solved_or_dropped_for_its_own_reason() -> None:
     # The last of these nearly locks on the way, and asks for more segments than all others.
-    edge = max(height for height in np.linspace(100.0, 150.0, 26).tolist() if height not in failing())
+    edge = max(set(np.linspace(100.0, 150.0, 26).tolist()) - failing())
     mechanism, solved = together(WISHBONE, (*np.linspace(-20.0, 20.0, 9).tolist(), edge))
     assert solved.chain is not None
     np.testing.assert_array_equal(solved.alive, np.arange(10))
@@ -154,6 +158,83 @@ def test_a_design_that_asks_for_shorter_segments_is_solved_or_dropped_for_its_ow
     found = unknowns(mechanism, solved.chain, WISHBONE.instants)[9]
     difference = float(mechanism.unit[9]) * np.abs(found - unknowns(own, chain, WISHBONE.instants))
     assert difference.max() <= 2.0 * 0.1 * WISHBONE.tolerance
+
+
+def test_designs_that_all_lock_at_one_instant_are_told_of() -> None:
+    # They differ in what is carried only, so that none of them stands out.
+    scene = Scene.load("bounce")
+    time = scene.time.model_copy(update={"start": 0.0, "stop": 1.5})
+    scene = scene.model_copy(
+        update={"inputs": {**scene.inputs, "arm_angle": {"polynomial": [1.5, 1.0]}}, "time": time}
+    )
+    points = {name: np.array(place) + np.zeros((9, 3)) for name, place in scene.mechanism.points.items()}
+    points["wheel_centre"] = points["wheel_centre"] + np.outer(np.arange(9.0), (0.0, 0.0, 1.0))
+    part = scene.mechanism
+    mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
+    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+    settings, allowed = chain_settings(scene, mechanism, 0), pose_tolerance(scene, SERIES, mechanism)
+    solved = solve_designs(mechanism, functions, 0.0, 1.5, settings, allowed)
+    assert set(solved.failures) == set(range(9))
+    for status in solved.failures.values():
+        error = status.error()
+        assert isinstance(error, AssemblyError)
+        assert error.reached["arm_angle"] == pytest.approx(np.deg2rad(152.013), abs=1e-5)
+
+
+def test_designs_that_only_go_on_in_parts_are_one_chain_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, sizes = Follow.together, []
+
+    def in_parts(follow: Follow, mechanism: Mechanism) -> object:
+        sizes.append(len(mechanism.drawn))
+        ended = whole(follow, mechanism)
+        return replace(ended, status=TooRough("rack", 0.0, False)) if len(sizes) == 1 else ended
+
+    monkeypatch.setattr(Follow, "together", in_parts)
+    mechanism, solved = together(WISHBONE, (-20.0, 0.0, 20.0))
+    assert sizes == [3, 1, 2, 3]
+    np.testing.assert_array_equal(solved.alive, np.arange(3))
+    assert solved.chain is not None
+    assert unknowns(mechanism, solved.chain, WISHBONE.instants[:2]).shape == (3, 2, mechanism.map.unknowns)
+
+
+def test_designs_at_one_instant_are_no_functions_of_their_inputs() -> None:
+    scene = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"stop": 0.0, "samples": 1})})
+    mechanism, _ = together(WISHBONE, MANY[:9])
+    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
+    settings, allowed = chain_settings(scene, mechanism, 2), pose_tolerance(scene, SERIES, mechanism)
+    way = way_of_inputs(WISHBONE, functions)
+    solved = solve_designs(mechanism, functions, 0.0, 0.0, settings, allowed, way)
+    assert solved.boxes is None
+    np.testing.assert_array_equal(solved.alive, np.arange(9))
+
+
+def test_an_end_with_a_first_step_beyond_the_tolerance_is_not_confirmed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole, plainly = chains_together.confirm, []
+
+    def missed(*given: object) -> object:
+        found = whole(*given)
+        return replace(found, first_step=found.first_step + 1e-3)
+
+    def counted(mechanism: Mechanism, follow: Follow) -> SolvedDesigns:
+        plainly.append(len(mechanism.drawn))
+        return solve_plainly(mechanism, follow)
+
+    monkeypatch.setattr(chains_together, "confirm", missed)
+    monkeypatch.setattr(designs, "solve_plainly", counted)
+    _, solved = together(WISHBONE, MANY[:9])
+    assert plainly == [9]
+    np.testing.assert_array_equal(solved.alive, np.arange(9))
+
+
+@pytest.mark.parametrize("last", [(1.0, 1e-3), (1e-3, 1.0)])
+def test_a_member_stands_out_by_the_larger_of_its_last_two_terms(last: tuple[float, float]) -> None:
+    # Every other term is missing where a car is symmetric.
+    step = object.__new__(chains_together._Step)
+    step.sizes, step.stays = np.full((9, 5), 1e-3), np.zeros(5, dtype=bool)
+    step.sizes[-2:, 3] = np.array(last)
+    np.testing.assert_array_equal(step._standing_out(), [False, False, False, True, False])
 
 
 def failing() -> set[float]:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve import paths_together
 from pointcoord.solve.assembly import close_drawing, follow
 from pointcoord.solve.paths_together import Columns, columns_of, follow_together
 
@@ -77,3 +78,37 @@ def test_a_drawing_that_does_not_close_is_closed_as_by_itself() -> None:
     closed = follow_together(columns, drawn[:, None], drawn[n:, None], 1e-13, closing=True)
     assert closed.done.all()
     np.testing.assert_allclose(closed.y[:, 0], close_drawing(mechanism).y, rtol=0, atol=1e-13)
+
+
+def test_a_place_on_the_way_is_brought_as_near_as_two_of_newton_s_steps_bring_it() -> None:
+    mechanism, columns, closed = ready("bounce")
+    n = mechanism.map.unknowns
+    off = np.zeros((len(closed), 3))
+    off[:n] = 3e-3 * np.random.default_rng(9).uniform(-1.0, 1.0, (n, 3))
+    y = closed[:, None] + off
+    wanted = y.T.copy()
+    for _ in range(2):
+        system = mechanism.map
+        wanted[:, :n] -= np.linalg.solve(system.jacobian(wanted), system.residual(wanted)[..., None])[..., 0]
+    blocks = len(columns.proof.couplings)
+    target = np.repeat(closed[n:, None], 3, axis=-1)
+    group = paths_together._Travelling(
+        y, 0.0 * target, target, None, np.ones(3), y[:n].copy(), np.full((blocks, 3), np.inf), np.arange(3)
+    )
+    assert paths_together._advance(columns, group, first=False).all()
+    # The first step leaves some 1e-5, and the second one the square of that.
+    assert np.abs(group.y.T - wanted).max() < 1e-12
+
+
+def test_a_step_goes_to_the_residual_that_is_wanted() -> None:
+    mechanism, columns, closed = ready("bounce")
+    system, rng = mechanism.map, np.random.default_rng(10)
+    n = system.unknowns
+    y = np.repeat(closed[:, None], 3, axis=-1)
+    y[:n] += 1e-3 * rng.uniform(-1.0, 1.0, (n, 3))
+    wanted = 1e-3 * rng.uniform(-1.0, 1.0, (n, 3))
+    d = columns.map.differences(y)
+    found = columns.step(columns.factorise(d), d, wanted)
+    off = system.residual(y.T) - wanted.T
+    right = -np.linalg.solve(system.jacobian(y.T), off[..., None])[..., 0]
+    np.testing.assert_allclose(found.T, right, rtol=0, atol=1e-13)

@@ -126,6 +126,12 @@ def test_series_of_a_batch_are_those_of_each(strut: Mechanism) -> None:
         # The factors are of poses a step of noise apart; order k is a k-fold product of solves.
         tolerance = 8 * N * EPS * float(pose.condition[place]) * np.arange(1, 10)[:, None] ** 2 * scale
         assert (np.abs(batch[place] - alone) <= tolerance).all()
+    # From orders that are at hand it goes on to the same.
+    flat = batch.reshape(4, 9, -1)
+    same = expand(
+        strut.map, pose.factors.reshaped((4,)), pose.y.reshape(4, -1), known.reshape(4, 9, -1), flat[:, :4]
+    )
+    assert np.array_equal(same, flat)
 
 
 def test_inputs_at_rest_give_a_series_at_rest(strut: Mechanism) -> None:

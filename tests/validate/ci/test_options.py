@@ -188,7 +188,7 @@ def test_a_scene_that_is_named_again_is_compared_once(
 ) -> None:
     scene = short_scene(tmp_path, "a.toml")
     assert main(["validate", scene, scene, "--scenes-dir", str(tmp_path), *PAIR]) == 0
-    assert "1 of 1 scenes agree" in capsys.readouterr().out
+    assert "1 of 1 scene agrees" in capsys.readouterr().out
 
 
 def test_without_a_fault_every_scene_is_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

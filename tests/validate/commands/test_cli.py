@@ -104,7 +104,7 @@ def test_an_angle_that_only_degrees_explain_is_asked_about(
         assert main(["validate", text]) == 3
         out, err = capsys.readouterr()
         assert ("if 88 is meant in degrees, it is 1.535889742 rad" in err) == asked
-        assert "0 of 1 scenes agree" in out
+        assert "0 of 1 scene agrees" in out
         assert "1 of 1 could not be compared at all" in out
 
 

@@ -318,7 +318,7 @@ def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_tes
     out = capfd.readouterr().out
     assert f"  cannot be used: own_solvers.partly:solve{' ' if not case else ': wheel angle of '}" in out
     assert said in out
-    assert "0 of 1 scenes agree" in out
+    assert "0 of 1 scene agrees" in out
     (error,) = ElementTree.parse(tests).getroot().iter("error")
     assert said in error.get("message", "")
 

@@ -82,7 +82,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     assert "(--first pointcoord-newton); refused by pointcoord (MotionTooLong); " in line
     assert line.endswith("solved by absolute and pointcoord-newton")
     assert f"{path}: pointcoord-newton and absolute, 5 instants" in out
-    assert "0 of 1 scenes agree between pointcoord and absolute, 1 of 1 between" in out
+    assert "0 of 1 scene agrees between pointcoord and absolute, 1 of 1 between" in out
     # The hint can be followed, here and where the scene is only solved.
     assert main(["validate", path, "--first", "pointcoord-newton"]) == 0
     assert main(["simulate", path, "-o", str(tmp_path / "x.csv")]) == 3

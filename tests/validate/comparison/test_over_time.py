@@ -1,11 +1,14 @@
 """A comparison instant by instant says at its worst what the comparison says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.comparison.compare import compare
+from validate.comparison.compare import compare, compare_solutions
 from validate.comparison.over_time import over_time
+from validate.formulations.protocol import Solution
 
 
 @pytest.mark.parametrize("name", ["bounce-and-steer", "double-wishbone"])
@@ -29,3 +32,37 @@ def test_of_a_quantity_that_one_does_not_give_there_is_nothing_over_time() -> No
     silent = second.with_numbers({row.quantity: {}})
     lacking = type(outcome)(outcome.scene, outcome.rows, (first, silent), (), ())
     assert over_time(lacking, row, scene.instants) is None
+
+
+def at(solution: Solution, kept: np.ndarray) -> Solution:
+    """Some instants of a solution."""
+    numbers, claims = (
+        {quantity: {name: array[kept] for name, array in part.items()} for quantity, part in arrays.items()}
+        for arrays in (solution.numbers, solution.accuracy.claims)
+    )
+    accuracy = replace(solution.accuracy, claims=claims, condition=solution.accuracy.condition[kept])
+    return replace(solution, times=solution.times[kept], numbers=numbers, accuracy=accuracy)
+
+
+def test_only_instants_that_both_give_are_compared_over_time() -> None:
+    scene = Scene.load("bounce")
+    first, second = compare(scene, "pointcoord", "absolute").solutions
+    count = len(scene.instants)
+    one, two = at(first, np.arange(0, count, 2)), at(second, np.arange(0, count, 3))
+    for pair in ((one, two), (two, one), (first, two), (two, first)):
+        step = 3 if pair[0] is first or pair[1] is first else 6
+        outcome = compare_solutions(scene, *pair, "bounce")
+        for row in outcome.rows:
+            found = over_time(outcome, row, scene.instants)
+            assert found is not None
+            assert np.array_equal(found.times, scene.instants[::step])
+            assert float(found.share.max()) == row.share
+
+
+def test_without_an_instant_that_both_give_there_is_nothing_over_time() -> None:
+    scene = Scene.load("bounce")
+    outcome = compare(scene, "pointcoord", "absolute")
+    first, second = outcome.solutions
+    count = len(scene.instants)
+    apart = (at(first, np.arange(0, count, 2)), at(second, np.arange(1, count, 2)))
+    assert over_time(replace(outcome, solutions=apart), outcome.rows[0], scene.instants) is None

@@ -109,3 +109,19 @@ def test_the_absolute_model_claims_what_the_chassis_rounds_and_twice_its_estimat
     assert (claims["position"]["strut_top"] <= rounded + 4.0 * EPS * 500.0).all()
     for point in ("tie_rod_outer", "wheel_centre"):
         assert (claims["velocity"][point] >= 1.9 * still.velocity_error[point]).all()
+
+
+@pytest.mark.parametrize(
+    ("share", "verdict"), [(0.0, "agrees"), (0.99, "agrees"), (1.01, "disagrees"), (1.9, "disagrees")]
+)
+def test_numbers_agree_up_to_the_sum_of_what_both_claim_and_no_farther(
+    solved: Solution, share: float, verdict: str
+) -> None:
+    claim = 2.0**-20  # a millionth of a millimetre: a thousand roundings of a car's coordinates
+    claims = {name: np.full_like(c, claim) for name, c in solved.accuracy.claims["position"].items()}
+    one = replace(solved, accuracy=solved.accuracy.with_claims({"position": claims}))
+    moved = one.numbers["position"]["wheel_centre"].copy()
+    moved[5, 1] += share * 2.0 * claim
+    found = row(one, changed(one, "position", {"wheel_centre": moved}), "position", "wheel_centre")
+    assert found.verdict == verdict
+    assert found.share == pytest.approx(share, abs=1e-6)

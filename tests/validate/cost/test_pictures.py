@@ -4,17 +4,20 @@ import math
 from dataclasses import replace
 from itertools import combinations
 
+import numpy as np
 import pytest
 from made_rows import alike, dialled, error, grown, measured, study
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from validate.cost.findings import findings, growths
+from validate.cost.looks import FURTHER, LOOKS, looks
 from validate.cost.picture import error_time, growing, headline
-from validate.cost.picture.look import FURTHER, LOOKS, looks, spread, style
+from validate.cost.picture.look import spread, style
 from validate.cost.row import Row
+from validate.cost.ways.registry import WAYS
 
 
 def panels(figure: Figure) -> dict[str, Axes]:
@@ -35,10 +38,14 @@ def points(axes: Axes, colour: str, marker: str) -> list[tuple[float, float]]:
     ]
 
 
-def test_no_two_ways_share_a_marker_so_that_colour_is_not_needed() -> None:
-    known = [look.marker for look in LOOKS.values()]
-    assert len(set(known)) == len(known)
-    assert not {look.marker for look in FURTHER} & set(known)
+def test_no_two_ways_share_a_marker_or_a_line_so_that_colour_is_not_needed() -> None:
+    assert {way.name for way in WAYS} <= set(LOOKS)
+    for of in ("marker", "symbol"):
+        known = [getattr(look, of) for look in LOOKS.values()]
+        assert len(set(known)) == len(known)
+        assert not {getattr(look, of) for look in FURTHER} & set(known)
+    lines = [(look.colour, look.dash) for look in (*LOOKS.values(), *FURTHER[:8])]
+    assert len(set(lines)) == len(lines)
     for one, other in combinations(FURTHER, 2):
         assert (one.colour, one.marker) != (other.colour, other.marker)
     found = looks(["series", "of a user", "another"])
@@ -50,7 +57,20 @@ def test_a_way_that_serves_any_instant_is_filled_and_another_hollow() -> None:
     for name, look in LOOKS.items():
         assert style(look, True)["markerfacecolor"] == look.colour, name
         assert style(look, False)["markerfacecolor"] == "white", name
-        assert style(look, True)["linestyle"] != style(look, False)["linestyle"]
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance (WCAG 2.2)."""
+    parts = np.array(to_rgb(colour))
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_lines_stand_out_of_white_paper_and_of_a_dark_page() -> None:
+    for look in (*LOOKS.values(), *FURTHER):
+        for behind in ("#ffffff", "#16181b"):
+            low, high = sorted(map(luminance, (look.colour, behind)))
+            assert (high + 0.05) / (low + 0.05) >= 3.0, (look.colour, behind)  # WCAG 2.2, 1.4.11
 
 
 def test_every_measured_setting_is_a_point_at_its_time_and_error() -> None:

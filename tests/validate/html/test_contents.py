@@ -17,15 +17,19 @@ import validate.html
 import validate.published
 from pointcoord import Scene
 from validate.cli import main
+from validate.commands.reporting import Page
 from validate.comparison.examined import Examined, examine
 from validate.cost.report import Report
+from validate.cost.ways.registry import WAYS
 from validate.html.data import data_files
+from validate.html.folder import PAGE
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.plot import Plots
 from validate.html.run import FIRST, FURTHER, Run, Telling
 from validate.html.section import Grid, Paragraph
 from validate.html.sections.motion import Spatial
+from validate.output.console import Console
 from validate.output.document import Head, schema_text
 from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper
 from validate.published.tables import compare_published
@@ -178,7 +182,7 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
         k: v for k, v in document.items() if k != "written"
     }
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
-    assert shown.verdict == ("verdict disagrees", "0 of 1 scenes agree; disagrees: steer.")
+    assert shown.verdict == ("verdict disagrees", "0 of 1 scene agrees; disagrees: steer.")
     (row,) = shown.of("steer")[:1]
     assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
     assert "disagree in position of tie_rod_inner" in shown.text
@@ -198,7 +202,7 @@ def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> Non
     assert broken < shown.verdict[1].index("broken.toml")
     assert "Exit status 2: wrong input" in shown.text
     for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
-        row = next(row for row in shown.rows if row and row[0][1].endswith(name))
+        row = next(row for row in shown.rows if row and name in row[0][1])
         assert row[1][0] == "not-tested"
         assert said in row[1][1]
     with (tmp_path / "out" / "comparisons.csv").open(newline="") as stream:
@@ -255,6 +259,19 @@ def test_hard_cases_are_drawn_as_errors_over_the_distance_and_a_wrong_one_is_tol
     # Plotly reads marks in its labels.
     assert "<" not in json.dumps(plot)
     assert not [given for _, given in shown.tags if "onload" in given]
+
+
+def test_formulations_that_refuse_at_one_place_have_crosses_of_their_own_below_every_error() -> None:
+    names = ("pointcoord", "absolute", "relative")
+    refused = [answer("refused", None, 1e-9) | {"formulation": name} for name in names]
+    right = [answer("right", 1e-12 / value, value) for value in (1e-1, 1e-3, 1e-5)]
+    shown = read(Run(head("hard"), hard=HardCases.of(hard_document(*right, *refused))))
+    ((_, plot),) = shown.plots.items()
+    crosses = {one["name"]: one["y"][0] for one in plot["data"] if one["name"].endswith("refuses")}
+    assert list(crosses) == [f"{name} refuses" for name in names]
+    heights = np.log10(sorted([*crosses.values(), 1e-11]))
+    # A cross is 8 pixels high, and some 150 are as many decades as the errors take and half as many more.
+    assert np.diff(heights).min() > 8 / 150 * 1.5 * 4
 
 
 def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path: Path) -> None:
@@ -315,6 +332,21 @@ def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> Non
     assert shown.verdict[0] == "verdict measured"
     assert "Exit status 0" in shown.text
     assert shown.of("command")[0][1][1] == "pointcoord cost"
+
+
+def test_every_way_of_a_page_is_told_from_every_other_by_its_line_and_by_its_mark() -> None:
+    rows = tuple(
+        made_rows.measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5, dense=way.dense)
+        for k, way in enumerate(WAYS)
+    )
+    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", None, "", False, rows))).plots.items()
+    assert len(plot["data"]) == len(WAYS) > 12
+    lines = {(one["line"]["color"], one["line"].get("dash")) for one in plot["data"]}
+    symbols = {one["marker"]["symbol"].removesuffix("-open") for one in plot["data"]}
+    assert len(lines) == len(symbols) == len(WAYS)
+    dense = {way.name for way in WAYS if way.dense}
+    assert {one["name"].removesuffix("*") for one in plot["data"] if one["name"].endswith("*")} == dense
+    assert all(one["name"].endswith("*") != one["marker"]["symbol"].endswith("-open") for one in plot["data"])
 
 
 def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
@@ -391,11 +423,11 @@ def test_what_a_page_is_made_of_is_installed_with_it() -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["validate", "--data", "x.csv", "steer", "--report", "OUT"], "--report is about scenes"),
-        (["report", "OUT", "steer", "--data", "x.csv"], "of which there is no page"),
         (["report", "OUT", "steer", "--cost", "no such file"], "--cost no such file"),
         (["hard", "--list", "--report", "OUT"], "leave it out with --list"),
         (["validate", "steer", "--report", ""], "--report '' names no folder"),
+        (["validate", "steer", "--solver", "pathlib:nope", "--report", "OUT"], "has no 'nope'"),
+        (["cost", "--ways", "nope", "--report", "OUT"], "nope"),
     ],
 )
 def test_a_report_that_cannot_be_is_refused_in_a_line(
@@ -407,6 +439,38 @@ def test_a_report_that_cannot_be_is_refused_in_a_line(
     assert said in error
     assert len(error.splitlines()) == 1
     assert not out.exists()
+    # A folder that is there is somebody's.
+    out.mkdir()
+    assert main([str(out) if word == "OUT" else word for word in words]) == 2
+    assert list(out.iterdir()) == []
+
+
+def test_what_a_page_of_validate_does_not_hold_is_named_with_the_command_that_adds_it(tmp_path: Path) -> None:
+    assert main(["validate", "-q", "steer", "--report", str(tmp_path)]) == 0
+    shown = Read((tmp_path / PAGE).read_text(encoding="utf-8"))
+    ((place, _),) = [one for one in enumerate(shown.rows) if one[1] and one[1][0][1] == "not in this page"]
+    told = {row[0][1]: row[1][1] for row in shown.rows[place + 1 : place + 5]}
+    assert told == {
+        "hard cases": "pointcoord hard --report DIR",
+        "accuracy against time": "pointcoord cost --report DIR",
+        "the paper's figures, tables and errata": "pointcoord report DIR",
+        "other programs' tables": "pointcoord report DIR",
+    }
+    headings = {given.get("id") for tag, given in shown.tags if tag == "section"}
+    assert not headings & {"hard", "cost", "paper", "figures", "published"}
+    for command in told.values():
+        assert main([command.split()[1], "--help"]) == 0
+
+
+def test_a_page_of_validate_that_holds_the_papers_tables_still_names_those_of_other_programs(
+    tmp_path: Path,
+) -> None:
+    run = Page(str(tmp_path)).write(Run(head(), paper=compare_with_paper()), Console())
+    assert [what for what, _ in run.left_out] == [
+        "hard cases",
+        "accuracy against time",
+        "other programs' tables",
+    ]
 
 
 def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from base64 import b64encode
 from contextlib import suppress
 from dataclasses import replace
 from hashlib import sha256
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from validate.html.run import Run, Told
 from validate.html.sections import sections
 from validate.output.document import Head, schema_text
 from validate.output.report import worst_rows
+from validate.paper.scenes import DEFAULT_SCENES
 from validate.paper.tables import TABLE_2, TABLE_3
 
 BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
@@ -104,7 +106,8 @@ def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
     assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
     assert [row[0] for row in read.cells if name in row[0]]
     assert "img" not in {tag for tag, _ in read.opened}
-    assert len(read.scripts) == 3  # plotly and two of our own
+    assert len(read.scripts) == 4  # plotly and three of our own
+    assert any(cell.startswith("</title></script>") for row in read.cells for cell in row)
     assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
@@ -141,7 +144,7 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
 def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
     run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
     read = Read(page(run, FILES))
-    assert read.verdict == "0 of 1 scenes agree; not tested (wrong input): no such."
+    assert read.verdict == "0 of 1 scene agrees; not tested (wrong input): no such."
     assert run.status == 2
 
 
@@ -313,9 +316,10 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
 ) -> None:
     read = Read((built_in / "index.html").read_text(encoding="utf-8"))
     there = [given["id"] for tag, given in read.opened if tag == "section"]
-    told = ["verdict", "agreement", "motion", "differences", "curves", "figures", "paper", "errata"]
+    told = ["verdict", "agreement", "scenes", "motion", "differences", "curves", "figures", "paper", "errata"]
     assert there == [*told, "cost", "hard", "published", "left-out", "machine"]
-    assert there == [section.name for section in sections()]
+    # That of a file of results has nothing to say here.
+    assert there == [section.name for section in sections() if section.name != "file"]
     links = [given["href"] or "" for tag, given in read.opened if tag == "a"]
     files = {link for link in links if not link.startswith("#")}
     assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
@@ -325,6 +329,9 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
     assert document["exit_status"] == 0
     assert read.verdict.startswith("6 of 6 scenes agree; ")
     assert read.verdict.endswith("all as expected.")
+    text = (built_in / "index.html").read_text(encoding="utf-8")
+    for name in DEFAULT_SCENES:
+        assert f">{escape(Scene.load(name).title)}</td>" in text
     # A line for each printed number: 11 rows of 4 angles, 21 of 2.
     with (built_in / "published.csv").open(newline="") as stream:
         assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2

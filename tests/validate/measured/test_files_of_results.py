@@ -202,7 +202,7 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
         (["--data", "none.csv", "steer"], "none.csv: cannot be read"),
         (["--data", "none.csv"], "no scene is given with --data"),
         (["--data", "none.csv", "steer", "--first", "absolute"], "leave --first and --second out"),
-        (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline is about scenes"),
+        (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline is about what is solved"),
         (["--map", "none.toml", "steer"], "give it with --data FILE"),
     ],
 )

@@ -1,9 +1,13 @@
-"""How far a run is, and how long the rest takes at its pace; in a pipe a line a minute, if asked for."""
+"""How far a run is, and how long the rest takes at its pace; in a pipe a line now and then."""
+
+import re
+import time
 
 import pytest
 
 from validate.output import progress
 from validate.output.console import Console
+from validate.output.lines import Lines
 from validate.output.progress import Progress
 
 
@@ -29,18 +33,40 @@ def test_the_rest_is_told_at_the_pace_since_this_run_began(clock: list[float]) -
     assert said == ["1,000 of 2,000: scenes", "1,100 of 2,000, 90 s left: scenes", "2,000 of 2,000: scenes"]
 
 
-def test_a_pipe_gets_a_line_a_minute_where_it_is_asked_for(
-    clock: list[float], capsys: pytest.CaptureFixture[str]
+def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_quick_one() -> None:
+    said: list[str] = []
+    lines = Lines(said.append, "processes start", first=0.05, pause=0.2)
+    while len(said) < 2:
+        time.sleep(0.01)
+    lines.told("scenes, 3 s left", 1000, 2000)
+    while len(said) < 4:
+        time.sleep(0.01)
+    lines.end()
+    count = len(said)
+    time.sleep(0.3)
+    assert len(said) == count
+    assert re.fullmatch(r"after \d+ s: processes start", said[0])
+    assert re.fullmatch(r"after \d+ s: scenes, 3 s left, 1,000 of 2,000 done", said[-1])
+    quick = Lines(said.append, "processes start", first=60.0)
+    quick.end()
+    assert len(said) == count
+
+
+def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for lines in (False, True):
-        clock[0] = 0.0
-        with progress.progress(Console(), "processes start", lines) as told:
-            for second in range(0, 150, 10):
-                clock[0] = float(second)
-                told("scenes", second, 150)
-        err = capsys.readouterr().err
-        expected = [
-            "pointcoord: note: 60 of 150, 90 s left: scenes",
-            "pointcoord: note: 120 of 150, 30 s left: scenes",
-        ]
-        assert err.splitlines() == (expected if lines else [])
+    console = Console()
+    with console.working("scenes", 2, lines=True, first=0.05), progress.progress(console, "cost") as told:
+        # What is done inside is said in the same lines.
+        told("series", 60, 150)
+        err = ""
+        while not err.endswith("\n"):
+            time.sleep(0.01)
+            out, more = capsys.readouterr()
+            err += more
+            assert out == ""
+    assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done\n", err)
+    console.quiet = True
+    with progress.progress(console, "processes start", first=0.05):
+        time.sleep(0.3)
+    assert capsys.readouterr() == ("", "")

@@ -11,7 +11,7 @@ from flint import arb
 from reference_cars import CARS, ReferenceCar
 
 from validate.reference.candidates import choices_of, choices_of_table, every_candidate
-from validate.reference.errors import NotDecidedError
+from validate.reference.errors import AmbiguousAssemblyError, NotDecidedError
 from validate.reference.linkage import Known
 from validate.reference.vectors import minus
 
@@ -93,3 +93,42 @@ def test_a_side_that_may_be_either_is_not_decided(known: tuple[str, Known], radi
     anywhere = {name: (arb(0, radius),) * 3 for name in given.linkage.points}
     with pytest.raises(NotDecidedError, match="the sign of the arm choice"):
         choices_of(anywhere, given)
+
+
+@pytest.mark.parametrize("name", CARS)
+@pytest.mark.parametrize(
+    ("sine", "settings", "clear"),
+    [
+        ("1.1e-9", {}, True),
+        ("0.9e-9", {}, False),
+        ("0", {}, False),
+        ("0.9e-9", {"clearness": 0}, True),
+        ("1e-40", {"clearness": 0}, True),
+        ("0", {"clearness": 0}, False),
+        ("0.09", {"clearness": 0.1}, False),
+        ("0.11", {"clearness": 0.1}, True),
+    ],
+)
+def test_a_drawing_must_be_a_billionth_beside_where_two_assemblies_meet(
+    name: str, sine: str, settings: dict[str, float], clear: bool
+) -> None:
+    car = CARS[name]
+    for sign in (1, -1):
+        for length in (1, 1000):
+            value = sign * Fraction(sine) * length
+            sides = {choice.name: (value, Fraction(length**2)) for choice in fields(car.linkage.choices)}
+            linkage = replace(car.linkage, drawn_sides=lambda table, up, sides=sides: sides)
+            if clear:
+                found = choices_of_table(car.design.table, car.design.up, linkage, **settings)
+                assert {getattr(found, choice) for choice in sides} == {sign}
+            else:
+                with pytest.raises(AmbiguousAssemblyError, match="the sign of the arm choice"):
+                    choices_of_table(car.design.table, car.design.up, linkage, **settings)
+
+
+def test_a_drawing_without_any_length_to_measure_by_is_ambiguous() -> None:
+    car = CARS["strut as drawn"]
+    sides = {choice.name: (Fraction(0), Fraction(0)) for choice in fields(car.linkage.choices)}
+    linkage = replace(car.linkage, drawn_sides=lambda table, up: sides)
+    with pytest.raises(AmbiguousAssemblyError, match="arm choice: 0"):
+        choices_of_table(car.design.table, car.design.up, linkage, 0.0)

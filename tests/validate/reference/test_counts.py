@@ -15,6 +15,7 @@ from validate.reference import (
     SingularPoseError,
     count_assemblies,
 )
+from validate.reference.candidates import every_candidate
 from validate.reference.solve import with_enough_digits
 
 
@@ -93,3 +94,13 @@ def test_the_condition_of_a_knuckle_near_its_dead_point_grows_as_the_inverse_roo
             beyond = middle
     far, close = (condition(near - Fraction(1, 10**n)) for n in (8, 12))
     assert close / far == pytest.approx(100, rel=0.05)
+
+
+def test_a_search_finds_assemblies_and_the_closed_forms_count_those_that_exist(car: ReferenceCar) -> None:
+    listed = car.count(car.still, starts=150)
+    feasible = {c.choices for c in every_candidate(car.known()) if max(c.gaps.values()) < 0}
+    assert listed.possible == len(feasible)
+    found = [one.choices for one in listed.found]
+    assert len(set(found)) == len(found) >= 2
+    assert set(found) <= feasible
+    assert len(found) <= listed.converged <= listed.starts == 150

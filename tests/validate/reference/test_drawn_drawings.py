@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from closed_forms import Points
+from mpmath import mpf
 from off_axis_cars import BASE
+from reference_cars import CARS
 from reference_cars import OFF_AXIS as POINTS
 
 from validate.reference import AmbiguousAssemblyError, BadInputError, closed_drawing, solve_reference
@@ -100,3 +103,11 @@ def test_the_axis_of_the_knuckle_is_as_long_as_the_mechanism_however_far_apart_i
     assert Fraction(1, 2) <= max(abs(x) for x in axis) <= 2
     assert cross(axis, way) == (0, 0, 0)
     assert dot(axis, way) < 0
+
+
+def test_the_farthest_point_is_the_one_that_closing_the_drawing_moves_most() -> None:
+    closed = CARS["collinear strut"].close()
+    name, far = closed.farthest
+    assert closed.movement[name] == far > 10
+    assert all(moved <= far for moved in closed.movement.values())
+    assert replace(closed, movement={"a": mpf(3), "b": mpf(5), "c": mpf(4)}).farthest == ("b", 5)

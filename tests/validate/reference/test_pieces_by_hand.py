@@ -9,9 +9,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 from mpmath import mpf
+from reference_cars import OFF_AXIS
 
+from validate.reference import Design
 from validate.reference.carried import carried_by, shape_on
 from validate.reference.drives import ArmAngle, RackTravel
 from validate.reference.errors import BadInputError, InfeasibleError, NotDecidedError
@@ -198,3 +200,59 @@ def test_a_closure_is_met_if_its_gap_is_proven_to_be_negative(
         candidate.require_feasible(100.0)
     if isinstance(caught.value, InfeasibleError):
         assert caught.value.gap == 50.0
+
+
+MILLIONTH = Fraction(1, 10**6)
+
+
+@pytest.mark.parametrize(
+    ("up", "right", "allowed"),
+    [
+        # A square of exactly 1 + 1e-12, and one a little beyond it.
+        ((0, 0, 1), (MILLIONTH, 1, 0), True),
+        ((0, MILLIONTH, 1), (1, 0, 0), True),
+        ((0, 0, 1), (MILLIONTH + MILLIONTH**2, 1, 0), False),
+        ((0, MILLIONTH + MILLIONTH**2, 1), (1, 0, 0), False),
+        ((0, 0, 1), (0, 1 - MILLIONTH, 0), False),
+        # A cosine of exactly 1e-12 between them, and one a little beyond it.
+        ((0, 0, 1), (0, 1, MILLIONTH**2), True),
+        ((0, 0, 1), (0, 1, -(MILLIONTH**2)), True),
+        ((0, 0, 1), (0, 1, MILLIONTH**2 + MILLIONTH**3), False),
+    ],
+)
+def test_directions_are_unit_vectors_at_right_angles_to_a_millionth_of_a_millionth(
+    up: Vector, right: Vector, allowed: bool
+) -> None:
+    if allowed:
+        design = Design.from_points(OFF_AXIS, up, right, "left")
+        assert (design.up, design.right) == (up, right)
+    else:
+        with pytest.raises(BadInputError, match=r"up and right is .* to 1e-12"):
+            Design.from_points(OFF_AXIS, up, right, "left")
+
+
+def test_heave_moves_every_point_of_the_chassis_along_up_with_its_rates() -> None:
+    up = (Fraction(2, 7), Fraction(3, 7), Fraction(6, 7))
+    right = (Fraction(3, 7), Fraction(-6, 7), Fraction(2, 7))
+    design = Design.from_points(OFF_AXIS, up, right, "left")
+    known = design.known(design.driven({"arm_angle": (1.5, 0, 0), "heave": (7, -14, 21)}))
+    assert set(known.chassis) == set(known.linkage.chassis)
+    for name, place in known.chassis.items():
+        for axis in range(3):
+            rise = up[axis] / design.unit
+            meant = (design.table[name][axis] + 7 * rise, -14 * rise, 21 * rise)
+            for part, exact in zip(
+                (place[axis].value, place[axis].rate, place[axis].acceleration), meant, strict=True
+            ):
+                assert arb(part).contains(arb(fmpq(exact.numerator, exact.denominator)))
+
+
+def test_a_closure_that_misses_says_which_input_helps() -> None:
+    assert "try less rack travel or arm angle" in str(InfeasibleError("tie_rod", 2.0))
+    for closure in ("arm", "strut", "upper_arm"):
+        assert "try an arm angle nearer the design's" in str(InfeasibleError(closure, 2.0))
+
+
+def test_a_doubt_is_told_in_six_digits() -> None:
+    doubt = NotDecidedError("a claim", arb(1) / 3, "not 0")
+    assert (doubt.value[:10], doubt.limit) == ("[0.333333 ", "not 0")

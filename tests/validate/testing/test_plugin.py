@@ -126,7 +126,7 @@ def test_one(scene):
     ids=str,
 )
 def test_a_mark_that_cannot_be_followed_is_told_in_a_line(marked: SimpleNamespace, words: str) -> None:
-    with pytest.raises(pytest.UsageError) as caught:
+    with pytest.raises(pytest.Collector.CollectError) as caught:
         pytest_plugin.scenes_of("test_it.py::test_one", [marked])
     said = str(caught.value)
     assert said.startswith("test_it.py::test_one: ")
@@ -153,6 +153,17 @@ def test_of_something_else(): ...
     assert "test_one: suspension_scenes: the test takes no argument 'scene'; add it" in said
     assert done.returncode not in (0, 1, 5), said
     assert "Traceback" not in said
+
+
+def test_at_collection_a_wrong_mark_is_a_line_without_a_traceback(
+    tmp_path: Path,
+) -> None:
+    done = run(tmp_path, "import pytest\n@pytest.mark.suspension_scenes('bunce')\ndef test_one(scene): ...\n")
+    said = done.stdout + done.stderr
+    assert "did you mean 'bounce'?" in said
+    assert "pluggy" not in said.partition("ERRORS")[2]
+    assert "pytest_plugin.py" not in said
+    assert done.returncode == pytest.ExitCode.INTERRUPTED
 
 
 def test_hard_scenes_are_nearer_where_asked_for() -> None:

@@ -14,7 +14,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 from matplotlib.transforms import blended_transform_factory
 
 from validate.cost.findings import ACCURACIES, a_configuration, phases, quantities_of, unit_of, words_of
-from validate.cost.picture.look import GREY, INK, SETTINGS, handles, looks, plain, short, style
+from validate.cost.looks import looks
+from validate.cost.picture.look import GREY, INK, SETTINGS, handles, plain, short, style
 from validate.cost.row import Row
 from validate.cost.tables import SHORT
 

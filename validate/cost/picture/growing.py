@@ -14,7 +14,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 from matplotlib.transforms import blended_transform_factory
 
 from validate.cost.findings import Fit, Growth
-from validate.cost.picture.look import GREY, SETTINGS, Look, looks, plain, short, spread, style
+from validate.cost.looks import Look, looks
+from validate.cost.picture.look import GREY, SETTINGS, plain, short, spread, style
 
 LABEL = 0.055  # of a panel's height, from label to label
 WIDE, HIGH, LEFT, RIGHT = 3.3, 3.1, 0.8, 0.35  # inches: of a panel, and beside it

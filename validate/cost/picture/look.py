@@ -1,10 +1,9 @@
-"""How each way looks: a colour that colour-blind eyes tell apart, and a marker for those that do without."""
+"""How a picture looks: its letters and frame, and the look of each way as matplotlib has it."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
@@ -12,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from validate.cost.looks import Look, looks
+
 # Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
-BLACK, ORANGE, SKY, GREEN, BLUE, RED, PINK = (
-    "#000000",
+ORANGE, SKY, GREEN, BLUE, RED, PINK = (
     "#e69f00",
     "#56b4e9",
     "#009e73",
@@ -44,50 +44,8 @@ SETTINGS: Any = {
 DOTS = 200  # to an inch, of a PNG
 
 
-@dataclass(frozen=True)
-class Look:
-    """Colour, marker and weight of a way."""
-
-    colour: str
-    marker: str
-    width: float = 1.2
-    size: float = 5.0
-
-
-# No two ways share a marker.
-LOOKS = {
-    "series": Look(BLUE, "o", 2.0, 5.5),
-    "newton": Look(RED, "s", 1.4),
-    "chord": Look(ORANGE, "^", 1.4, 6.0),
-    "newton-cold": Look(RED, "1", 1.4, 8.0),
-    "series-differences": Look(SKY, "p", 1.2, 6.0),
-    "newton-differences": Look(PINK, "h", 1.2, 6.0),
-    "printed": Look(GREY, "x", 1.2, 6.0),
-    "absolute": Look(GREEN, "D"),
-    "relative": Look(PINK, "P", 1.2, 6.5),
-    "scipy-root": Look(SKY, "v", 1.2, 6.0),
-    "scipy-root-jac": Look(BLUE, "<", 1.2, 6.0),
-    "least-squares": Look(ORANGE, ">", 1.2, 6.0),
-    "least-squares-jac": Look(RED, "8", 1.2, 6.0),
-    "mujoco": Look(BLACK, "*", 1.2, 9.0),
-    "exudyn": Look(GREEN, "X", 1.2, 6.5),
-}
-# For ways that have no look of their own yet, in their order.
-FURTHER = tuple(
-    Look(colour, marker, 1.2, 7.0) for colour in (BLACK, BLUE, RED) for marker in ("H", "+", "2", "4")
-)
-
-
-def looks(ways: Iterable[str]) -> dict[str, Look]:
-    """A look for each way; the same for the same ways."""
-    names = list(dict.fromkeys(ways))
-    order = [*(name for name in LOOKS if name in names), *sorted(set(names) - set(LOOKS))]
-    new = [name for name in order if name not in LOOKS]
-    return {name: LOOKS[name] if name in LOOKS else FURTHER[new.index(name) % len(FURTHER)] for name in order}
-
-
 def style(look: Look, dense: bool) -> dict[str, Any]:
-    """As matplotlib's options: filled markers on a full line for a dense way, else hollow on a broken one."""
+    """As matplotlib's options; markers are filled for a dense way, else hollow."""
     return {
         "color": look.colour,
         "marker": look.marker,
@@ -96,7 +54,7 @@ def style(look: Look, dense: bool) -> dict[str, Any]:
         "markeredgecolor": look.colour,
         "markeredgewidth": 1.1,
         "linewidth": look.width,
-        "linestyle": "-" if dense else (0, (5, 1)),
+        "linestyle": (0, look.dash) if look.dash else "-",
     }
 
 

@@ -1,4 +1,4 @@
-"""Scenes by quantities: who agrees, and how close the closest number comes to its tolerance."""
+"""Scenes by quantities: who agrees, and how much of a tolerance is used."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from validate.comparison.compare import Comparison, Outcome
 from validate.html.run import FIRST, FURTHER, Run, Told
 from validate.html.section import Block, Cell, Grid, Section
-from validate.output.report import about, heading, worst_rows
+from validate.output.report import heading, when, worst_rows
 
 CAPTION = (
-    "For each quantity the number that comes closest to its tolerance, or exceeds it the most: its largest "
-    "difference as a share of what it is held to. It agrees up to 1."
+    "For each quantity the verdict, and below it the number whose difference uses most of its tolerance: it "
+    "agrees if that is 1 or less."
 )
 # A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
 MOST_THAT_AGREE, MOST = 1000, 1500
@@ -88,9 +88,11 @@ def _verdict(outcome: Outcome) -> str:
 def _cell(row: Comparison, short: bool) -> Cell:
     if row.verdict == "not given":
         return Cell(row.verdict, row.name, row.verdict)
-    told = f"{row.share:.1e} of its tolerance"
+    told = f"{row.share:.2g} of its tolerance"
     if not short or row.verdict != "agrees":
-        told += f", {about(row.quantity, row.name)}, {row.instant:.4g} s"
+        # The heading says the quantity, or the whole name.
+        of = "" if row.name == _heading(row) else f"{row.name}, "
+        told += f": {of}{when(row, 4)}"
     return Cell(row.verdict, told, row.verdict)
 
 

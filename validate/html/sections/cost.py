@@ -17,6 +17,7 @@ from validate.cost.findings import (
     unit_of,
     words_of,
 )
+from validate.cost.looks import Look, looks
 from validate.cost.report import Report
 from validate.cost.row import Row
 from validate.cost.tables import full_tables
@@ -24,12 +25,15 @@ from validate.html.plot import Panel, Plots, axis, numbers, plain
 from validate.html.run import Run
 from validate.html.section import Block, Cell, Grid, Paragraph, Section
 
-COLOURS = ("#2f86c9", "#d9641c", "#2a9d78", "#b266b2", "#8c8c1f", "#7a7a7a", "#c04848", "#1fa3b3")
-SYMBOLS = ("circle", "square", "diamond", "triangle-up", "pentagon", "star", "hexagon", "cross", "x")
 # An error of exactly nothing has no place on a logarithmic axis; it is drawn so far below the least one.
 BELOW = 10.0
 # Scenes whose curves are drawn, and full tables and their lines, at most: a page stays small.
 SCENES, TABLES, LINES = 8, 60, 120
+LINE = 1.5  # pixels, of a curve
+KEY = (
+    "A line is a way, a mark one of its settings; down is more accurate, left is quicker. Filled and with a "
+    "star: one solve serves any instant; hollow: every instant is solved."
+)
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -41,8 +45,10 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     yield Grid("How it was measured.", ("what", "value"), rows)
     yield from (Paragraph(sentence) for sentence in cost.sentences)
     accuracy = accuracy_rows(cost.rows)
-    ways = list(dict.fromkeys(row.way for row in accuracy if row.status == "measured"))
+    ways = looks(row.way for row in accuracy if row.status == "measured")
     scenes = scenes_of(accuracy)
+    if ways:
+        yield Paragraph(KEY)
     for scene in scenes[:SCENES]:
         here = [row for row in accuracy if row.scene == scene and row.status == "measured"]
         panels = tuple(_panel(here, quantity, ways) for quantity in quantities_of(here))
@@ -59,14 +65,15 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
 
 
-def _panel(here: Sequence[Row], quantity: str, ways: Sequence[str]) -> Panel:
+def _panel(here: Sequence[Row], quantity: str, ways: Mapping[str, Look]) -> Panel:
     errors = [row.errors[quantity].largest for row in here if quantity in row.errors]
     floor = min((error for error in errors if 0.0 < error < math.inf), default=1e-16) / BELOW
     traces = []
-    for i, way in enumerate(ways):
-        points = list(_points([row for row in here if row.way == way], quantity, floor))
+    for way, look in ways.items():
+        mine = [row for row in here if row.way == way]
+        points = list(_points(mine, quantity, floor))
         if points:
-            traces.append(_trace(way, i, np.array(points)))
+            traces.append(_trace(way, look, any(row.dense for row in mine), np.array(points)))
     layout = {
         "xaxis": axis("time a configuration [us]", logarithmic=True),
         "yaxis": axis(f"largest error [{plain(unit_of(quantity))}]", logarithmic=True),
@@ -83,15 +90,19 @@ def _points(rows: Sequence[Row], quantity: str, floor: float) -> Iterator[tuple[
             yield 1e6 * time.median, max(error.largest, floor)
 
 
-def _trace(way: str, i: int, points: Any) -> Mapping[str, Any]:
-    colour = COLOURS[i % len(COLOURS)]
+def _trace(way: str, look: Look, dense: bool, points: Any) -> Mapping[str, Any]:
+    """As in the pictures: filled markers and a star for a way whose one solve serves any instant."""
+    dash = ",".join(f"{LINE * length:g}px" for length in look.dash)
+    symbol = look.symbol if dense else f"{look.symbol}-open"
+    # Thin symbols have no inside.
+    edge = {"width": LINE, "color": look.colour}
     return {
         "x": numbers(points[:, 0], 4),
         "y": numbers(points[:, 1], 3),
-        "name": plain(way),
+        "name": plain(way) + ("*" if dense else ""),
         "mode": "lines+markers",
-        "line": {"color": colour, "width": 1},
-        "marker": {"symbol": SYMBOLS[i % len(SYMBOLS)], "color": colour, "size": 7},
+        "line": {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})},
+        "marker": {"symbol": symbol, "color": look.colour, "size": 8, "line": edge},
     }
 
 

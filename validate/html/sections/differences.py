@@ -57,7 +57,7 @@ def _panel(outcome: Outcome, row: Comparison, instants: Array, points: int) -> P
     )
     told = about(row.quantity, row.name)
     layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{row.unit}]", logarithmic=True)}
-    return Panel(f"{told}: {row.verdict}, at most {row.share:.1e} of its tolerance", traces, layout)
+    return Panel(f"{told}: {row.verdict}, at most {row.share:.2g} of its tolerance", traces, layout)
 
 
 SECTION = Section("differences", "Differences over time", 40, _blocks)

@@ -14,13 +14,15 @@ from validate.html.section import Block, Cell, Grid, Paragraph, Section
 
 WORDS = (
     "Every answer is held to a reference that is solved in 60 digits and proven. It has to be right within "
-    "what its formulation claims, or refused with a reason. Filled: right; crosses at the lower edge: "
-    "refused; red rings: neither. Toward the left it gets harder."
+    "what its formulation claims, or refused with a reason. Filled: right; crosses at the lower edge, a row "
+    "for each formulation: refused; red rings: neither. Toward the left it gets harder."
 )
 # In the order in which a case names its formulations.
 COLOURS = ("#2f86c9", "#d9641c", "#2a9d78", "#b266b2", "#8c8c1f", "#7a7a7a", "#c04848")
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "pentagon", "star", "hexagon")
 WRONG = "#d40000"
+# Of the height of the errors, from one row of crosses to the next.
+ROW = 0.09
 # Values of a curve, at least: cases of a few kinds are told in the table.
 FEWEST = 3
 # Cases that are drawn, at most.
@@ -86,8 +88,14 @@ def _panel(case: Case) -> Panel:
     # What is no error at all, and what is no number, is drawn below the least error.
     errors = [answer.error for answer in case.answers if answer.error > 0.0 and np.isfinite(answer.error)]
     floor = min(errors, default=1e-16) / 10.0
+    # Formulations refuse at the same places: each has a row of its own below what is right.
+    refusing = [n for n in case.formulations if any(a.refused for a in case.answers if a.formulation == n)]
+    step = (max(errors, default=1e-16) / floor) ** -ROW
+    rows = {name: floor * step**k for k, name in enumerate(refusing, 1)}
     traces = tuple(
-        trace for i, name in enumerate(case.formulations) for trace in _traces(case, name, i, floor)
+        trace
+        for i, name in enumerate(case.formulations)
+        for trace in _traces(case, name, i, floor, rows.get(name, floor))
     )
     title = f"error [{plain(case.unit)}]"
     layout = {
@@ -97,21 +105,23 @@ def _panel(case: Case) -> Panel:
     return Panel(f"{case.name}, over {case.parameter}: {case.behaviour}", traces, layout)
 
 
-def _traces(case: Case, name: str, i: int, floor: float) -> Iterator[Mapping[str, Any]]:
+def _traces(case: Case, name: str, i: int, floor: float, row: float) -> Iterator[Mapping[str, Any]]:
     given = [answer for answer in case.answers if answer.formulation == name and answer.value > 0.0]
     colour, symbol = COLOURS[i % len(COLOURS)], SYMBOLS[i % len(SYMBOLS)]
     told = plain(name)
     right = [answer for answer in given if answer.outcome == "right"]
-    refused = [answer for answer in given if answer.outcome == "refused"]
-    other = [answer for answer in given if answer.outcome not in ("right", "refused")]
+    refused = [answer for answer in given if answer.refused]
+    other = [answer for answer in given if answer.outcome != "right" and not answer.refused]
     marker = {"symbol": symbol, "color": colour, "size": 6}
     if right:
         line = {"color": colour, "width": 1}
         yield {**_at(right, floor), "name": told, "mode": "lines+markers", "marker": marker, "line": line}
     if refused:
         cross = {"symbol": "x-thin-open", "color": colour, "size": 8}
-        below = {**_at(refused, floor), "y": [float(f"{floor:.3g}")] * len(refused)}
-        yield {**below, "name": f"{told} refuses", "mode": "markers", "marker": cross}
+        below = {**_at(refused, floor), "y": [float(f"{row:.3g}")] * len(refused)}
+        # How high a cross stands says nothing.
+        words = {"name": f"{told} refuses", "hovertemplate": "at %{x}"}
+        yield {**below, **words, "mode": "markers", "marker": cross}
     if other:
         ring = {"symbol": f"{symbol}-open", "color": WRONG, "size": 10}
         yield {**_at(other, floor), "name": f"{told}: no right answer", "mode": "markers", "marker": ring}

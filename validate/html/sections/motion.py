@@ -163,7 +163,8 @@ def _caption(one: Told, models: Sequence[Side]) -> str:
         if moved["largest"] <= ROUNDING:
             closing = "; it closes, no point moves by more than rounding"
     stopped = f". Stopped: {one.stopped}" if one.stopped else ""
-    whose = f"{', '.join(told)}; " if told else ""
+    called = f"{one.examined.title}. " if one.examined.title else ""
+    whose = f"{called}{', '.join(told)}; " if told else called
     return f"{whose}dashed: the drawing{closing}{stopped}"
 
 

@@ -71,13 +71,21 @@ def _cells(one: Published, rows: Sequence[Comparison]) -> tuple[tuple[Cell, ...]
     times = one.found.outcome.solutions[0].times
     values = [_values(one, row) for row in rows]
     lines = [
-        (Cell(f"{time:g}"), *(Cell(f"{printed[i]:g}", f"{computed[i]:.6f}") for printed, computed in values))
+        (
+            Cell(f"{time:g}"),
+            *(Cell(f"{printed[i] + 0.0:g}", _six(computed[i])) for printed, computed in values),
+        )
         for i, time in enumerate(times)
     ]
     verdicts = (
         Cell(row.verdict, f"at most {row.share:.2f} of half its last digit", row.verdict) for row in rows
     )
     return (*lines, (Cell("verdict"), *verdicts))
+
+
+def _six(value: float) -> str:
+    # Nothing has no sign.
+    return f"{round(value, 6) + 0.0:.6f}"
 
 
 SECTION = Section("published", "Other programs' tables", 90, _blocks)

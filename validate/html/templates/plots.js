@@ -28,12 +28,18 @@
     return data.flatMap((trace) => trace[letter] ?? []).filter((value) => typeof value === "number");
   }
 
-  // Whole decades, not more than there is room for; below one and a half plotly finds better ones. It writes
-  // powers larger by a quarter than other numbers.
+  // Whole decades, not more than there is room for; over less than one and a half 1, 2 and 5 of each. Plotly
+  // writes powers larger by a quarter than other numbers.
   function decades(values) {
     const above = values.filter((value) => value > 0);
-    const count = Math.log10(Math.max(...above) / Math.min(...above));
-    return count > 1.5 ? { dtick: Math.ceil(count / 6), tickfont: { size: 9 } } : {};
+    if (!above.length) return {};
+    const [low, high] = [Math.min(...above), Math.max(...above)];
+    const count = Math.log10(high / low);
+    if (!(count <= 1.5)) return { dtick: Math.ceil(count / 6), tickfont: { size: 9 } };
+    const first = Math.floor(Math.log10(low)) - 1;
+    const tickvals = Array.from({ length: Math.ceil(Math.log10(high)) - first + 2 }, (_, i) => first + i)
+      .flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`)));
+    return { tickmode: "array", tickvals, ticktext: tickvals.map(told) };
   }
 
   // Pixels that the lines of a legend need beyond the first: it stands above its plot, in columns as wide as
@@ -65,7 +71,8 @@
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width, height,
       font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
       margin: { l: 50, r: 10, t: 10, b: 40 },
-      legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+      // Plotly would give it half of the height, and hide the rest.
+      legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", maxheight: beyond + 2 * ROW },
       dragmode: finger.matches ? false : "zoom",
       hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });

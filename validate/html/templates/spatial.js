@@ -7,7 +7,7 @@
   const VIEWS = { Oblique: [0.6, 0.35], Rear: [0, 0], Right: [Math.PI / 2, 0], Top: [0, Math.PI / 2] };
   const WIDE = 480, NEAR = 24, ROW = 14, PAD = 40, TRIAD = 26;
   // Where a name may stand: on the outer side of its point or the inner, and how many rows below it.
-  const STANDS = [0, -0.8, 0.8, -1.6, 1.6, -2.4, 2.4].flatMap((down) => [[1, down], [-1, down]]);
+  const STANDS = [0, -0.8, 0.8, -1.6, 1.6, -2.4, 2.4, -3.2, 3.2].flatMap((down) => [[1, down], [-1, down]]);
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
@@ -111,9 +111,9 @@
     }
 
     // A name stands where it covers no joint and no other name, if it can no line either, and stays there as
-    // long as that is so.
-    function drawNames(at) {
-      const taken = at.map((place) => around(place, 4));
+    // long as that is so. Where there is no room for it only the pointer brings it.
+    function drawNames(at, corner) {
+      const taken = [...at.map((place) => around(place, 4)), around(corner, 1.4 * TRIAD)];
       const lines = motion.lines.flatMap(([a, b]) => {
         const steps = Math.ceil(Math.hypot(at[b][0] - at[a][0], at[b][1] - at[a][1]) / ROW);
         return Array.from({ length: steps }, (_, k) =>
@@ -133,6 +133,10 @@
         });
         const free = boxes.filter((box) => !taken.some((other, j) => j !== i && meet(box, other)));
         const best = free.find((box) => !lines.some((other) => meet(box, other))) ?? free[0] ?? boxes[0];
+        if (!free.length && i !== near) {
+          name.style.display = "none";
+          return;
+        }
         stands[i] = best.slice(4);
         taken.push(best);
         set(name, { x: best[0], y: best[3] - 3 });
@@ -155,8 +159,8 @@
         const [x, y] = at[i];
         set(joint, joint.tagName === "rect" ? { x: x - 4, y: y - 4 } : { cx: x, cy: y });
       });
-      drawNames(at);
       const corner = [TRIAD + 14 - size[0] / 2, size[1] / 2 - TRIAD - 14];
+      drawNames(at, corner);
       arms.forEach(([line, text], i) => {
         const [x, y] = flat(motion.axes[i]).map((value) => TRIAD * value);
         const seen = Math.hypot(x, y) > TRIAD / 4;

@@ -1,0 +1,479 @@
+"""Tables of points as people write them: each becomes the car that it says, or a line that asks."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from foreign_files import OPTIMUMK, STRUT, WISHBONE, table
+
+from validate.cli import main
+from validate.hardpoint_files.contents import HardpointFileError
+from validate.hardpoint_files.format import formats
+from validate.hardpoint_files.importing import Imported, import_hardpoints
+
+POINTS = WISHBONE.mechanism.points
+CAR = {name: place for name, place in POINTS.items() if name != "rack_centre"}
+WORDS = {
+    "lower_arm_front": "LCA_IN_FRONT",
+    "lower_arm_rear": "LCA_IN_REAR",
+    "lower_ball_joint": "LCA_OUT",
+    "upper_arm_front": "UCA_IN_FRONT",
+    "upper_arm_rear": "UCA_IN_REAR",
+    "upper_ball_joint": "UCA_OUT",
+    "tie_rod_outer": "TIE_ROD_OUT",
+    "tie_rod_inner": "TIE_ROD_IN",
+    "wheel_centre": "WHEEL_CENTER",
+    "wheel_axis_inner": "Wheel Spindle Point",
+}
+OURS = "rearward,right,up"
+# Another car for each wheel, so that a wheel that is taken for another shows; x rearward, y right, z up.
+WHEELS = {
+    ("front", "right"): CAR,
+    ("front", "left"): {name: (x, -y - 1.0, z) for name, (x, y, z) in CAR.items()},
+    ("rear", "right"): {name: (x + 1500.0, y + 2.0, z) for name, (x, y, z) in CAR.items()},
+    ("rear", "left"): {name: (x + 1500.0, -y - 3.0, z) for name, (x, y, z) in CAR.items()},
+}
+
+
+def imported(folder: Path, text: str, **choices: Any) -> Imported:
+    path = folder / "car.csv"
+    path.write_text(text, encoding="utf-8")
+    return import_hardpoints(path, **choices)
+
+
+def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
+    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
+
+
+def cells(place: Sequence[float]) -> str:
+    return ",".join(map(repr, place))
+
+
+def rows(name: Callable[[str], str], points: Mapping[str, Sequence[float]] = CAR) -> list[str]:
+    return [f"{name(WORDS[ours])},{cells(place)}" for ours, place in points.items()]
+
+
+# A sheet of OptimumK, saved as CSV.
+
+
+def sheet(
+    length: str = "millimetre,mm",
+    system: str = "[[1,0,0]_x000D_\n [0,1,0]_x000D_\n [0,0,1]]",
+    per: float = 1.0,
+) -> str:
+    """A suspension in the form of a sheet of OptimumK; x forward, y left, z up."""
+    names = {ours: OPTIMUMK[ours] for ours in CAR if "wheel" not in ours}
+    lines = []
+    for ours, theirs in names.items():
+        (x, y, z), (u, v, w) = CAR[ours], WHEELS["front", "left"][ours]
+        lines.append(
+            f",{theirs},{-u / per!r},{-v / per!r},{w / per!r},,{-x / per!r},{-y / per!r},{z / per!r}"
+        )
+    rods = ["Push Pull,Point Name,Left,,,,Right,,", ",,X,Y,Z,,X,Y,Z", ",NSMA_PPAttPnt_L,1,2,3,,1,-2,3"]
+    wheels = [
+        "Wheels,Point Name,Left,,,,Right,,",
+        ",Half Track,612,,,,612,,",
+        ",Static Camber,-0.96,,,,-0.96,,",
+        ",Static Toe,0.5,,,,0.25,,",
+    ]
+    return "\n".join(
+        [
+            ",Name:,Our own,,,,,,",
+            ",Version:,2.0.2,Modified by:,,,Modified on:,46046.06,",
+            "Comments:,,,,,,,,",
+            f"User Options,Length,{length},,,,,",
+            f',Coordinate System,"{system}",,,,,,',
+            "Double A-Arm,Point Name,Left,,,,Right,,",
+            ",,X,Y,Z,,X,Y,Z",
+            *lines,
+            "Tierod Attachment,Chassis,,,,,,,",
+            *rods,
+            "Rack Pinion,Steering Ratio,119.63,,,,,,",
+            *wheels,
+            "Reference Point,Reference Point Name,,Attachement,,X,Y,Z,",
+            ",Mark,,Chassis,,1000,0,0,",
+            "Stiffness,Element,Attachement,Left,,Middle,,Right,",
+            ",Spring,Push Pull,21.2,,,,21.2,",
+        ]
+    )
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize(("length", "per"), [("millimetre,mm", 1.0), ("metre,m", 1000.0)])
+def test_a_sheet_of_optimumk_gives_the_wheel_that_is_asked_for(
+    side: str, length: str, per: float, tmp_path: Path
+) -> None:
+    text, car = sheet(length, per=per), WHEELS["front", side]
+    with pytest.raises(HardpointFileError, match="--side left or --side right"):
+        imported(tmp_path, text)
+    with pytest.raises(HardpointFileError, match="lacks wheel_centre") as caught:
+        imported(tmp_path, text, side=side)
+    toe = {"left": "0.5", "right": "0.25"}[side]
+    assert f"'Static Toe' {toe} on line" in str(caught.value)
+    assert "+ toe in" in str(caught.value)
+    names = tmp_path / "names.toml"
+    given = {name: [-x / per, -y / per, z / per] for name, (x, y, z) in car.items() if "wheel" in name}
+    names.write_text("[names]\n" + "\n".join(f"{name} = {place!r}" for name, place in given.items()))
+    found = imported(tmp_path, text, side=side, names=str(names))
+    for name, place in drawn(found).items():
+        # A double of 1000 m is printed to 16 digits: 1e-13 mm.
+        assert place == pytest.approx(car[name], rel=1e-14, abs=1e-12)
+    assert found.scene.mechanism.side == side
+    assert [point.name for point in found.not_needed] == ["NSMA_PPAttPnt_L"]
+    assert [point.name for point in found.unknown] == ["Mark"]
+    assert not found.doubts
+
+
+def test_a_sheet_in_a_coordinate_system_of_its_own_is_asked_for_its_axes(tmp_path: Path) -> None:
+    names = tmp_path / "names.toml"
+    names.write_text("[names]\nwheel_centre = [0, -718, 210]\nwheel_axis_inner = [0, -658, 210]\n")
+    with pytest.raises(HardpointFileError, match="has a Coordinate System -1 0 0 0 1 0 0 0 -1"):
+        imported(tmp_path, sheet(system="[[-1,0,0] [0,1,0] [0,0,-1]]"), side="right", names=str(names))
+
+
+# Which wheel.
+
+
+def one_column(word: Callable[[str, str], str], title: str) -> str:
+    lines = [f"{title},Point,x_mm,y_mm,z_mm"]
+    lines += [f"{word(*of)},{row}" for of, car in WHEELS.items() for row in rows(str, car)]
+    return "\n".join(lines)
+
+
+def corner(part: str, side: str) -> str:
+    return (part[0] + side[0]).upper()
+
+
+SHAPES: dict[str, str] = {
+    "a column of corners": one_column(corner, "corner"),
+    "a column of wheels in words": one_column(lambda part, side: f"{part} {side}", "Wheel"),
+    "names that begin with a corner": "\n".join(
+        [
+            "Point,X,Y,Z",
+            *(row for of, car in WHEELS.items() for row in rows(lambda n, o=of: f"{corner(*o)}_{n}", car)),
+        ]
+    ),
+    "names between axle and side": "\n".join(
+        [
+            "Point,X,Y,Z",
+            *(
+                r
+                for of, car in WHEELS.items()
+                for r in rows(lambda n, o=of: f"{o[0].title()} {n} {o[1][0].upper()}", car)
+            ),
+        ]
+    ),
+    "tables under headings": "\n".join(
+        line
+        for part in ("front", "rear")
+        for line in (
+            f"{part.upper()} SUSPENSION,,,,,,",
+            "Point,Left X,Left Y,Left Z,Right X,Right Y,Right Z",
+            *(f"{WORDS[n]},{cells(WHEELS[part, 'left'][n])},{cells(WHEELS[part, 'right'][n])}" for n in CAR),
+        )
+    ),
+    "wheels over the titles": "\n".join(
+        [
+            "," + ",".join(f"{' '.join(of)},," for of in WHEELS),
+            "Point," + ",".join("X,Y,Z" for _ in WHEELS),
+            *(f"{WORDS[n]}," + ",".join(cells(car[n]) for car in WHEELS.values()) for n in CAR),
+        ]
+    ),
+}
+
+
+@pytest.mark.parametrize("text", SHAPES.values(), ids=SHAPES)
+def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError, match="--part front or --part rear"):
+        imported(tmp_path, text, axes=OURS)
+    for (part, side), car in WHEELS.items():
+        found = imported(tmp_path, text, axes=OURS, part=part, side=side)
+        assert drawn(found) == car
+        assert found.scene.mechanism.side == side
+        assert not found.unknown
+
+
+def lettered(before: bool, cars: Mapping[str, Mapping[str, Sequence[float]]]) -> str:
+    """Cars in one table, told apart by a letter before or after each name."""
+    lines = ["Point,X,Y,Z"]
+    for letter, car in cars.items():
+        lines += rows(lambda name, x=letter: f"{x}_{name}" if before else f"{name} {x}", car)
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_lonely_r_is_right_beside_an_l_and_rear_beside_an_f(before: bool, tmp_path: Path) -> None:
+    rear, left = WHEELS["rear", "right"], WHEELS["front", "left"]
+    text = lettered(before, {"F": CAR, "R": rear})
+    assert drawn(imported(tmp_path, text, axes=OURS, part="rear")) == rear
+    assert drawn(imported(tmp_path, text, axes=OURS, part="front")) == CAR
+    text = lettered(before, {"L": left, "R": CAR})
+    assert drawn(imported(tmp_path, text, axes=OURS, side="right")) == CAR
+    # Beside both nobody knows: it is listed, and neither the right wheel nor the rear one.
+    found = imported(tmp_path, lettered(before, {"L": left, "F": CAR, "R": rear}), axes=OURS)
+    assert drawn(found) == left
+    assert len(found.unknown) == 2 * len(CAR)
+
+
+@pytest.mark.parametrize(("letters", "chosen"), [("FR", {"part": "rear"}), ("LR", {"side": "right"})])
+def test_a_letter_over_columns_is_read_by_the_other_letter(
+    letters: str, chosen: Mapping[str, str], tmp_path: Path
+) -> None:
+    first, second = (CAR, WHEELS["rear", "right"]) if letters == "FR" else (WHEELS["front", "left"], CAR)
+    titles = "Point," + ",".join(f"{letter} {axis}" for letter in letters for axis in "XYZ")
+    both = [f"{WORDS[name]},{cells(first[name])},{cells(second[name])}" for name in CAR]
+    assert drawn(imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **chosen)) == second
+
+
+def test_a_name_of_the_other_side_than_its_column_is_refused(tmp_path: Path) -> None:
+    text = "\n".join(["Point,Right X,Right Y,Right Z", *rows(lambda n: n + "_L")])
+    with pytest.raises(HardpointFileError, match=r"line 2: has 'LCA_IN_FRONT_L' for the right wheel"):
+        imported(tmp_path, text, axes=OURS)
+
+
+def test_two_tables_that_say_no_wheel_are_not_mixed(tmp_path: Path) -> None:
+    two = ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in CAR.items())]
+    assert drawn(imported(tmp_path, "\n".join(two), axes=OURS)) == CAR
+    two += ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in WHEELS["rear", "right"].items())]
+    with pytest.raises(
+        HardpointFileError, match=r"line 13: has lower_arm_front twice, .* one wheel of one axle"
+    ):
+        imported(tmp_path, "\n".join(two), axes=OURS)
+
+
+# Names.
+
+
+@pytest.mark.parametrize(
+    ("ours", "spellings"),
+    [
+        (
+            "lower_arm_front",
+            "LCA front|Lower Wishbone, Front Pivot|lowerWishboneFrontPivot|front lower inner",
+        ),
+        (
+            "lower_arm_front",
+            "LCA Fore Inboard|Lower control arm - forward chassis pickup|bottom forward chassis pickup",
+        ),
+        (
+            "lower_arm_rear",
+            "LCA aft|Lower wishbone rear inboard|lower control arm back|LWB_rear|2 Lower wishbone rear pivot",
+        ),
+        (
+            "lower_ball_joint",
+            "LBJ|Lower BallJoint|LCA outer|Lower outboard|lower kingpin pickup|Lower wishbone upright point",
+        ),
+        (
+            "upper_arm_front",
+            "UCA_FRONT|Upper arm forward inner|(5) Point 5: Upper Wishbone Front Pivot|top wishbone front",
+        ),
+        ("upper_arm_rear", "UCA rear pivot|upper a arm aft chassis|upperRearInner"),
+        ("upper_ball_joint", "UBJ|UCA Out|Upper outer ball joint|top ball joint"),
+        (
+            "tie_rod_outer",
+            "Toe link outboard|TRO|TieRod_Out|Outer track rod ball joint|steering: tie rod end outer",
+        ),
+        ("tie_rod_inner", "tierod inner|Track rod chassis|TRI|toe-link inboard"),
+        ("wheel_centre", "WC|Wheel Center|wheelCentre|Wheel centre point"),
+    ],
+)
+def test_a_point_is_known_by_many_names(ours: str, spellings: str, tmp_path: Path) -> None:
+    for spelling in spellings.replace("steering: ", "").split("|"):
+        text = "\n".join(["Name;X;Y;Z", *rows(str)]).replace(",", ";").replace(WORDS[ours], spelling)
+        found = imported(tmp_path, text, axes=OURS)
+        assert drawn(found) == CAR, spelling
+        assert not found.unknown
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "Lower damper front",
+        "LCA front outer",
+        "Lower arm",
+        "LCA front spring",
+        "UCA outer pushrod",
+        "Rack end",
+        "LF",
+        "Wheel",
+    ],
+)
+def test_a_name_with_a_word_more_or_less_is_another_point(other: str, tmp_path: Path) -> None:
+    text = "\n".join(["Point,X,Y,Z", *rows(str), f"{other},1,2,3"])
+    found = imported(tmp_path, text, axes=OURS)
+    assert drawn(found) == CAR
+    assert other not in {point.source for point in found.points}
+
+
+def test_a_strut_is_known_by_its_words(tmp_path: Path) -> None:
+    points = {n: p for n, p in STRUT.mechanism.points.items() if n not in ("rack_centre", "strut_rod_end")}
+    words = WORDS | {"strut_top": "Strut upper mount", "strut_lower": "Strut lower point"}
+    text = "\n".join(["Point,X,Y,Z", *(f"{words[name]},{cells(place)}" for name, place in points.items())])
+    found = imported(
+        tmp_path, text, axes=OURS, **({} if "wheel_axis_inner" in points else {"camber": 0.0, "toe": 0.0})
+    )
+    assert found.scene.mechanism.type == "macpherson"
+    assert {name: drawn(found)[name] for name in points} == points
+
+
+def test_every_two_points_of_a_suspension_have_different_words() -> None:
+    one = formats()["csv"]
+    assert one.vocabulary is not None
+    for words in one.suspensions.values():
+        seen: dict[tuple[str, ...], str] = {}
+        for ours, theirs in words.names.items():
+            for name in theirs:
+                assert seen.setdefault(one.vocabulary.words(name), ours) == ours
+
+
+# Axes and units.
+
+
+def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(tmp_path: Path) -> None:
+    text = "\n".join(["Point,X,Y,Z", *rows(str)])
+    with pytest.raises(HardpointFileError, match="does not say where x, y and z point") as caught:
+        imported(tmp_path, text)
+    for words in ("--axes rearward,right,up of a right wheel", "--axes rearward,left,up of a left wheel"):
+        assert words in str(caught.value)
+    with pytest.raises(HardpointFileError) as caught:
+        imported(tmp_path, text, side="right")
+    assert "of a left wheel" not in str(caught.value)
+    # Our own words in another's spelling are not our own names.
+    spelt = "\n".join(["Point,X,Y,Z", *(f"{n.replace('_', ' ').title()},{cells(p)}" for n, p in CAR.items())])
+    with pytest.raises(HardpointFileError, match="does not say where"):
+        imported(tmp_path, spelt)
+
+
+def test_titles_may_say_where_axes_point(tmp_path: Path) -> None:
+    text = "\n".join(["Point,X (rearward),Y [right],Z (up)", *rows(str)])
+    found = imported(tmp_path, text)
+    assert drawn(found) == CAR
+    assert any("by its titles" in fact for fact in found.facts)
+    with pytest.raises(HardpointFileError, match=r"line 1: says where only some of its axes point \(right\)"):
+        imported(tmp_path, text.replace("(rearward)", "").replace("(up)", ""))
+
+
+@pytest.mark.parametrize(
+    "titles",
+    [
+        "Point,x_m,y_m,z_m",
+        "Point,X [m],Y [m],Z [m]",
+        "Point,X,Y,Z\n,(m),(m),(m)",
+        "Point,X in metres,Y in metres,Z in metres",
+    ],
+)
+def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path) -> None:
+    metres = {name: tuple(n / 1000 for n in place) for name, place in CAR.items()}
+    text = "\n".join([titles, *rows(str, metres)])
+    if "in metres" in titles:
+        # Two units stand there, of which one is a word.
+        text = text.replace(" in ", " ")
+    found = imported(tmp_path, text, axes=OURS)
+    for name, place in drawn(found).items():
+        assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-12)
+    with pytest.raises(HardpointFileError, match="says that its lengths are in m"):
+        imported(tmp_path, text, axes=OURS, unit="mm")
+
+
+# Other forms of a table.
+
+
+def on_its_side() -> str:
+    names = ",".join(WORDS.values())
+    return "\n".join(
+        [
+            f"Point,{names}",
+            *(f"{axis} (mm)," + cells([CAR[n][i] for n in WORDS]) for i, axis in enumerate("XYZ")),
+        ]
+    )
+
+
+FORMS = {
+    "on its side": on_its_side(),
+    "in one cell": "\n".join(["Point;Coordinates", *(f"{WORDS[n]};({cells(p)})" for n, p in CAR.items())]),
+    "in one cell of commas": "\n".join(
+        ["Point,Place", *(f"{WORDS[n]},[{cells(p)}]" for n, p in CAR.items())]
+    ),
+    "by spaces": "\n".join(
+        ["Point X Y Z", *(f"{WORDS[n]} " + cells(p).replace(",", "  ") for n, p in CAR.items())]
+    ),
+    "decimal commas": "\n".join(["Point;X;Y;Z", *rows(str)]).replace(",", ";").replace(".", ","),
+    "decimal commas in quotes": "\n".join(
+        [
+            "Point,X,Y,Z",
+            *(f"{WORDS[n]}," + ",".join(f'"{v!r}"'.replace(".", ",") for v in p) for n, p in CAR.items()),
+        ]
+    ),
+    "columns turned about": "\n".join(
+        ["Z,X,Name,Y", *(f"{z!r},{x!r},{WORDS[n]},{y!r}" for n, (x, y, z) in CAR.items())]
+    ),
+    "numbers of lines": "\n".join(["No.,Point,X,Y,Z", *(f"{i},{row}" for i, row in enumerate(rows(str), 1))]),
+}
+
+
+@pytest.mark.parametrize("text", FORMS.values(), ids=FORMS)
+def test_the_same_car_in_another_form_is_the_same_car(text: str, tmp_path: Path) -> None:
+    assert drawn(imported(tmp_path, text, axes=OURS)) == CAR
+
+
+def test_other_columns_of_numbers_are_left_out_and_told(tmp_path: Path) -> None:
+    text = "\n".join(["Point,X,Y,Z,MIN X,MAX X", *(f"{row},-999,999" for row in rows(str))])
+    found = imported(tmp_path, text, axes=OURS)
+    assert drawn(found) == CAR
+    assert "the column 'MIN X' is not read" in found.facts
+    with pytest.raises(HardpointFileError, match="two columns of x"):
+        imported(tmp_path, text.replace("X,Y,Z,MIN X,MAX X", "old X,old Y,old Z,new X,new Y"), axes=OURS)
+
+
+def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "\n".join(["Point,X,Y,Z", *rows(str), ",,,", "Steering rack,1.3,,", "Wheel size,XXXX,,"])
+    found = imported(tmp_path, text, axes=OURS)
+    assert drawn(found) == CAR
+    assert "lines without a point: 'Steering rack' 1.3 on line 13" in found.facts
+    broken = text.replace(f"{WORDS['tie_rod_inner']},{cells(CAR['tie_rod_inner'])}", "TIE_ROD_IN,XXXX,,")
+    assert "TIE_ROD_IN,XXXX" in broken
+    with pytest.raises(HardpointFileError, match="x of 'TIE_ROD_IN' is 'XXXX'"):
+        imported(tmp_path, broken, axes=OURS)
+    assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
+        ("-3.5\t529\t122.84", "line 1: has coordinates without a name"),
+        (on_its_side() + "\n" + on_its_side(), "line 6: has a second table that lies on its side"),
+        ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
+        (
+            "VERSION\n  15\nTEMP_SETTINGS\n  14\nDouble Wishbone, Push Rod",
+            "is a data file of Lotus .* text report",
+        ),
+        ("Point,X,Y,Z\nTie rod inner,0,0\nLBJ,1", "line 2: z of 'Tie rod inner' is ''"),
+        (
+            "Point,X (forward),Y (left),Z (up)\nA,1,2,3\nPoint,X (left),Y (up),Z (forward)\nB,1,2,3",
+            "in different axes",
+        ),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_told_in_one_line(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError, match=words):
+        imported(tmp_path, text, axes=OURS)
+
+
+def test_points_in_one_place_make_no_car(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # A table whose tie rod nobody has filled in.
+    car = CAR | {"tie_rod_inner": (0.0, 0.0, 0.0), "tie_rod_outer": (0.0, 0.0, 0.0)}
+    (tmp_path / "car.csv").write_text("\n".join(["Point,X,Y,Z", *rows(str, car)]))
+    assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "tie_rod_inner - tie_rod_outer has no length" in line
+
+
+def test_a_table_of_optimumk_names_alone_has_its_axes(tmp_path: Path) -> None:
+    found = imported(tmp_path, table())
+    assert drawn(found) == CAR
+    assert any("by names such as 'CHAS_LowFor'" in fact for fact in found.facts)

@@ -1,0 +1,169 @@
+"""The page of a file of results: what it says is what the comparison of the file says."""
+
+import csv
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from lotus_front import BUMP, ROLLING_RADIUS
+
+from pointcoord import Scene, simulate
+from validate.cli import main
+from validate.output.document import schema_text
+
+CAR = "double-wishbone"
+HEAD = "bump [mm],camber [deg],toe [deg],<script>alert(1)</script>\n"
+MAP = f"""
+rolling_radius = {ROLLING_RADIUS}
+columns.bump = {{ is = "travel.contact", printed = 0 }}
+columns.camber.is = "wheel.camber"
+"""
+WRONG = 0.01  # degrees
+
+
+class Read(HTMLParser):
+    """The elements of a page with their attributes, its tables without small print, scripts and verdict."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.opened: list[tuple[str, dict[str, str | None]]] = []
+        self.cells: list[list[str]] = []
+        self.scripts: list[str] = []
+        self.verdict = ""
+        self._into = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.opened.append((tag, dict(attrs)))
+        if tag == "tr":
+            self.cells.append([])
+        if tag in ("td", "th"):
+            self.cells[-1].append("")
+        status = tag == "p" and dict(attrs).get("role") == "status"
+        self._into = "verdict" if status else "cell" if tag in ("td", "th") else tag
+
+    def handle_endtag(self, tag: str) -> None:
+        self._into = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._into == "cell":
+            self.cells[-1][-1] += data
+        elif self._into == "script":
+            self.scripts.append(data)
+        elif self._into == "verdict":
+            self.verdict += data
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Printed camber that is wrong in one row, and toe that is right, with all that a run writes."""
+    place = tmp_path_factory.mktemp("page")
+    rows = [[bump, camber, toe] for bump, camber, toe, *_ in reversed(BUMP)]
+    rows[2][1] += WRONG
+    text = "".join(f"{bump:.1f},{camber:.4f},{toe:.4f},7\n" for bump, camber, toe in rows)
+    (place / "<b>bump.csv").write_text(HEAD + text)
+    (place / "map.toml").write_text(MAP)
+    words = ["--data", str(place / "<b>bump.csv"), "--map", str(place / "map.toml"), CAR]
+    words += ["--report", str(place / "page"), "--json", str(place / "json")]
+    assert main(["validate", *words, "-q"]) == 1
+    return place
+
+
+def test_the_verdicts_of_the_page_are_those_of_the_json(folder: Path) -> None:
+    document = json.loads((folder / "json").read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    assert json.loads((folder / "page" / "results.json").read_text()) == document
+    read = Read((folder / "page" / "index.html").read_text(encoding="utf-8"))
+    assert read.verdict.endswith(
+        "<b>bump.csv and the car of double-wishbone: 1 of 2 agree; disagrees: camber."
+    )
+    (comparison,) = document["scenes"][0]["comparisons"]
+    shown = {row[0]: row for row in read.cells if len(row) == 6}
+    for row in comparison["rows"]:
+        assert shown[row["name"]][1].startswith(row["verdict"])
+        assert shown[row["name"]][4] == row["place"]
+    assert shown["camber"][2] == f"{WRONG:.1e} deg"
+    assert comparison["rows"][0]["place"] == "line 4"
+    assert {"velocity", "position"} <= {row[0] for row in read.cells if row[1:2] == ["not given"]}
+
+
+def test_what_is_drawn_is_the_file_and_the_car_at_the_files_own_travel(folder: Path) -> None:
+    read = Read((folder / "page" / "index.html").read_text(encoding="utf-8"))
+    plots = [json.loads(given["data-plot"] or "") for _, given in read.opened if "data-plot" in given]
+    assert len(plots) == 4  # of each angle its curve and its difference
+    ours, file = plots[0]["data"]
+    bumps = sorted(bump for bump, *_ in BUMP)
+    assert ours["x"] == file["x"] == bumps
+    apart = np.subtract(file["y"], ours["y"])
+    wrong = bumps.index(sorted(bumps)[len(bumps) - 3])
+    assert apart[wrong] == pytest.approx(WRONG, abs=1e-4)
+    assert np.abs(np.delete(apart, wrong)).max() < 0.51e-4
+    held, difference = plots[1]["data"]
+    assert held["y"] == pytest.approx([0.5e-4] * len(bumps), rel=1e-3)
+    assert difference["y"][wrong] == pytest.approx(apart[wrong], rel=1e-3)
+
+
+def test_the_numbers_beside_the_page_are_the_files_and_those_it_was_held_to(folder: Path) -> None:
+    with (folder / "page" / "numbers.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert len(lines) == 2 * len(BUMP)
+    off = [line for line in lines if float(line["difference"]) > float(line["held_to"])]
+    assert [(line["row"], line["is"]) for line in off] == [("line 4", "wheel.camber")]
+    assert np.degrees(float(off[0]["difference"])) == pytest.approx(WRONG, abs=1e-4)
+
+
+def test_names_of_a_file_show_as_text_and_what_the_page_lacks_is_named(folder: Path) -> None:
+    text = (folder / "page" / "index.html").read_text(encoding="utf-8")
+    read = Read(text)
+    assert not {"b"} & {tag for tag, _ in read.opened}
+    assert not [script for script in read.scripts if "alert(1)" in script]
+    lacking = {row[0]: row[1] for row in read.cells if row and row[-1].startswith("pointcoord ")}
+    assert lacking["scenes in motion, held to two formulations"] == "pointcoord report DIR SCENE"
+    assert "hard cases" in lacking
+    assert "Drawn are 0" not in text
+
+
+def test_a_file_over_time_that_agrees_has_a_page_by_either_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motion = simulate(Scene.load("steer"))
+    at = motion.position["wheel_centre"]
+    rows = zip(motion.times, at, np.degrees(motion.wheel["camber"]), strict=True)
+    lines = ["time [s],position.wheel_centre.x [mm],position.wheel_centre.y [mm],camber [deg]"]
+    lines += [f"{t!r},{place[0]!r},{place[1]!r},{angle!r}" for t, place, angle in rows]
+    text = "\n".join(lines).replace("np.float64(", "").replace(")", "")
+    file = tmp_path / "x.csv"
+    file.write_text(text)
+    assert main(["report", str(tmp_path / "a"), "steer", "--data", str(file)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == [f"{file} and the car of steer: 2 of 2 agree.", str(tmp_path / "a" / "index.html")]
+    read = Read((tmp_path / "a" / "index.html").read_text(encoding="utf-8"))
+    assert read.verdict == said[0]
+    plots = [json.loads(given["data-plot"] or "") for _, given in read.opened if "data-plot" in given]
+    assert [plot["layout"]["xaxis"]["title"]["text"] for plot in plots] == ["time [s]"] * 4
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["validate", "--save-baseline", "b.npz"], "a file brings rows of its own"),
+        (["validate", "--baseline", "b.npz"], "without --data it is kept of SCENE"),
+        (["report", "page", "--hard", "hard.json"], "--hard is not about a file of results"),
+        (["report", "page", "--cost", "cost.jsonl"], "--cost is not about a file of results"),
+    ],
+)
+def test_what_is_not_done_for_a_file_is_told_with_what_to_do(
+    words: list[str],
+    told: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*words, CAR, "--data", "x.csv"]) == 2
+    assert told in capsys.readouterr().err
+    assert not any(tmp_path.iterdir())

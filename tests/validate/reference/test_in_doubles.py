@@ -1,0 +1,93 @@
+"""The equations in doubles at many instants are those of the proven instants, up to rounding."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from reference_cars import ReferenceCar
+
+from validate.reference.design import HEAVE, values_only
+from validate.reference.in_doubles import (
+    Constant,
+    inverse_of,
+    jacobian_of,
+    known_in_doubles,
+    local_places,
+    newton_step,
+    order_of,
+    unknown_jets_of,
+)
+
+QUANTITIES = ("position", "velocity", "acceleration")
+
+
+def inputs_of(car: ReferenceCar, heave: bool) -> list[dict[str, tuple[Any, ...]]]:
+    """Three instants near the drawing, not all with the same rates."""
+    moved = []
+    for k in range(3):
+        one = {name: (a + Fraction(k, 50), b * (k + 1), c - k) for name, (a, b, c) in car.inputs.items()}
+        moved.append({name: triple for name, triple in one.items() if heave or name != HEAVE})
+    return moved
+
+
+@pytest.mark.parametrize("heave", [True, False])
+def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: ReferenceCar, heave: bool) -> None:
+    inputs, design = inputs_of(car, heave), car.design
+    instants = [car.solve(one) for one in inputs]
+    laws = {name: np.array([[float(x) for x in one[name]] for one in inputs]) for name in inputs[0]}
+    places = {name: np.array([one.position_as_float(name) for one in instants]) for name in design.names}
+    known = known_in_doubles(design, laws, 3)
+    still = values_only(known)
+    values = np.array(car.linkage.unknown_of(local_places(design, places), still), dtype=float)
+    inverse = inverse_of(jacobian_of(list(values), still))
+    # Local coordinates are of the size of 1; their rounding times the equations' condition, below 1e4.
+    assert np.abs(newton_step(values, inverse, still)).max() < 1e-11
+    points = car.linkage.points_of(unknown_jets_of(list(values), inverse, known), known)
+    unit = float(design.unit)
+    origin = np.array([float(x) for x in design.origin])
+    for order, quantity in enumerate(QUANTITIES):
+        proven = {
+            name: np.array([getattr(one, quantity)[name] for one in instants], dtype=float) for name in points
+        }
+        largest = max(np.abs(vectors).max() for vectors in proven.values())
+        for name, vectors in proven.items():
+            found = np.stack([np.broadcast_to(x, 3) for x in order_of(points[name], order)], axis=-1) * unit
+            found = found + origin if order == 0 else found
+            np.testing.assert_allclose(found, vectors, rtol=0.0, atol=1e-10 * largest)
+
+
+def test_a_chassis_without_heave_stands_where_it_is_drawn_and_with_heave_beside_it(car: ReferenceCar) -> None:
+    design = car.design
+    laws = {"arm_angle": np.array([[1.5, 1.0, 0.0]] * 2)}
+    moving = {**laws, HEAVE: np.array([[32.0, -8.0, 4.0], [0.0, 1.0, 2.0]])}
+    known, lifted = (known_in_doubles(design, inputs, 2) for inputs in (laws, moving))
+    up = np.array([float(x) for x in design.up])
+    for name, place in known.chassis.items():
+        for axis in range(3):
+            drawn = float(design.table[name][axis])
+            for part, other, law in zip(
+                ("value", "rate", "acceleration"),
+                (drawn, 0.0, 0.0),
+                moving[HEAVE].T / float(design.unit),
+                strict=True,
+            ):
+                assert np.all(getattr(place[axis], part) == other)
+                assert getattr(lifted.chassis[name][axis], part) == pytest.approx(other + law * up[axis])
+
+
+def test_a_matrix_without_an_inverse_has_the_one_that_comes_nearest() -> None:
+    good, flat = np.diag([2.0, 4.0]), np.diag([2.0, 0.0])
+    assert inverse_of(np.array([good])).tolist() == [[[0.5, 0.0], [0.0, 0.25]]]
+    assert inverse_of(np.array([good, flat])).tolist() == [
+        [[0.5, 0.0], [0.0, 0.25]],
+        [[0.5, 0.0], [0.0, 0.0]],
+    ]
+
+
+def test_a_constant_has_a_root_alone_and_after_a_quotient() -> None:
+    assert Constant(9.0).sqrt() == 3.0
+    assert (Constant(18.0) / 2.0).sqrt() == 3.0
+    assert (36.0 / Constant(4.0)).sqrt() == 3.0

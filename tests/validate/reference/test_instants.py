@@ -1,0 +1,70 @@
+"""What an instant says of itself: how alone it is, how far its numbers may be off, which effects it has."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from types import SimpleNamespace
+
+import pytest
+from flint import arb, ctx
+from mpmath import mpf
+from reference_cars import ReferenceCar
+
+from validate.reference import NotDecidedError, instant
+from validate.reference.candidates import every_candidate
+from validate.reference.exact import as_fraction, bits
+from validate.reference.instant import prove_instant, prove_pose
+
+ORDERS = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
+
+
+def test_the_radius_of_an_instant_is_half_that_of_the_box_that_is_proven(car: ReferenceCar) -> None:
+    found = car.solve(car.still, digits=40)
+    with ctx.workprec(bits(found.digits)):
+        known = car.known()
+        candidate = car.linkage.candidate(known, found.choices)
+        start = car.linkage.unknown_of(candidate.points, known)
+        box = prove_pose(known, start, None, 40, found.digits).radius * car.design.unit
+    # So wherever in the middle of the box the answer is, the ball about it lies inside; rounded once.
+    assert abs(2 * as_fraction(found.radius, "radius") - box) <= box / 10**40
+
+
+def test_numbers_of_few_digits_are_off_by_no_more_than_they_say(car: ReferenceCar) -> None:
+    few, many = (car.solve(car.inputs, digits=digits) for digits in (15, 120))
+    for quantity in ORDERS:
+        limit = few.error_bound[quantity] + many.error_bound[quantity]
+        off = max(
+            abs(a - b)
+            for name, vector in getattr(few, quantity).items()
+            for a, b in zip(vector, getattr(many, quantity)[name], strict=True)
+        )
+        assert 0 < off <= limit
+        largest = max(abs(x) for vector in getattr(many, quantity).values() for x in vector)
+        assert few.error_bound[quantity] <= largest * mpf("1e-15")
+
+
+def test_another_assembly_than_the_expected_one_is_not_taken(car: ReferenceCar) -> None:
+    with ctx.workprec(bits(60)):
+        known = car.design.known(car.design.driven(car.still))
+        still, own = car.known(), car.solve(car.still).choices
+        start = car.linkage.unknown_of(car.linkage.candidate(still, own).points, still)
+        for expected in (None, own):
+            assert prove_instant(car.design, known, start, expected, 40, 60).choices == own
+        other = next(one.choices for one in every_candidate(still) if one.choices != own)
+        with pytest.raises(NotDecidedError, match="the choices of the assembly found"):
+            prove_instant(car.design, known, start, other, 40, 60)
+
+
+@pytest.mark.parametrize(("size", "given"), [(0.9, True), (1.1, False), (1.9, False)])
+def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
+    car: ReferenceCar, size: float, given: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ball = arb(2, size * 1e-30)
+    monkeypatch.setattr(instant, "EFFECTS", {"made_up": SimpleNamespace(value=lambda axes: ball)})
+    found = car.solve(car.still, digits=30)
+    assert ("made_up" in found.effects) == given
+    if given:
+        assert found.effects["made_up"] == 2
+        # A ball keeps its radius to 30 bits, rounded up.
+        assert found.error_bound["effects"] == pytest.approx(size * 1e-30, rel=1e-8)
+        assert found.error_bound["effects"] >= Fraction(9, 10) * mpf("1e-30")
