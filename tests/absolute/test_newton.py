@@ -6,7 +6,7 @@ import pytest
 import absolute
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
-from absolute.newton import correct
+from absolute.newton import correct, seek
 from absolute.refine import refine
 from absolute.tracking import Found
 
@@ -46,3 +46,22 @@ def test_one_correction_is_enough_below_the_root_of_eps_rcond(
     assert outcome.corrections == corrections
     assert outcome.pose is not None
     assert np.allclose(outcome.pose.poses.origin, pose.poses.origin, rtol=0, atol=16 * EPS / pose.rcond)
+
+
+@pytest.mark.parametrize(("far", "found"), [(0.05, True), (11.4, True), (11.55, True), (11.7, False)])
+def test_a_pose_is_sought_by_short_steps_as_far_as_two_dozen_lead(far: float, found: bool) -> None:
+    # A slide is linear: 23 steps of half the size, and then what is left must be a tenth of the size.
+    rail = absolute.Axis("near", "far")
+    slide = absolute.Model(
+        points={"near": (-100.0, 0.0, 0.0), "far": (100.0, 0.0, 0.0)},
+        chassis="rail",
+        bodies={"rail": ("near", "far"), "slide": ("near", "far")},
+        joints={"slide": absolute.Joint("prismatic", "rail", "slide", rail, rail)},
+        inputs={"way": absolute.Input("rail", rail, "slide", "far", "linear", 1.0)},
+    )
+    mechanism = Mechanism(slide)
+    start = mechanism.drawn.copy()
+    start[0] += far
+    pose = seek(mechanism, start, mechanism.targets(mechanism.drawn_inputs.tolist(), [0.0], [0.0])[0])
+    assert (pose is not None) is found
+    assert pose is None or np.abs(pose.q - mechanism.drawn).max() <= 8 * EPS
