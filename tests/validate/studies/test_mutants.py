@@ -11,8 +11,10 @@ import pytest
 from program import ENVIRONMENT
 
 from validate.studies.mutants.changes import Change, mutants, sampled
-from validate.studies.mutants.plan import read_plan
+from validate.studies.mutants.plan import Part, Plan, read_plan
 from validate.studies.mutants.reasons import read_reasons
+from validate.studies.mutants.store import Store
+from validate.studies.mutants.trial import Verdict
 
 SUM = '''"""A sum by a loop, and a sign that no test asks for."""
 
@@ -205,3 +207,27 @@ def test_a_part_with_a_sample_is_tried_in_part_unless_the_whole_is_asked_for(
     status, _, errors = run()
     assert status == 2
     assert "sample = 0" in errors
+
+
+def test_what_survived_one_file_of_tests_is_tried_again_with_two_and_what_it_killed_is_not(
+    tmp_path: Path,
+) -> None:
+    for name in ("package/__init__.py", "package/module.py", "test_one.py", "test_two.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("", encoding="utf-8")
+    few, more = (
+        Part(("package.module",), tests) for tests in (("test_one.py",), ("test_one.py", "test_two.py"))
+    )
+    plan, path = Plan(tmp_path, (few, more), ()), tmp_path / "store.jsonl"
+    store = Store(plan, path)
+    changes = {result: Change("package.module", "", "a", result) for result in ("killed", "survived")}
+    kept = {
+        "killed": Verdict("killed", "test_one.py::test_it", 1.0),
+        "survived": Verdict("survived", "", 1.0),
+    }
+    for result, change in changes.items():
+        store.keep_verdict(few, change, kept[result])
+    again = Store(plan, path)
+    assert {result: again.verdict(few, change) for result, change in changes.items()} == kept
+    assert again.verdict(more, changes["killed"]) == kept["killed"]
+    assert again.verdict(more, changes["survived"]) is None

@@ -69,9 +69,10 @@ class Store:
         if known is None:
             # Killed by a file of tests that has not changed.
             for file in self._files(part):
-                known = self._verdicts.get((held_to + self._digest((file,)), change))
-                if known is not None:
-                    break
+                by_file = self._verdicts.get((held_to + self._digest((file,)), change))
+                # What survived a part of one file is kept alike, and says nothing of a part with more.
+                if by_file is not None and by_file.result == "killed":
+                    return by_file
         return known
 
     def keep_verdict(self, part: Part, change: Change, verdict: Verdict) -> None:
