@@ -326,3 +326,16 @@ def test_over_a_span_a_law_stays_where_it_says_and_hardly_less(law: TimeFunction
     assert (low <= at_once).all()
     assert (at_once <= high).all()
     assert (high - low <= 1e-12).all()
+
+
+def test_over_more_than_a_turn_a_sine_reaches_both_its_crests_as_they_are_rounded() -> None:
+    # One crest is at zero, where the value has no size of its own to be rounded by.
+    for law in (Sine(0.3, 200.0, 0.0, -0.3), Sine(0.3, 200.0, 0.0, 0.3), Sine(-0.3, 200.0, 0.0, -0.3)):
+        (low,), (high,) = law.values_over(np.array([0.0]), np.array([0.1]))
+        near = np.concatenate([turn * np.pi / 200.0 + np.arange(-20, 21) * 1e-17 for turn in (0.5, 1.5)])
+        values = law.series(near, 0)[:, 0]
+        assert low < values.min() <= law.offset - 0.3 + 2.0**-53
+        assert law.offset + 0.3 - 2.0**-53 <= values.max() < high
+        # What is added is a few roundings of numbers below 1.
+        assert values.min() - low <= 100 * EPS
+        assert high - values.max() <= 100 * EPS

@@ -175,7 +175,7 @@ def _worked_out(
         cluster = None
         if options.scheduler != LOCAL and not folder.exists():
             # A wrong address leaves no folder behind.
-            with progress(console, f"the scheduler {shown(options.scheduler)} is asked", SOON):
+            with progress(console, _first_words(options.scheduler), SOON):
                 cluster = stack.enter_context(scheduler.opened(options.scheduler))
         there = stack.enter_context(records.adding_to(folder, records.Head.of(study)))
         recorded = there.recorded()
@@ -195,7 +195,7 @@ def _worked_out(
             if missing:
                 console.written = [f"{held(0)}; the same command goes on"]
                 with (
-                    progress(console, "processes start", SOON) as told,
+                    progress(console, _first_words(options.scheduler), SOON) as told,
                     _open(scheduler, cluster, options) as workers,
                 ):
                     begun = True
@@ -210,6 +210,11 @@ def _worked_out(
             console.show(findings.parts)
             ending.status = findings.status
     return ending.status
+
+
+def _first_words(scheduler: str) -> str:
+    """What a study waits for at first."""
+    return "processes start" if scheduler == LOCAL else f"the scheduler {shown(scheduler)} is asked"
 
 
 def _open(scheduler: Any, cluster: Any, options: argparse.Namespace) -> Any:

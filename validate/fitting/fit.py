@@ -28,6 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,7 @@ from pointcoord.data_classes import dataclass
 from validate.fitting.curves import Curves, Solved
 from validate.fitting.errors import FitError
 from validate.measured.mapping import Measured
+from validate.plain_text import shown
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -192,6 +194,7 @@ def fit_hardpoints(
     for name, value in (("the bounds", bounds), ("the prior", prior)):
         if not (math.isfinite(value) and value > 0.0):
             raise FitError(name, f"is {value:g} mm", "a finite number above 0")
+    measured, left_out = _without_derivatives(measured)
     curves = Curves(scene, measured, free_coordinates(scene, free))
     zero = np.zeros(len(curves.free))
     start = curves.solved(zero)
@@ -269,8 +272,23 @@ def fit_hardpoints(
         bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
         int(solved.nfev),
         tuple(search.failures),
-        _notes(curves, start),
+        (*left_out, *_notes(curves, start)),
     )
+
+
+def _without_derivatives(measured: Measured) -> tuple[Measured, tuple[str, ...]]:
+    """The file without columns that are derivatives, and that they are left out.
+
+    Raises:
+        FitError: there are no others.
+    """
+    curves = tuple(s for s in measured.numbers if not s.meaning.per)
+    slopes = [shown(s.column) for s in measured.numbers if s.meaning.per]
+    if not curves:
+        problem = f"holds derivatives only ({', '.join(slopes)})"
+        raise FitError(measured.source, problem, "the curves themselves, such as an angle over travel")
+    notes = [f"{', '.join(slopes)} is not fitted to: derivatives are not, their curves are"] if slopes else []
+    return replace(measured, numbers=curves), tuple(notes)
 
 
 def _notes(curves: Curves, start: Solved) -> tuple[str, ...]:

@@ -116,7 +116,8 @@ def read(text: str, source: str) -> Contents:
             units |= {titles.unit} - {""}
             notes += [f"the column {short(title)} is not read" for title in titles.left_out]
         elif (wheel := _heading(row)) is not None:
-            heading = wheel
+            # The left wheel under a heading of the front axle is the front left one.
+            heading = (wheel[0], wheel[1] or heading[1])
         elif (of_line := _units_only(row, titles)) is not None:
             units |= of_line
         elif at > first:
@@ -151,8 +152,8 @@ def read(text: str, source: str) -> Contents:
 
 def _rows(text: str, source: str) -> list[tuple[int, Row]]:
     """The lines that hold something, with their numbers, as cells."""
-    lines = [line for line in text.splitlines() if line.strip()]
-    # What stands three times on most lines; numbers may have commas, so they come last.
+    lines = [re.sub(r"\([^()]*\)|\[[^\[\]]*\]", "", line) for line in text.splitlines() if line.strip()]
+    # What stands three times on most lines, not in brackets; numbers may have commas, so they come last.
     often = {mark: sum(line.count(mark) >= 3 for line in lines) for mark in SEPARATORS}
     separator = max(SEPARATORS, key=lambda mark: (often[mark], any(mark in line for line in lines)))
     rows: list[tuple[int, Row]]
@@ -233,7 +234,8 @@ def _titles(row: Row, above: Row, source: str, line: int) -> _Titles | None:
     axes = [[word for word in cell if word in ("x", "y", "z")] for cell in words]
     if len({axis[0] for axis in axes if len(axis) == 1}) < 2:
         return None
-    if any(map(_number, above)):
+    # A heading stays for what follows, whatever the titles; numbers are no words over columns.
+    if any(map(_number, above)) or _heading(above) is not None:
         above = []
     letters = {word for cell, axis in zip(words, axes, strict=True) if axis for word in cell}
     wheels = _with_letters(letters | {plain(cell) for cell in above})
@@ -379,7 +381,10 @@ def _points_of(
         return [], [Spoilt(FilePoint("", NOWHERE, line), error, "")] if _numbers_in(row) else []
     together = [triple for at, cell in enumerate(row) if at != titles.name_at and (triple := _together(cell))]
     if together and not any(_number(cell) for three in given.values() for cell in three):
-        given = dict(zip(titles.columns, together, strict=False))
+        if len(together) != len(titles.columns):
+            told = f"has {len(together)} places for {short(name)}"
+            raise HardpointFileError(source, line, told, "one, or columns of x, y and z for each wheel")
+        given = dict(zip(titles.columns, together, strict=True))
     if not given:
         # A line of words alone is a heading; one with numbers elsewhere is a mistake.
         if not any(_number(cell) for at, cell in enumerate(row) if at != titles.name_at):

@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,8 @@ from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import SPEED, Found, Numbers, asked_scene, poses_of
+from validate.measured.poses import SPEED, Found, Numbers, Poses, asked_scene, poses_of
+from validate.measured.supposed import likely
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -51,6 +53,10 @@ EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 TRIED_RADIUS = 300.0  # mm, of a wheel: any would do
 SECANTS = 4
+# Suppositions on an independent column that the whole file is held to; of several columns a map takes long.
+TRIED = 3
+# How much an offset that least squares found may leave: the largest difference is the least near it only.
+NEARLY = 1.5
 TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
@@ -145,7 +151,11 @@ def compare_results(
         MissingPackage: digits in full without an accuracy need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
-    held, ours, notes = _held(measured, scene, accuracy)
+    poses = poses_of(scene, measured)
+    try:
+        held, ours, notes = _held(measured, scene, accuracy, poses)
+    except ResultsError as error:
+        raise _with_meant(error, measured, scene, poses) from None
     solution = _solution(measured, held, measured.source)
     rows = [
         _row(name, measured, quantity, of, columns, factor)
@@ -156,10 +166,51 @@ def compare_results(
     outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking, factor)
     explanations = _explained(scene, measured, held, ours, outcome, factor)
     if outcome.disagreements:
+        others = _other_independent(scene, measured, held, outcome, accuracy, poses)
+        # Of a single number its own fault is as likely.
+        whole = len(rows) == 1 and any(one.leftover <= 1.0 for one in explanations)
+        explanations = (*explanations, *others) if whole else (*others, *explanations)
         explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
     outcome = replace(outcome, explanations=explanations)
     over = _over(measured)
     return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
+
+
+def _other_independent(
+    scene: Scene,
+    measured: Measured,
+    held: Sequence[Held],
+    outcome: Outcome,
+    accuracy: float | None,
+    poses: Poses,
+) -> tuple[Explanation, ...]:
+    """Whether the columns that rows are taken by are meant otherwise, such as in another unit."""
+    lost = len(measured.rows) - int(np.isfinite(np.stack([h.ours for h in held])).any(axis=0).sum())
+    names = tuple(f"{row.quantity}.{row.name}" for row in outcome.disagreements)
+    # A map that was made for a travel reaches as far as the car does.
+    same = all(s.meaning.kind == TRAVEL for s in measured.independent)
+    few = islice(likely(scene, measured, poses), TRIED if len(measured.independent) == 1 else 1)
+    for one in few:
+        try:
+            other, _, _ = _held(one.measured, scene, accuracy, poses if same else None)
+        except PointcoordError:
+            continue
+        leftover = _signed(other)[1] / outcome.factor
+        further = len(measured.rows) - int(np.isfinite(np.stack([h.ours for h in other])).any(axis=0).sum())
+        # Fewer rows that agree are no explanation of those that are out of reach then.
+        if leftover <= (NEARLY if one.found else 1.0) and further <= lost:
+            more = f"; this leaves {leftover:.3g} times what is tolerated" if leftover > 1.0 else ""
+            return (Explanation(one.words + more, "input", names, leftover),)
+    return ()
+
+
+def _with_meant(error: ResultsError, measured: Measured, scene: Scene, poses: Poses) -> ResultsError:
+    """A file of which no row can be reached, with what its columns may be meant as."""
+    meant = next((one.words for one in likely(scene, measured, poses)), "")
+    if not meant:
+        return error
+    allowed = f"{error.allowed}; they nearly are if {meant}"
+    return ResultsError(error.source, error.place, error.problem, allowed)
 
 
 def _other_travel(
@@ -290,9 +341,9 @@ def as_solution(measured: Measured, scene: Scene, accuracy: float | None = None)
 
 
 def _held(
-    measured: Measured, scene: Scene, accuracy: float | None
+    measured: Measured, scene: Scene, accuracy: float | None, poses: Poses | None = None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
-    poses = poses_of(scene, measured)
+    poses = poses_of(scene, measured) if poses is None else poses
     values = [s.values for s in (*measured.independent, *measured.rates)]
     first = len(measured.independent)
     here = poses.at(values[:first], values[first:])
@@ -496,6 +547,8 @@ def _out_of_reach(measured: Measured, found: Found) -> list[str]:
         others = ", ".join(measured.rows[i] for i in lost[NAMED : 2 * NAMED])
         more = f" and {len(lost) - 2 * NAMED} more" if len(lost) > 2 * NAMED else ""
         notes.append(f"likewise left out: {others}{more}")
+    if len(lost) * 2 > len(measured.rows):
+        notes.append(f"only {len(measured.rows) - len(lost)} of {len(measured.rows)} rows are compared")
     return notes
 
 

@@ -50,7 +50,7 @@ from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.scene.messages import meant
 from pointcoord.scene.scene_text import parsed, read_file
 from validate.measured.errors import ResultsError
-from validate.measured.reading import Columns, read_columns
+from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
 from validate.measured.units import allowed_units, below_of, factor_of, is_unit
 from validate.plain_text import shown
 
@@ -254,6 +254,13 @@ class _Map:
     def __post_init__(self) -> None:
         self._require_keys("", self.content, KEYS)
         for name, part in self._part("columns").items():
+            if name in self.columns.no_numbers:
+                problem = (
+                    f"column {shown(name)!r} of {self.columns.source} holds {self.columns.no_numbers[name]}"
+                )
+                if isinstance(part, Mapping) and part.get("is") == IGNORE:
+                    continue
+                raise ResultsError(self.where, "columns", problem, f'columns of numbers, or is = "{IGNORE}"')
             if name not in self.columns.names:
                 hint = meant(name, self.columns.names)
                 problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
@@ -357,6 +364,9 @@ class _Map:
         unnamed = [name for name in out if told and name not in told]
         known = [name for name in out if name not in unnamed]
         notes = []
+        for name, what in self.columns.no_numbers.items():
+            if what != NOTHING_AT_ALL:
+                notes.append(f"left out: {shown(name)}, which holds {what} and no numbers")
         if known:
             notes.append(f"left out as nothing that we know: {', '.join(map_shown(known))}")
         if unnamed:
@@ -416,6 +426,8 @@ class _Map:
             return meanings[name]
         ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
         ends = [one for one in ends if one.kind != "travel" and not one.name.startswith(f"{TRAVEL}.")]
+        if not ends and name != name.lower():
+            return self._named(name.lower())
         return ends[0] if len(ends) == 1 else None
 
     def series(self) -> list[Series]:
@@ -625,7 +637,8 @@ def _without_repeats(measured: Measured) -> Measured:
                 for s, v in zip(measured.independent, key, strict=True)
             )
             problem = f"is at {at} as {measured.rows[first]} is, and says something else"
-            raise ResultsError(measured.source, measured.rows[i], problem, "one row for each pose")
+            allowed = "one row for each pose; of a loop its two ways in files of their own"
+            raise ResultsError(measured.source, measured.rows[i], problem, allowed)
         again.append(i)
     lost: NDArray[np.bool_] = np.asarray(np.isnan(keys).any(axis=-1))
     keep: NDArray[np.bool_] = np.logical_not(lost)

@@ -297,15 +297,15 @@ class OverMap:
         topology, held, drawn = mechanism.topology, plan.held, plan.drawn
         ranges: dict[str, tuple[float, float]] = {}
         for name in topology.required_inputs:
-            wide = _widest(mechanism, name)
+            wide = widest(mechanism, name)
             if name == plan.solved:
-                ranges[name] = _sensible(mechanism, name, (drawn[name] - wide, drawn[name] + wide))
+                ranges[name] = sensible(mechanism, name, (drawn[name] - wide, drawn[name] + wide))
                 continue
             if name in held:
                 rated = {*measured.held_rates, *(s.meaning.words for s in measured.rates)}
                 # A map takes no rate of an input that it holds.
                 wide = 1e-3 * wide if any(f"{INPUT}.{name}.{word}" in rated for word in RATES) else 0.0
-                ranges[name] = _sensible(mechanism, name, (held[name] - wide, held[name] + wide))
+                ranges[name] = sensible(mechanism, name, (held[name] - wide, held[name] + wide))
                 continue
             s = next(s for s in measured.independent if s.meaning.name == name)
             low, high = float(np.min(s.values - s.off)), float(np.max(s.values + s.off))
@@ -313,11 +313,11 @@ class OverMap:
             high = min(max(high, drawn[name]), drawn[name] + wide)
             if low == high:
                 low, high = low - 1e-3 * wide, high + 1e-3 * wide
-            ranges[name] = _sensible(mechanism, name, (low, high))
+            ranges[name] = sensible(mechanism, name, (low, high))
         if all(low == high for low, high in ranges.values()):
             # Every row has the same pose, by a heave or by held inputs alone; a map wants a free input.
             name = topology.required_inputs[0]
-            wide = 1e-3 * _widest(mechanism, name)
+            wide = 1e-3 * widest(mechanism, name)
             ranges[name] = (ranges[name][0] - wide, ranges[name][0] + wide)
         map = kinematic_map(scene, ranges)
         return cls(
@@ -628,12 +628,12 @@ def _one_way(curve: Array, home: int) -> tuple[int, int, str]:
     return first, last, ", ".join(ends) or "it is looked for no farther"
 
 
-def _widest(mechanism: Mechanism, name: str) -> float:
+def widest(mechanism: Mechanism, name: str) -> float:
     unit = mechanism.topology.input_units[name]
     return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
 
 
-def _sensible(mechanism: Mechanism, name: str, ends: tuple[float, float]) -> tuple[float, float]:
+def sensible(mechanism: Mechanism, name: str, ends: tuple[float, float]) -> tuple[float, float]:
     """Ends of an input inside of what it has a meaning at."""
     drive = next(drive for drive in mechanism.topology.drives if drive.input == name)
     beyond = drive.extremes(mechanism.drawing)
@@ -656,7 +656,7 @@ def _strongest(
     """The open input by which a travel changes most, each over the same part of its widest range."""
     found = {}
     for name in inputs:
-        wide = 1e-3 * _widest(mechanism, name)
+        wide = 1e-3 * widest(mechanism, name)
         ranges = {n: (drawn[n], drawn[n]) for n in drawn} | {name: (drawn[name] - wide, drawn[name] + wide)}
         map = kinematic_map(scene, ranges)
         probe = OverMap(map, (), name, {}, None, drawn, measured.rolling_radius, ())

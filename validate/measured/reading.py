@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 LARGEST = 256_000_000  # bytes
 COMMENTS = ("#", "%", "//", "!")
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
+NOTHING_AT_ALL = "nothing"
 # Digits that only a double in full has.
 DOUBLE = 15
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?")
@@ -55,6 +56,7 @@ class Columns:
         rows: what to call each row, such as "line 7".
         fixed: names of columns that look printed, with their decimals, in a file that is taken as written in
             full because of others.
+        no_numbers: columns that hold none, and what they hold; they are in nothing else here.
     """
 
     source: str
@@ -64,6 +66,7 @@ class Columns:
     steps: Array
     rows: tuple[str, ...]
     fixed: Mapping[str, int] = field(default_factory=dict)
+    no_numbers: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_columns(path: str) -> Columns:
@@ -125,19 +128,25 @@ def _parquet(path: str, source: str) -> Columns:
     if not found or not len(next(iter(found.values()))):
         raise ResultsError(source, "", "has no rows", "a column for each quantity, and at least one row")
     values, steps = [], []
-    for name, column in found.items():
-        if column.dtype.kind not in "iuf":
-            problem = f"holds {column.dtype} and no numbers"
-            raise ResultsError(source, f"column {shown(name)!r}", problem, "columns of numbers")
+    others = {name: str(column.dtype) for name, column in found.items() if column.dtype.kind not in "iuf"}
+    found = {name: column for name, column in found.items() if name not in others}
+    if not found:
+        names = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
+        raise ResultsError(source, "", f"has no column of numbers: {names}", "columns of numbers")
+    for column in found.values():
         full = column.astype(float)
         values.append(full)
         # Single precision rounds to half of the distance to the next number.
         coarse = np.spacing(np.abs(column)) if column.dtype.itemsize < 8 and column.dtype.kind == "f" else 0.0
         steps.append(np.broadcast_to(np.asarray(coarse, dtype=float), full.shape))
     _require_finite(np.stack(values), source, tuple(found))
-    names, units = zip(*(_name_and_unit(name) for name in found), strict=True)
+    named = [_name_and_unit(name) for name in found]
+    heads, units = tuple(name for name, _ in named), tuple(unit for _, unit in named)
     rows = tuple(f"row {i + 1}" for i in range(len(values[0])))
-    return _checked(Columns(source, names, units, np.stack(values), np.stack(steps), rows))
+    unnamed = {_name_and_unit(name)[0]: kind for name, kind in others.items()}
+    return _checked(
+        Columns(source, heads, units, np.stack(values), np.stack(steps), rows, no_numbers=unnamed)
+    )
 
 
 def _require_finite(values: Array, source: str, names: Sequence[str]) -> None:
@@ -175,10 +184,35 @@ def columns_of_text(text: str, source: str) -> Columns:
         named = [_cells(line.lstrip().lstrip("#%/! "), delimiter) for line in before]
         head = [row for row in named[-1:] if len(_joined(row)) == count]
     names, units = _names(head, count, source)
+    words = _words(names, rows, delimiter)
+    names = tuple(name or _number_of(i) for i, name in enumerate(names))
+    kept = [i for i, name in enumerate(names) if name not in words]
+    if words and kept:
+        rows = [(n, [row[i] for i in kept] if len(row) == count else row) for n, row in rows]
+        names, units = tuple(names[i] for i in kept), tuple(units[i] for i in kept)
+        count = len(kept)
     numbers = _Numbers(source, names, delimiter)
     values, steps, fixed = numbers.of([(number, row) for number, row in rows], count)
     lines_of = tuple(f"line {number}" for number, _ in rows)
-    return _checked(Columns(source, names, units, values, steps, lines_of, fixed))
+    return _checked(Columns(source, names, units, values, steps, lines_of, fixed, words))
+
+
+def _words(names: Sequence[str], rows: Sequence[tuple[int, Sequence[str]]], delimiter: str) -> dict[str, str]:
+    """Columns of a text in which no line has a number, and what they hold."""
+    found = {}
+    whole = [row for _, row in rows if len(row) == len(names)]
+    for i, name in enumerate(names) if whole else ():
+        cells = [row[i] for row in whole if row[i].lower() not in NOTHING]
+        if cells and not any(_NUMBER.fullmatch(_plain(cell, delimiter)) for cell in cells):
+            found[name or _number_of(i)] = f"{shown(cells[0])!r} and the like"
+        elif not name and not cells:
+            found[_number_of(i)] = NOTHING_AT_ALL
+    return found
+
+
+def _number_of(i: int) -> str:
+    """What to call a column without a name, as spreadsheets' indices are."""
+    return f"column {i + 1}"
 
 
 def _delimiter(lines: Sequence[str]) -> str:
@@ -348,7 +382,7 @@ def _checked(columns: Columns) -> Columns:
             columns.source,
             "names of the columns",
             f"{shown(name)!r} is there {count} times",
-            "each name once",
+            "each name once; rename one of them, or take it out",
         )
     if "" in counts:
         number = columns.names.index("") + 1

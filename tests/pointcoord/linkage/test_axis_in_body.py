@@ -15,6 +15,7 @@ from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.quadratic import quadratic_map
 
 Array = NDArray[np.float64]
 Vector = list[Fraction]
@@ -181,3 +182,27 @@ def _is_right(placed: Placed, i: int, meant: Fraction) -> None:
     found, lacks, doubt = _numbers(placed, i)
     assert abs(found + lacks - meant) <= doubt
     assert abs(lacks) <= 5 * U * abs(found)
+
+
+@pytest.mark.parametrize("place", ["anywhere", "an edge", "the normal"])
+@pytest.mark.parametrize("seed", range(3))
+def test_an_axis_turns_with_its_body_and_no_other_way(seed: int, place: str) -> None:
+    points = drawn(seed, place, 1.0)
+    y = np.zeros(LAYOUT.size)
+    y[LAYOUT.one] = 1.0
+    for kind in (BODY, AXIS):
+        for own in kind.placed(LAYOUT, Drawing(points, np.array(1.0))):
+            y[list(own.places)] = own.values
+    for name in LAYOUT.moving:
+        y[LAYOUT.span(name)] = points[name]
+    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))  # no mirror, which would take the normal the other way
+    for name in (*LAYOUT.moving, *LAYOUT.vectors):
+        y[LAYOUT.span(name)] = turn @ y[LAYOUT.span(name)] + (0.5 if name in LAYOUT.moving else 0.0)
+    system = quadratic_map((*BODY.rows(LAYOUT), *AXIS.rows(LAYOUT)), LAYOUT.unknowns, LAYOUT.size)
+    # Constants up to 10 of a triangle of height 1, products of numbers below 4: some hundred roundings.
+    assert np.abs(system.residual(y)).max() <= 4e3 * U
+    for i in LAYOUT.vector("axis"):
+        off = y.copy()
+        off[i] += 0.1
+        assert np.abs(system.residual(off)).max() > 0.09

@@ -91,3 +91,20 @@ def test_a_point_is_carried_until_its_carriers_are_a_line_to_eight_roundings() -
     carrier_weights("rider", thin(4.01 * EPS), ("base", "first", "second"))
     with pytest.raises(MechanismError, match="in one line, so they cannot carry rider"):
         carrier_weights("rider", thin(3.99 * EPS), ("base", "first", "second"))
+
+
+@pytest.mark.parametrize(
+    ("weights", "gain"),
+    [
+        ((0.0, 0.0, 0.0), 1.0),  # in the base
+        ((0.25, 0.5, 0.0), 1.0),  # inside the triangle
+        ((1.0, 1.0, 0.0), 3.0),  # |1 - 2| + 1 + 1
+        ((0.25, 0.5, -0.125), 1.75),  # and 2 / 8 of the largest sum of two sides, 3
+    ],
+)
+def test_the_gain_is_the_sum_of_what_each_carrier_may_move_the_point(
+    weights: tuple[float, ...], gain: float
+) -> None:
+    places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.0, -2.0, 0.0)}
+    drawing = Drawing({name: np.array(place) for name, place in places.items()}, np.array(1.0))
+    assert carried_gain(np.array(weights), drawing, ("base", "first", "second")) == gain

@@ -221,6 +221,18 @@ def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
 
 
 @by_car
+@pytest.mark.parametrize("size", [1.0, 1e-3, 7e5])
+def test_the_unit_is_the_next_power_of_two_above_the_longest_side_of_the_car(
+    car: SampleCar, size: float
+) -> None:
+    places = {name: size * np.array(place) for name, place in car.points.items()}
+    longest = float(np.ptp(np.array([*places.values()]), axis=0).max())
+    unit = float(car.mechanism(places).unit)
+    assert np.frexp(unit)[0] == 0.5
+    assert unit / 2.0 <= longest < unit
+
+
+@by_car
 def test_batch_of_cars_is_each_of_them(car: SampleCar) -> None:
     factors = np.array([0.5, 1.0, 3.0])
     batch = car.mechanism({name: factors[:, None] * np.array(p) for name, p in car.points.items()})

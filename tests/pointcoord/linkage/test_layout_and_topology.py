@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pointcoord import InputOutOfRange, UnknownName
+from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.method import SERIES
@@ -142,3 +143,14 @@ def test_a_constraint_takes_part_from_a_tenth_of_the_largest_force(topology: Top
     for share, both in ((0.11, True), (-0.11, True), (0.09, False)):
         forces[0], forces[-1] = 2.0, 2.0 * share
         assert set(topology.strongest(forces)) == ({one.name, other.name} if both else {one.name})
+
+
+@by_name
+def test_of_two_links_the_one_that_pushes_harder_comes_first(topology: Topology) -> None:
+    links = [c for c in topology.constraints if isinstance(c, Link)][:2]
+    places = [topology.labels.index(link.labels[0]) for link in links]
+    for forces in ((1.0, -2.0), (-3.0, 2.0)):
+        every = np.zeros(len(topology.labels))
+        every[places] = forces
+        harder = int(abs(forces[1]) > abs(forces[0]))
+        assert topology.strongest(every) == (links[harder].name, links[1 - harder].name)

@@ -23,13 +23,8 @@ from pointcoord import (
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import MAP
 from pointcoord.patches import way_map
-from pointcoord.patches.domain import Domain
-from pointcoord.patches.lookup import Lookup, Marked, touched
-from pointcoord.patches.path import Spans, covered_until, way_of
-from pointcoord.patches.way_map import map_way, starts_on
-from pointcoord.simulation import map_limits, prepare_task
+from pointcoord.simulation import prepare_task
 from pointcoord.solve.assembly import close_drawing, follow, stepped
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Array = NDArray[np.float64]
 Make = Callable[..., Scene]
@@ -176,28 +171,6 @@ def test_an_input_at_a_single_instant_has_its_rate(make_scene: Make, rate: float
     assert velocity[0].tolist() == [0.0, -rate, 0.0]
 
 
-def test_a_pose_of_another_assembly_is_not_the_patch_s(make_scene: Make) -> None:
-    scene = make_scene([1.6, 0.05], [0.0, 3.0])
-    task = prepare_task(scene, MAP)
-    mechanism = task.readout.mechanism
-    way = map_way(mechanism, task.functions, task.start, 0.0, 2.0, map_limits(scene, mechanism, 0))
-    values = np.array([1.6, 0.0])
-    y = task.start.y
-    assert way.patches is not None
-    assert starts_on(way.domain, way.order, way.patches, way.lookup, values, y)
-    # The tie rod on the other side of the plane through its other end and the points that hold its outer one.
-    layout = mechanism.layout
-    a, b, c, outer = (
-        y[list(layout.vector(name))]
-        for name in ("lower_ball_joint", "strut_lower", "tie_rod_inner", "tie_rod_outer")
-    )
-    normal = np.cross(b - a, c - a)
-    other = y.copy()
-    other[list(layout.vector("tie_rod_outer"))] -= 2.0 * (outer - a) @ normal / (normal @ normal) * normal
-    assert np.abs(mechanism.map.residual(other)).max() < 1e-14
-    assert not starts_on(way.domain, way.order, way.patches, way.lookup, values, other)
-
-
 def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     make_scene: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -268,77 +241,6 @@ def test_a_step_is_not_taken_across_a_fold_nor_far_from_its_tangent(make_scene: 
     assert follow(mechanism.map, y, at(0.999 * far)).done == 1.0
     assert stepped(mechanism.map, y, at(0.999 * far)) is None
     assert stepped(mechanism.map, y, at(1.001 * far)) is None
-
-
-LAWS: list[TimeFunction] = [
-    Polynomial((1.0, 2.0, -3.0, 0.5)),
-    Polynomial((1.5,)),
-    Polynomial((0.0, 1e-25)),
-    Sine(0.3, 7.0, 0.2, 1.5),
-    Sine(-0.3, 1e6, 0.2, 1.5),
-    Sine(0.3, -40.0, 1e9, -1.0),
-    Table(tuple(np.linspace(0.0, 1.0, 50)), tuple(np.random.default_rng(2).normal(size=50))),
-    Table((0.0, 0.3, 0.5, 1.0), (2.0, 2.0, 2.0, 2.0)),
-]
-
-
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_a_law_lies_within_what_it_says_of_a_span_and_nearly_fills_it(law: TimeFunction) -> None:
-    edges = np.unique(np.concatenate([np.linspace(0.0, 1.0, 400), np.array(law.breaks)]))
-    first, last = edges[:-1], edges[1:]
-    low, high = law.values_over(first, last)
-    inside = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 201)
-    values = law.series(np.minimum(inside, last[:, None]), 0)[..., 0]
-    assert (values >= low[:, None]).all()
-    assert (values <= high[:, None]).all()
-    whole = float(np.ptp(values))
-    # The second derivative of a span of 1/400 is all that is too much.
-    assert high.max() - low.min() <= 1.1 * whole + 1e-12 * np.abs(values).max()
-
-
-def test_the_boxes_of_a_way_are_found_as_one_by_one(strut: Any) -> None:
-    domain = Domain(strut, {"arm_angle": (1.4, 1.8), "rack": (-20.0, 20.0)}, 4)
-    rng = np.random.default_rng(5)
-    middle = rng.uniform([1.4, -20.0], [1.8, 20.0], (60, 2))
-    half = rng.uniform(0.0, [0.03, 3.0], (60, 2))
-    low, high = np.maximum(middle - half, [1.4, -20.0]), np.minimum(middle + half, [1.8, 20.0])
-    marks = np.zeros((16, 16), dtype=bool)
-    along = 16 / np.array([0.4, 40.0])
-    for first, last in zip(low - [1.4, -20.0], high - [1.4, -20.0], strict=True):
-        for i in range(16):
-            for j in range(16):
-                cell = np.array([i, j])
-                marks[i, j] |= bool((first * along <= cell + 1).all() and (last * along >= cell).all())
-    found = Marked.touched_by(domain, low, high)
-    corners = np.argwhere(np.ones((16, 16), dtype=bool))
-    alone = found.any_in(corners, corners + 1).reshape(16, 16)
-    assert not (marks & ~alone).any()
-    assert (alone & ~marks).sum() <= 2
-    few = marks & (rng.uniform(size=marks.shape) < 0.1)
-    first, last = touched(domain, low, high)
-    wanted = [few[a[0] : b[0], a[1] : b[1]].any() for a, b in zip(first, last, strict=True)]
-    assert Marked.of(few).any_in(first, last).tolist() == wanted
-
-
-def test_a_way_is_followed_up_to_what_is_not_covered_and_no_further(strut: Any) -> None:
-    domain = Domain(strut, {"arm_angle": (1.4, 1.8), "rack": (-20.0, 20.0)}, 6)
-    laws = [Polynomial((1.4, 0.4)), Sine(19.0, 3.0)]
-    table = np.zeros((64, 64), dtype=np.int64)
-    spans = way_of(dict(zip(domain.free, laws, strict=True)), 0.0, 1.0)
-    assert covered_until(laws, spans, Lookup(domain, table)) == 1.0
-    # A gap beside the way, that a coarse span touches, and one on it.
-    where = np.array([laws[0].series(0.7, 0)[0], laws[1].series(0.7, 0)[0]])
-    column, row = ((where - [1.4, -20.0]) * 64 / [0.4, 40.0]).astype(int)
-    table[column, row + 4] = -1
-    coarse = Spans.of(laws, np.array([0.0, 0.5]), np.array([0.5, 1.0]))
-    assert covered_until(laws, coarse, Lookup(domain, table)) == 1.0
-    table[column, row] = -1
-    end = covered_until(laws, coarse, Lookup(domain, table))
-    # Where the arm enters the column, or the rack the row, less a part of a box.
-    entered = column / 64.0
-    assert entered - 0.5 / 64 <= end <= 0.7
-    table[0, 32] = -1
-    assert covered_until(laws, coarse, Lookup(domain, table)) == -np.inf
 
 
 def test_a_pose_that_stands_still_is_solved_too(make_scene: Make, strut: Any) -> None:

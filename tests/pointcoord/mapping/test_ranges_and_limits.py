@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -15,10 +14,8 @@ from pointcoord.patches.flood import Limits, Patches, _seams, flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.multi_index import powers
-from pointcoord.patches.path import Spans, covered_until
 from pointcoord.patches.way_map import HALVINGS, _widened, order_for, starts_on
 from pointcoord.solve.assembly import assemble
-from pointcoord.time_functions import Polynomial, TimeFunction
 
 Array = NDArray[np.float64]
 RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
@@ -173,42 +170,3 @@ def test_a_start_where_no_patch_is_is_nowhere() -> None:
     values = np.array([1.0, 0.0])
     assert starts_on(domain, 8, patches, lookup, values, y)
     assert not starts_on(domain, 8, patches, Lookup(domain, np.full_like(lookup.table, -1)), values, y)
-
-
-class Counting:
-    """A law that counts the spans that it is asked for."""
-
-    def __init__(self, law: TimeFunction) -> None:
-        self.law, self.spans = law, 0
-
-    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        self.spans += len(first)
-        return self.law.values_over(first, last)
-
-
-def test_what_comes_after_the_end_of_a_way_is_not_looked_at() -> None:
-    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (0.9, 1.1), "rack": (-20.0, 20.0)}, 6)
-    table = np.zeros((64, 64), dtype=np.int64)
-    table[:, 32:] = -1  # from a rack of 0 on
-    # Slow where it gets there, and fast behind.
-    laws = [Counting(law) for law in (Polynomial((1.0,)), Polynomial((-1e-3, 0.01, *[0.0] * 6, 19.0)))]
-    counted = [cast(TimeFunction, law) for law in laws]
-    edges = np.linspace(0.0, 1.0, 65)
-    end = covered_until(
-        counted, Spans.of([law.law for law in laws], edges[:-1], edges[1:]), Lookup(domain, table)
-    )
-    # A thousandth of the smallest box before it counts as there.
-    assert 0.0 < end <= 0.1
-    assert [law.spans for law in laws] == [0, 0]
-
-
-def test_a_way_of_one_span_ends_inside_it_or_where_it_begins() -> None:
-    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (0.9, 1.1), "rack": (-20.0, 20.0)}, 6)
-    laws = [Polynomial((1.0,)), Polynomial((-10.0, 20.0))]
-    one = Spans.of(laws, np.array([0.0]), np.array([1.0]))
-    for first_gap, entered in ((32, 0.5), (48, 1.0), (16, -np.inf)):
-        table = np.zeros((64, 64), dtype=np.int64)
-        table[:, first_gap:] = -1
-        end = covered_until(laws, one, Lookup(domain, table))
-        # A box is 1/32 s long, and a span that is a quarter of it tells all that can be told.
-        assert end == entered or entered - 0.25 / 32.0 - 1e-4 <= end < entered

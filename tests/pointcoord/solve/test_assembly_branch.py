@@ -1,7 +1,6 @@
 """Assembly on the branch of the drawing: where it leads, where it ends, and what it says then."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from pointcoord import AssemblyError, InputOutOfRange, Scene, simulate
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
-from pointcoord.solve import assembly
 from pointcoord.solve.assembly import Pose, assemble, follow, follow_plainly, proven_step
 from pointcoord.suspensions.macpherson import COLLINEAR
 
@@ -276,70 +274,6 @@ def test_proven_step_stays_within_newtons_reach_of_the_path(
     shares = np.linspace(0.0, 0.999 * step, 40)
     signs = np.linalg.slogdet(mechanism.map.jacobian(pose.y + shares[:, None] * tangent))[0]
     assert (signs == signs[0]).all()
-
-
-@by_mechanism
-@pytest.mark.parametrize("off", [1e-5, 1e-3, 10.0])
-def test_a_step_from_a_place_that_is_off_is_as_long_as_its_condition_allows(
-    mechanism: Mechanism, off: float
-) -> None:
-    pose, rng = at(mechanism, 1.3, 10.0), np.random.default_rng(4)
-    system, n, factors = mechanism.map, mechanism.layout.unknowns, pose.factors
-    tangent, correction = np.zeros(system.size), np.zeros(system.size)
-    tangent[mechanism.layout.scalar("arm rise")] = 0.5
-    tangent[:n] = -factors.solve(2.0 * system.polar(pose.y, tangent))
-    correction[:n] = off * rng.uniform(-1.0, 1.0, n)
-    inverse = np.linalg.inv(system.jacobian(pose.y))
-
-    def bent(rows: Array) -> Array:
-        return np.asarray(np.abs(inverse @ rows))
-
-    bend, own = bent(system.residual(tangent)), bent(system.residual(correction))
-    both = bent(2.0 * system.polar(correction, tangent))
-
-    def holds(s: float) -> bool:
-        """The condition, in any of the three norms."""
-        for plain, much in ((1.0, 0.0), (0.3, 1.0), (0.02, 1.0)):
-            g = plain * (bend.max() if much else 1.0) + much * bend
-            omega = float(system.lipschitz(inverse, g))
-            z = float((np.abs(inverse @ system.jacobian(tangent)) @ g / g).max())
-            room = 1.0 - omega * float((np.abs(correction[:n]) / g).max()) - s * z
-            q, c, b = (float((part / g).max()) for part in (bend, both, own))
-            if room > 0.0 and room * room >= 2.0 * omega * (q * s * s + c * s + b):
-                return True
-        return False
-
-    step = float(proven_step(system, factors, tangent, correction))
-    assert assembly._proven_step_of_one(system, factors, tangent, correction) == pytest.approx(step, rel=1e-9)
-    if off > 1.0:
-        assert step == 0.0
-        assert not holds(0.0)
-    else:
-        assert holds(0.999 * step)
-        assert not holds(1.001 * step)
-
-
-@by_mechanism
-def test_the_step_of_one_exact_place_is_that_of_many(mechanism: Mechanism) -> None:
-    poses = at(mechanism, [1.2, 1.5, 1.9], [-10.0, 0.0, 20.0])
-    system, n = mechanism.map, mechanism.layout.unknowns
-    tangents = np.zeros_like(poses.y)
-    tangents[:, mechanism.layout.scalar("rack travel")] = 0.3
-    tangents[:, :n] = -poses.factors.solve(2.0 * system.polar(poses.y, tangents))
-    steps = proven_step(system, poses.factors, tangents)
-    for number, step in enumerate(steps.tolist()):
-        one = factorise(system.jacobian(poses.y[number]))
-        found = assembly._proven_step_of_one(system, one, tangents[number], None)
-        assert found == pytest.approx(step, rel=1e-9)
-
-
-@by_mechanism
-def test_the_residual_of_poses_is_that_of_each(mechanism: Mechanism) -> None:
-    poses = at(mechanism, np.linspace(1.2, 1.8, 5), np.linspace(-10.0, 10.0, 5))
-    apart = np.random.default_rng(5).uniform(-1e-3, 1e-3, poses.y.shape)
-    off = replace(poses, y=poses.y + apart)
-    each = [float(np.abs(mechanism.map.residual(y)).max()) for y in off.y]
-    np.testing.assert_allclose(off.residual, each, rtol=1e-12)
 
 
 def test_branch_is_kept_past_the_near_singular_place_at_35_degrees(strut: Mechanism) -> None:

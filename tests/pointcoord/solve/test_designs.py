@@ -14,7 +14,7 @@ from pointcoord.solve import chains_together, designs
 from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
 from pointcoord.solve.status import TooRough
-from pointcoord.solve.taylor import Chain, build_chain
+from pointcoord.solve.taylor import Chain, Segment, build_chain
 from pointcoord.sweeping.solving import way_of_inputs
 
 WISHBONE = Scene.load("double-wishbone")
@@ -226,6 +226,21 @@ def test_an_end_with_a_first_step_beyond_the_tolerance_is_not_confirmed(
     _, solved = together(WISHBONE, MANY[:9])
     assert plainly == [9]
     np.testing.assert_array_equal(solved.alive, np.arange(9))
+
+
+def test_a_segment_is_cut_by_the_sizes_of_its_own_terms(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, seen = chains_together._Step.segment, []
+
+    def looked(step: chains_together._Step, stop: float) -> Segment:
+        terms = step.series.y[: step.series.count, : step.course.columns.map.unknowns]
+        np.testing.assert_array_equal(step.sizes, np.abs(terms).max(axis=1), strict=True)
+        seen.append(stop)
+        return whole(step, stop)
+
+    monkeypatch.setattr(chains_together._Step, "segment", looked)
+    _, solved = together(WISHBONE, MANY[:9])
+    assert solved.chain is not None
+    assert len(seen) == len(solved.chain.segments)
 
 
 @pytest.mark.parametrize("last", [(1.0, 1e-3), (1e-3, 1.0)])

@@ -9,9 +9,11 @@ from functools import cache
 import pytest
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
+from validate.comparison import examined as examined_module
+from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined, examine
 from validate.exit_status import ExitStatus
-from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
@@ -143,3 +145,22 @@ def test_the_printed_formulas_are_compared_if_asked_for_and_count_for_nothing() 
     assert len(both.outcomes) == 1
     without = examined({"a": refuses("a", ValueError("no")), "b": solved()}, "a b", printed=True)
     assert (without.printed, without.unprinted) == (None, None)
+
+
+def test_a_comparison_that_fails_though_both_answered_is_told_as_such(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def broken(scene: Scene, first: Formulation, second: Formulation, *rest: object) -> Outcome:
+        first.solve(scene)
+        second.solve(scene)
+        raise RuntimeError("no way to compare")
+
+    monkeypatch.setattr(examined_module, "compare", broken)
+    found = examined({"a": solved(), "b": solved(), "c": solved()}, "a b", "c b")
+    assert [f.formulation for f in found.failures] == [
+        "the comparison of a with b",
+        "the comparison of c with b",
+    ]
+    assert {f.error for f in found.failures} == {"RuntimeError"}
+    assert (found.solved, found.outcomes) == (("a", "b", "c"), ())
+    assert found.status is ExitStatus.NOT_FINISHED

@@ -7,7 +7,7 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import compare, compare_solutions
-from validate.comparison.over_time import over_time
+from validate.comparison.over_time import OverTime, over_time
 from validate.formulations.protocol import Solution
 
 
@@ -66,3 +66,20 @@ def test_without_an_instant_that_both_give_there_is_nothing_over_time() -> None:
     count = len(scene.instants)
     apart = (at(first, np.arange(0, count, 2)), at(second, np.arange(1, count, 2)))
     assert over_time(replace(outcome, solutions=apart), outcome.rows[0], scene.instants) is None
+
+
+def test_where_nothing_is_claimed_the_largest_number_of_all_instants_is_the_measure() -> None:
+    scene = Scene.load("bounce")
+    first, second = compare(scene, "pointcoord", "absolute").solutions
+    velocity = {**second.numbers["velocity"], "strut_top": second.numbers["velocity"]["strut_top"] + 1e-30}
+    outcome = compare_solutions(scene, first, second.with_numbers({"velocity": velocity}), "bounce")
+    (row,) = (r for r in outcome.rows if (r.quantity, r.name) == ("velocity", "strut_top"))
+    found = over_time(outcome, row, scene.instants)
+    assert found is not None
+    assert row.share > 0.0
+    assert float(found.share.max()) == row.share
+
+
+def test_no_difference_is_no_share_even_of_no_tolerance() -> None:
+    found = OverTime(np.arange(3.0), np.array([0.0, 0.0, 3.0]), np.array([0.0, 2.0, 2.0]))
+    assert found.share.tolist() == [0.0, 0.0, 1.5]

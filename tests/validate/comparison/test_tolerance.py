@@ -8,10 +8,10 @@ import pytest
 
 import absolute
 from pointcoord import Scene
-from validate.comparison.compare import Comparison, compare_solutions
+from validate.comparison.compare import Comparison, Outcome, compare_solutions
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.formulations.input_rates import rates
-from validate.formulations.protocol import Solution
+from validate.formulations.protocol import Accuracy, Solution
 from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
@@ -125,3 +125,61 @@ def test_numbers_agree_up_to_the_sum_of_what_both_claim_and_no_farther(
     found = row(one, changed(one, "position", {"wheel_centre": moved}), "position", "wheel_centre")
     assert found.verdict == verdict
     assert found.share == pytest.approx(share, abs=1e-6)
+
+
+def stated(solution: Solution) -> Solution:
+    """The same, as of a solver that is held to an accuracy that it stated."""
+    blind = np.zeros(len(solution.times), dtype=bool)
+    return replace(solution, accuracy=replace(solution.accuracy, blind=blind), formulation="stated")
+
+
+def test_of_a_stated_solver_only_what_it_was_not_given_tells_anything(solved: Solution) -> None:
+    for pair in ((solved, stated(solved)), (stated(solved), solved)):
+        outcome = compare_solutions(SCENE, *pair, "steer")
+        telling = {(r.quantity, r.name): r.telling for r in outcome.rows}
+        # With the arm held still: the ball joint stands still, but not where the drawing has it.
+        assert telling["position", "wheel_centre"]
+        assert telling["velocity", "wheel_centre"]
+        assert telling["wheel", "camber"]
+        assert not telling["velocity", "lower_ball_joint"]
+        assert not telling["position", "strut_top"]
+        assert not telling["velocity", "strut_top"]
+    plain = compare_solutions(SCENE, solved, replace(solved, formulation="other"), "steer")
+    assert all(r.telling for r in plain.rows)
+
+
+def outcome_of(*verdicts: str, own: bool, faults: tuple[str, ...] = ()) -> Outcome:
+    """Rows of some verdicts; "told" agrees with what the solver was given. own: one stated its accuracy."""
+    any_row = Comparison("s", "a", "b", "position", "p", "mm", 0.0, 1.0, 0.0, 0.0, "agrees", "a", 0.0)
+    rows = tuple(
+        replace(any_row, verdict="agrees", telling=False) if v == "told" else replace(any_row, verdict=v)
+        for v in verdicts
+    )
+    plain = Solution("a", np.zeros(1), {}, Accuracy(np.ones(1)))
+    return Outcome("s", rows, (plain, stated(plain) if own else plain), (), (), faults=faults)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "passed", "disagrees", "why"),
+    [
+        (outcome_of("agrees", own=False), True, 0, ""),
+        (outcome_of("agrees", "disagrees", own=False), False, 1, ""),
+        (outcome_of("agrees", "not tested", own=False), False, 0, ""),
+        (outcome_of("agrees", own=False, faults=("x",)), False, 0, "something that is given cannot be used"),
+        (outcome_of("agrees", "not given", own=True), True, 0, ""),
+        (outcome_of("agrees", "disagrees", "disagrees", own=True), False, 2, ""),
+        (outcome_of("told", "not given", own=True), False, 0, "whatever agrees is what the solver was given"),
+        (outcome_of("not tested", own=True), False, 0, "no number that is given is tested"),
+        (outcome_of("agrees", own=True, faults=("x",)), False, 0, "something that is given cannot be used"),
+        (outcome_of("disagrees", own=True, faults=("x",)), False, 1, ""),
+    ],
+)
+def test_what_passes_what_disagrees_and_why_there_is_no_verdict(
+    outcome: Outcome, passed: bool, disagrees: int, why: str
+) -> None:
+    assert outcome.passed == passed
+    assert len(outcome.disagreements) == disagrees == outcome.counts["disagrees"]
+    assert {row.verdict for row in outcome.disagreements} <= {"disagrees"}
+    assert outcome.why_no_verdict == "" if why == "" else outcome.why_no_verdict.startswith(why)
+    # Held to the derived tolerance itself unless said otherwise.
+    assert outcome.factor == 1.0

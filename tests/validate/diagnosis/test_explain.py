@@ -496,3 +496,48 @@ def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
     motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
     found = diagnosis("double-wishbone", motion.numbers)[0]
     assert (found.kind, found.leftover <= 1.0) == ("branch", True), found
+
+
+def more(amount: float) -> Callable[[InputPart], InputPart]:
+    """Of laws that are polynomials or sines, a constant more."""
+
+    def change(law: InputPart) -> InputPart:
+        if law.sine is not None:
+            wave = law.sine.model_copy(update={"offset": law.sine.offset + amount})
+            return law.model_copy(update={"sine": wave})
+        if law.polynomial is None:
+            return law.model_copy(update={"constant": (law.constant or 0.0) + amount})
+        return law.model_copy(update={"polynomial": (law.polynomial[0] + amount, *law.polynomial[1:])})
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("given", "amount", "words"),
+    [
+        ("rack", 5.0, "the input rack is taken 5 mm more"),
+        ("arm_angle", -0.02, "the input arm_angle is taken 0.02 rad less"),
+    ],
+)
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+def test_an_input_that_is_off_by_a_constant_is_told_with_it(
+    name: str, given: str, amount: float, words: str
+) -> None:
+    first = diagnosis(name, with_input(name, given, more(amount)))[0]
+    assert (first.kind, first.leftover <= 1.0) == ("input", True)
+    assert first.words.endswith(words)
+
+
+def test_two_inputs_with_the_other_sign_are_told_as_two() -> None:
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["inputs"]["heave"] = {"polynomial": [2.0, 15.0, -40.0]}
+    ours = Scene.from_mapping(content, "both")
+    others = {name: scaled(-1.0)(ours.inputs[name]) for name in ("rack", "heave")}
+    theirs = ours.model_copy(update={"inputs": {**ours.inputs, **others}})
+    held, other = (formulation("pointcoord").solve(one) for one in (ours, theirs))
+    given = replace(held, formulation="mine", numbers=other.numbers)
+    outcome = compare_solutions(ours, given, held, "both")
+    first = explain(ours, given, held, outcome)[0]
+    words = "the input rack has the other sign, and the input heave has the other sign"
+    assert first.words.endswith(words), first
+    assert (first.kind, first.leftover <= 1.0) == ("input", True)

@@ -173,6 +173,19 @@ SHAPES: dict[str, str] = {
             *(f"{WORDS[n]},{cells(WHEELS[part, 'left'][n])},{cells(WHEELS[part, 'right'][n])}" for n in CAR),
         )
     ),
+    "headings under headings": "\n".join(
+        line
+        for part in ("rear", "front")
+        for line in (
+            f"{part.title()} axle,,,",
+            *(("Point,X,Y,Z",) if part == "rear" else ()),
+            *(
+                row
+                for side in ("left", "right")
+                for row in (f"{side.upper()},,,", *rows(str, WHEELS[part, side]))
+            ),
+        )
+    ),
     "wheels over the titles": "\n".join(
         [
             "," + ",".join(f"{' '.join(of)},," for of in WHEELS),
@@ -216,14 +229,17 @@ def test_a_lonely_r_is_right_beside_an_l_and_rear_beside_an_f(before: bool, tmp_
     assert len(found.unknown) == 2 * len(CAR)
 
 
-@pytest.mark.parametrize(("letters", "chosen"), [("FR", {"part": "rear"}), ("LR", {"side": "right"})])
-def test_a_letter_over_columns_is_read_by_the_other_letter(
-    letters: str, chosen: Mapping[str, str], tmp_path: Path
-) -> None:
-    first, second = (CAR, WHEELS["rear", "right"]) if letters == "FR" else (WHEELS["front", "left"], CAR)
+@pytest.mark.parametrize(("letters", "label"), [("FR", "part"), ("LR", "side")])
+def test_a_letter_over_columns_is_read_by_the_other_letter(letters: str, label: str, tmp_path: Path) -> None:
+    cars = {
+        "part": {"front": CAR, "rear": WHEELS["rear", "right"]},
+        "side": {"left": WHEELS["front", "left"], "right": CAR},
+    }[label]
     titles = "Point," + ",".join(f"{letter} {axis}" for letter in letters for axis in "XYZ")
-    both = [f"{WORDS[name]},{cells(first[name])},{cells(second[name])}" for name in CAR]
-    assert drawn(imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **chosen)) == second
+    both = [f"{WORDS[name]}," + ",".join(cells(car[name]) for car in cars.values()) for name in CAR]
+    for chosen, car in cars.items():
+        found = imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **{label: chosen})
+        assert drawn(found) == car
 
 
 def test_a_name_of_the_other_side_than_its_column_is_refused(tmp_path: Path) -> None:
@@ -447,6 +463,7 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
         ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
         ("-3.5\t529\t122.84", "line 1: has coordinates without a name"),
         (on_its_side() + "\n" + on_its_side(), "line 6: has a second table that lies on its side"),
+        ("Point;Left;Right\nLBJ;(1, 2, 3);(1, -2, 3)", "line 2: has 2 places for 'LBJ'"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
         (
             "VERSION\n  15\nTEMP_SETTINGS\n  14\nDouble Wishbone, Push Rod",

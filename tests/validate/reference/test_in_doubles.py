@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -10,16 +11,21 @@ import pytest
 from reference_cars import ReferenceCar
 
 from validate.reference.design import HEAVE, values_only
+from validate.reference.dual import Dual, slope_of
 from validate.reference.in_doubles import (
     Constant,
+    changes_of,
     inverse_of,
     jacobian_of,
     known_in_doubles,
     local_places,
     newton_step,
     order_of,
+    part_of,
     unknown_jets_of,
+    with_slopes,
 )
+from validate.reference.jet import Jet
 
 QUANTITIES = ("position", "velocity", "acceleration")
 
@@ -91,3 +97,39 @@ def test_a_constant_has_a_root_alone_and_after_a_quotient() -> None:
     assert Constant(9.0).sqrt() == 3.0
     assert (Constant(18.0) / 2.0).sqrt() == 3.0
     assert (36.0 / Constant(4.0)).sqrt() == 3.0
+
+
+@pytest.mark.parametrize("name", ["arm_angle", "rack"])
+def test_what_an_input_changes_is_the_proven_derivative(car: ReferenceCar, name: str) -> None:
+    proven, instant, design = car.sensitivities()[name, "value"], car.solve(car.inputs), car.design
+    laws = {n: np.array([[float(x) for x in law]] * 2) for n, law in car.inputs.items()}
+    places = {n: np.array([instant.position_as_float(n)] * 2) for n in design.names}
+    known = known_in_doubles(design, laws, 2)
+    still = values_only(known)
+    values = np.array(car.linkage.unknown_of(local_places(design, places), still), dtype=float)
+    inverse = inverse_of(jacobian_of(list(values), still))
+    jets = unknown_jets_of(list(values), inverse, known)
+    # The derivative of what the equations take for the input, by its own value.
+    step = 1e-6
+    ahead, behind = (
+        known_in_doubles(design, {**laws, name: laws[name] + [sign * step, 0.0, 0.0]}, 2).driven[name]
+        for sign in (1.0, -1.0)
+    )
+    slopes = [(part_of(ahead, d) - part_of(behind, d))[None] / (2.0 * step) for d in range(3)]
+    dual = Jet(*(Dual(part_of(known.driven[name], d), slopes[d]) for d in range(3)))
+    changed = replace(known, driven={**known.driven, name: dual})
+    found = changes_of(jets, inverse, changed, 1)
+    assert found.shape == (3, car.linkage.size, 1, 2)
+    points = car.linkage.points_of(with_slopes(jets, found), changed)
+    for d, quantity in enumerate(QUANTITIES):
+        exact = {n: np.array(getattr(proven, quantity)[n], dtype=float) for n in design.names}
+        largest = max(np.abs(v).max() for v in exact.values())
+        for n, vector in exact.items():
+            slope = [np.broadcast_to(slope_of(part_of(x, d)), (1, 2))[0] for x in points[n]]
+            # A central difference of numbers of the size of 1 over 1e-6 rounds to 1e-10.
+            np.testing.assert_allclose(
+                np.stack(slope, axis=-1) * float(design.unit), [vector] * 2, rtol=0.0, atol=1e-7 * largest
+            )
+    again = changes_of(jets, inverse, changed, 1, found[0])
+    np.testing.assert_allclose(again, found, rtol=1e-9, atol=1e-9 * np.abs(found).max())
+    assert np.array_equal(again[0], found[0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -12,8 +14,11 @@ from reference_cars import ReferenceCar
 
 from validate.reference import NotDecidedError, instant
 from validate.reference.candidates import every_candidate
-from validate.reference.exact import as_fraction, bits
+from validate.reference.certificate import certify, refine
+from validate.reference.exact import as_ball, as_fraction, bits
 from validate.reference.instant import prove_instant, prove_pose
+from validate.reference.linkage import Known
+from validate.reference.vectors import Scalar, Vector, minus
 
 ORDERS = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
@@ -68,3 +73,31 @@ def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
         # A ball keeps its radius to 30 bits, rounded up.
         assert found.error_bound["effects"] == pytest.approx(size * 1e-30, rel=1e-8)
         assert found.error_bound["effects"] >= Fraction(9, 10) * mpf("1e-30")
+
+
+def test_a_car_that_goes_fast_without_pushing_takes_no_more_digits(car: ReferenceCar) -> None:
+    # What is accelerated by nothing has centripetal parts all the same, which cancel.
+    found = car.solve({**car.still, "heave": (0, 10**6, 0)}, digits=60)
+    assert found.digits == 60
+    apart = minus(found.velocity["wheel_centre"], found.velocity["lower_arm_front"])
+    assert max(abs(x) for x in apart) <= found.error_bound["velocity"]
+    assert max(abs(x) for x in found.acceleration["wheel_centre"]) <= found.error_bound["acceleration"]
+
+
+def test_what_places_no_point_has_room_for_all_points_in_the_box(car: ReferenceCar) -> None:
+    box, seen = Fraction(1, 10**40), []
+    with ctx.workprec(bits(60)):
+        known, own = car.known(), car.solve(car.still).choices
+        start = car.linkage.unknown_of(car.linkage.candidate(known, own).points, known)
+
+        def implied(points: Mapping[str, Vector], given: Known) -> list[Scalar]:
+            seen.append(points)
+            return car.linkage.implied(points, given)
+
+        spied = replace(known, linkage=replace(car.linkage, implied=implied))
+        certify(refine(start, spied), spied, box)
+        ((near,),) = [tuple(seen)]
+        assert set(near) == set(car.design.names)
+        for name, place in near.items():
+            fixed = name in car.linkage.chassis
+            assert all((x.rad() < 1e-50) if fixed else (x.rad() >= as_ball(box)) for x in map(arb, place))

@@ -256,3 +256,34 @@ def test_a_closure_that_misses_says_which_input_helps() -> None:
 def test_a_doubt_is_told_in_six_digits() -> None:
     doubt = NotDecidedError("a claim", arb(1) / 3, "not 0")
     assert (doubt.value[:10], doubt.limit) == ("[0.333333 ", "not 0")
+
+
+def test_what_may_be_left_out_of_a_car_is_left_out_or_stood_in_for() -> None:
+    axes = (UP, RIGHT, "left")
+    whole = Design.from_points(OFF_AXIS, *axes)
+    few = {name: OFF_AXIS[name] for name in whole.linkage.required}
+    design = Design.from_points(few, *axes)
+    assert set(whole.names) - set(design.names) == {"wheel_axis_inner"}
+    assert design.table["rack_centre"] == design.table["tie_rod_inner"]
+    for name in few:
+        short = {other: place for other, place in few.items() if other != name}
+        with pytest.raises(BadInputError, match="exactly the names"):
+            Design.from_points(short, *axes)
+
+
+def test_a_link_without_length_is_told_to_have_none() -> None:
+    points = {**OFF_AXIS, "lower_ball_joint": OFF_AXIS["lower_arm_rear"]}
+    with pytest.raises(
+        BadInputError, match="distance from lower_ball_joint to lower_arm_rear is 0; allowed is more"
+    ):
+        Design.from_points(points, UP, RIGHT, "left")
+
+
+@pytest.mark.parametrize("size", [Fraction(1, 10**6), Fraction(1, 300), Fraction(1), Fraction(10**9)])
+def test_the_unit_of_a_design_is_a_power_of_two_near_its_size(size: Fraction) -> None:
+    points = {name: tuple(size * x for x in place) for name, place in OFF_AXIS.items()}
+    unit = Design.from_points(points, UP, RIGHT, "left").unit
+    assert unit.numerator & (unit.numerator - 1) == unit.denominator & (unit.denominator - 1) == 0
+    origin = points["lower_arm_front"]
+    reach = max(abs(x - o) for place in points.values() for x, o in zip(place, origin, strict=True))
+    assert Fraction(1, 2) < reach / unit < 2

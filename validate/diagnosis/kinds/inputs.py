@@ -1,18 +1,22 @@
-"""A wrong input: with the other sign, k times ours, or an angle as pi minus it; for the whole car.
+"""A wrong input: with the other sign, k times ours, so much more, or an angle as pi minus it; or two of them.
 
-k is found by least squares of the numbers of one unit: from how they change with it, from step to step, by
-solving the car's motion with k times the input.
+k, or how much more, is found by least squares of the numbers of one unit: from how they change with it, from
+step to step, by solving the car's motion with that input. It is for the whole car.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, simulate
 from pointcoord.scene.scene_file import InputPart
+from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import close_drawing
 from validate.diagnosis.evidence import Evidence, Row
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds.hardpoint import looked_at
@@ -29,6 +33,10 @@ FEW = 64  # instants that a wrong input is looked for at
 PROMISING = 0.1
 # What a step must leave at most, to go on.
 FALLING = 0.9
+
+
+# Of an input's drawn value: how near to it what is missing is meant to be it.
+NEAR = 1e-5
 
 
 class Inputs(Kind):
@@ -48,26 +56,91 @@ class Inputs(Kind):
         if not np.isfinite(theirs).all():
             return
         apart = float(np.linalg.norm(theirs - ours))
+        explained = False
+        every: dict[str, list[tuple[str, InputPart]]] = {}
         for name, law in evidence.scene.inputs.items():
-            if not np.abs(rates(law, few.times)[:, 0]).max() > 0.0:
-                continue
-            known = [("has the other sign", changed(law, -1.0))]
+            known = []
+            moves = np.abs(rates(law, few.times)[:, 0]).max() > 0.0
+            if moves:
+                known.append(("has the other sign", changed(law, -1.0)))
             if units[name] == "rad":
                 known.append(("is taken as pi minus it", changed(law, -1.0, np.pi)))
+            every[name] = known
             done = False
             for words, other in known:
-                numbers = _read(few, name, other, looked)
+                numbers = _read(few, {name: other}, looked)
                 if numbers is None or np.linalg.norm(theirs - numbers) > PROMISING * apart:
                     continue
-                rows = _rows(evidence, name, other)
+                rows = _rows(evidence, {name: other})
                 if rows is not None:
                     yield Hypothesis(self.name, (name, words), f"the input {name} {words}", rows, whole=True)
-                    done |= all(evidence.left(row, *rows[row]) <= 1.0 for row in looked)
-            factor = None if done else _factor(few, name, law, looked, theirs)
-            rows = None if factor is None else _rows(evidence, name, changed(law, factor))
-            if rows is not None:
-                words = f"the input {name} is taken {factor:.6g} times"
-                yield Hypothesis(self.name, (name, "times"), words, rows, 1, 1.5, whole=True)
+                    done |= _explains(evidence, rows, looked)
+            found: tuple[tuple[str, float | None, InputPart | None, float], ...] = ()
+            if not done:
+                factor = _found(few, name, partial(changed, law), 1.0, looked, theirs)
+                times = None if factor is None or not moves else changed(law, factor)
+                more = _found(few, name, partial(changed, law, 1.0), 0.0, looked, theirs)
+                added = None if more is None else changed(law, 1.0, more)
+                found = (("times", factor, times, 1.5), ("more", more, added, 1.4))
+            for what, amount, other_law, cost in found:
+                rows = None if other_law is None else _rows(evidence, {name: other_law})
+                if rows is None or amount is None:
+                    continue
+                words = f"is taken {amount:.6g} times" if what == "times" else _offset(evidence, name, amount)
+                words = f"the input {name} {words}"
+                yield Hypothesis(self.name, (name, what), words, rows, 1, cost, whole=True)
+                done |= _explains(evidence, rows, looked)
+            explained |= done
+        if not explained:
+            yield from self._pairs(evidence, few, every, looked, theirs, apart)
+
+    def _pairs(
+        self,
+        evidence: Evidence,
+        few: Evidence,
+        every: Mapping[str, Sequence[tuple[str, InputPart]]],
+        looked: Sequence[Row],
+        theirs: Array,
+        apart: float,
+    ) -> Iterator[Hypothesis]:
+        """Known changes of two inputs at once."""
+        for first, second in combinations(every, 2):
+            for (words, one), (other_words, two) in product(every[first], every[second]):
+                laws = {first: one, second: two}
+                numbers = _read(few, laws, looked)
+                if numbers is None or np.linalg.norm(theirs - numbers) > PROMISING * apart:
+                    continue
+                rows = _rows(evidence, laws)
+                if rows is not None:
+                    key = (first, words, second, other_words)
+                    said = f"the input {first} {words}, and the input {second} {other_words}"
+                    yield Hypothesis(self.name, key, said, rows, cost=1.8, whole=True)
+
+
+def _explains(evidence: Evidence, rows: Mapping[Row, tuple[Array, Array]], looked: Sequence[Row]) -> bool:
+    return all(evidence.left(row, *rows[row]) <= 1.0 for row in looked)
+
+
+def _offset(evidence: Evidence, name: str, more: float) -> str:
+    """An input that is off by a constant, in words: from the drawing on, if that is it."""
+    unit = evidence.scene.mechanism.topology.input_units[name]
+    drawn = _drawn(evidence, name)
+    if drawn is not None and abs(more + drawn) <= NEAR * abs(drawn):
+        return f"is taken from the drawing on: {abs(drawn):.6g} {unit} are missing"
+    if drawn is not None and abs(more - drawn) <= NEAR * abs(drawn):
+        return f"is taken from the drawing on, and is not: {abs(drawn):.6g} {unit} are too many"
+    return f"is taken {abs(more):.6g} {unit} {'more' if more > 0.0 else 'less'}"
+
+
+def _drawn(evidence: Evidence, name: str) -> float | None:
+    """An input of the closed drawing; None of one that does not close, or that moves the chassis."""
+    try:
+        mechanism = scene_mechanism(evidence.scene)
+        y = close_drawing(mechanism).y
+        read = mechanism.input_values(y[mechanism.map.unknowns :])
+    except PointcoordError:
+        return None
+    return float(np.ravel(read[name])[0]) if name in read else None
 
 
 def changed(law: InputPart, factor: float, more: float = 0.0) -> InputPart:
@@ -87,17 +160,17 @@ def changed(law: InputPart, factor: float, more: float = 0.0) -> InputPart:
     return law.model_copy(update={"constant": factor * (law.constant or 0.0) + more})
 
 
-def _motion(evidence: Evidence, name: str, law: InputPart) -> Motion | None:
-    """The car's motion by another input, with every point; None where it cannot follow it."""
+def _motion(evidence: Evidence, laws: Mapping[str, InputPart]) -> Motion | None:
+    """The car's motion by other inputs, with every point; None where it cannot follow them."""
     scene = evidence.solved.fine
     try:
-        return simulate(scene.model_copy(update={"inputs": {**scene.inputs, name: law}, "points": None}))
+        return simulate(scene.model_copy(update={"inputs": {**scene.inputs, **laws}, "points": None}))
     except PointcoordError:
         return None
 
 
-def _rows(evidence: Evidence, name: str, law: InputPart) -> dict[Row, tuple[Array, Array]] | None:
-    motion = _motion(evidence, name, law)
+def _rows(evidence: Evidence, laws: Mapping[str, InputPart]) -> dict[Row, tuple[Array, Array]] | None:
+    motion = _motion(evidence, laws)
     if motion is None:
         return None
     samples = motion.at(evidence.times)
@@ -114,9 +187,9 @@ def _rows(evidence: Evidence, name: str, law: InputPart) -> dict[Row, tuple[Arra
     return rows
 
 
-def _read(evidence: Evidence, name: str, law: InputPart, rows: Sequence[Row]) -> Array | None:
-    """Numbers of some rows by another input, one after the other; None where there are none."""
-    motion = _motion(evidence, name, law)
+def _read(evidence: Evidence, laws: Mapping[str, InputPart], rows: Sequence[Row]) -> Array | None:
+    """Numbers of some rows by other inputs, one after the other; None where there are none."""
+    motion = _motion(evidence, laws)
     if motion is None:
         return None
     numbers = motion.at(evidence.times).numbers
@@ -125,30 +198,35 @@ def _read(evidence: Evidence, name: str, law: InputPart, rows: Sequence[Row]) ->
     return np.concatenate([numbers[quantity][of].ravel() for quantity, of in rows])
 
 
-def _factor(
-    evidence: Evidence, name: str, law: InputPart, rows: Sequence[Row], theirs: Array
+def _found(
+    evidence: Evidence,
+    name: str,
+    law_of: Callable[[float], InputPart],
+    here_at: float,
+    rows: Sequence[Row],
+    theirs: Array,
 ) -> float | None:
-    """The factor of least squares; None where none leaves much less than ours."""
-    before, factor = 1.0 - STEP, 1.0
-    old, here = (_read(evidence, name, changed(law, k), rows) for k in (before, factor))
+    """The parameter of a law by least squares, from where it is ours; None where it leaves little less."""
+    before, amount = here_at - STEP, here_at
+    old, here = (_read(evidence, {name: law_of(k)}, rows) for k in (before, amount))
     if old is None or here is None:
         return None
     first = rest = float(np.linalg.norm(theirs - here))
     for _ in range(STEPS):
-        slope = (here - old) / (factor - before)
+        slope = (here - old) / (amount - before)
         square = float(slope @ slope)
         change = float(slope @ (theirs - here)) / square if square > 0.0 else np.nan
         if not np.isfinite(change) or change == 0.0:
             break
-        new = _read(evidence, name, changed(law, factor + change), rows)
+        new = _read(evidence, {name: law_of(amount + change)}, rows)
         left = np.inf if new is None else float(np.linalg.norm(theirs - new))
         if new is None or not left <= FALLING * rest:
             break
-        before, factor, old, here, rest = factor, factor + change, here, new, left
+        before, amount, old, here, rest = amount, amount + change, here, new, left
     if rest > PROMISING * first:
         return None
-    meant = float(f"{factor:.6g}")
-    return meant if abs(meant - factor) <= MEANT * abs(factor) else factor
+    meant = float(f"{amount:.6g}")
+    return meant if abs(meant - amount) <= MEANT * abs(amount) else amount
 
 
 KIND = Inputs()

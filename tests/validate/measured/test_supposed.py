@@ -1,0 +1,143 @@
+"""A file whose independent column is meant otherwise than it is said: that is what explains it, first."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, solve_poses
+from validate.measured.comparing import DataOutcome, compare_results
+from validate.measured.errors import ResultsError
+from validate.measured.mapping import understood
+from validate.measured.reading import columns_of_text
+
+Array = NDArray[np.float64]
+CAR = Scene.load("double-wishbone")
+PLACES = CAR.mechanism.points
+
+
+def drawn_angle() -> float:
+    front, ball = (np.array(PLACES[name]) for name in ("lower_arm_front", "lower_ball_joint"))
+    return float(np.arccos((ball - front) @ np.array(CAR.mechanism.up) / np.linalg.norm(ball - front)))
+
+
+def at(angle: Array, rack: Array) -> dict[str, Array]:
+    """Places and angles by hand, deg and mm, where the arm and the rack are so."""
+    place = solve_poses(CAR, {"arm_angle": angle, "rack": rack}).position
+    x, y, z = (place["wheel_centre"] - place["wheel_axis_inner"]).T
+    numbers = {"camber [deg]": -np.degrees(np.arctan2(z, y)), "toe [deg]": -np.degrees(np.arctan2(x, y))}
+    rise = place["wheel_centre"][:, 2] - PLACES["wheel_centre"][2]
+    return numbers | {"position.wheel_centre.x [mm]": place["wheel_centre"][:, 0], "rise": rise}
+
+
+def printed(over: dict[str, Array], numbers: dict[str, Array]) -> tuple[str, dict[str, Any]]:
+    """A file and its map: numbers of five decimals, over columns that are exact as written."""
+    columns = {**over, **numbers}
+    lines = [",".join(columns)]
+    for row in zip(*columns.values(), strict=True):
+        lines.append(",".join(f"{v:.10f}" if i < len(over) else f"{v:.5f}" for i, v in enumerate(row)))
+    digits = {name: 0.0 if name in over else 1e-5 for name in columns}
+    parts: dict[str, Any] = {n.partition(" ")[0]: {"printed": last} for n, last in digits.items()}
+    return "\n".join(lines), {"columns": parts}
+
+
+def compared(table: str, map: dict[str, Any]) -> DataOutcome:
+    return compare_results(understood(columns_of_text(table, "mine.csv"), map, CAR, "map.toml"), CAR, "car")
+
+
+RACKS = np.linspace(-40.0, 43.7, 18)
+TURNS = drawn_angle() + np.linspace(-0.12, 0.1, 18)
+HOME = drawn_angle()
+
+
+@pytest.mark.parametrize(
+    ("head", "change", "words"),
+    [
+        ("rack [mm]", lambda s: -s, "rack has the other sign"),
+        ("rack [mm]", lambda s: -s / 25.4, "rack is in in, not in mm, and has the other sign"),
+        ("rack [mm]", lambda s: s + 12.3, "rack counts from another zero: 12.3 mm are too many"),
+        ("rack [cm]", lambda s: s / 10.0 - 0.5, "rack counts from another zero: 0.5 cm are missing"),
+        (
+            "rack [mm]",
+            lambda s: 4.0 - s,
+            "rack counts the other way, and counts from another zero: 4 mm are missing",
+        ),
+    ],
+)
+def test_a_rack_that_is_meant_otherwise_is_told_first(
+    head: str, change: Callable[[Array], Array], words: str
+) -> None:
+    numbers = at(np.full_like(RACKS, HOME), RACKS)
+    del numbers["rise"]
+    found = compared(*printed({head: change(RACKS)}, numbers))
+    first = found.explanations[0]
+    assert (first.words, first.kind) == (words, "input")
+    assert first.leftover <= 1.0
+    assert found.outcome.explanations[0] == first
+
+
+@pytest.mark.parametrize(
+    ("head", "change", "words"),
+    [
+        ("arm_angle [rad]", lambda a: a - HOME, "arm_angle counts from the drawing on"),
+        ("arm_angle [rad]", lambda a: np.pi - a, "arm_angle is pi minus ours"),
+        ("arm_angle [rad]", np.degrees, "arm_angle is in deg, not in rad"),
+        (
+            "arm_angle [rad]",
+            lambda a: np.degrees(a - HOME),
+            "arm_angle is in deg, not in rad, and from the drawing on",
+        ),
+        ("arm_angle [rad]", lambda a: a + 0.03, "arm_angle counts from another zero: 0.03 rad are too many"),
+    ],
+)
+def test_an_angle_that_is_meant_otherwise_is_told_first_even_where_no_row_can_be_reached(
+    head: str, change: Callable[[Array], Array], words: str
+) -> None:
+    numbers = at(TURNS, np.zeros_like(TURNS))
+    del numbers["rise"]
+    table, map = printed({head: change(TURNS)}, numbers)
+    try:
+        said = compared(table, map).explanations[0].words
+    except ResultsError as error:
+        # Of columns of which no row can be reached.
+        said = error.allowed.removeprefix("rows that the scene's car can have; they nearly are if ")
+    assert said == words
+
+
+@pytest.mark.parametrize(
+    ("head", "change", "words"),
+    [
+        ("bump [mm]", lambda z: z / 1000.0, "bump is in m, not in mm"),
+        ("bump [mm]", lambda z: z + 7.5, "bump counts from another zero: 7.5 mm are too many"),
+    ],
+)
+def test_a_travel_that_is_meant_otherwise_is_told_first(
+    head: str, change: Callable[[Array], Array], words: str
+) -> None:
+    numbers = at(TURNS, np.zeros_like(TURNS))
+    rise = numbers.pop("rise")
+    table, map = printed({head: change(rise)}, numbers)
+    map["columns"]["bump"]["is"] = "travel.wheel_centre"
+    found = compared(table, map)
+    assert found.explanations[0].words == words
+    assert found.explanations[0].leftover <= 1.0
+
+
+def test_two_columns_with_the_other_sign_are_told_together() -> None:
+    heave = 10.0 + 0.3 * RACKS + 0.01 * RACKS**2
+    numbers = at(np.full_like(RACKS, HOME), RACKS)
+    numbers["position.wheel_centre.z [mm]"] = numbers.pop("rise") + PLACES["wheel_centre"][2] + heave
+    found = compared(*printed({"rack [mm]": -RACKS, "heave [mm]": -heave}, numbers))
+    assert found.explanations[0].words == "rack has the other sign, and heave has the other sign"
+    assert found.explanations[0].leftover <= 1.0
+
+
+def test_another_fault_is_no_other_zero() -> None:
+    numbers = at(np.full_like(RACKS, HOME), RACKS)
+    del numbers["rise"]
+    numbers["toe [deg]"] = -numbers["toe [deg]"]
+    found = compared(*printed({"rack [mm]": RACKS}, numbers))
+    assert found.explanations[0].words == "toe: the other sign"
+    assert not [one for one in found.explanations if one.kind == "input"]
