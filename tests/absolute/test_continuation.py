@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import absolute
 import absolute.continuation
 import absolute.continue_to
-from absolute.continuation import BlockedError, Path
+from absolute.continuation import BlockedError, Path, follow
 from absolute.continue_to import continue_to
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
@@ -146,3 +146,34 @@ def test_however_far_a_goal_is_the_way_ends_where_the_mechanism_locks(
     # Halves down to the longest step, and from there down to sqrt(eps); some tens of steps between, of which
     # some are tried twice. Both goals.
     assert count < math.log2(far) + 2 * (26 + 100)
+
+
+@pytest.mark.parametrize("way", [3.0, 30.0])
+def test_a_way_that_no_step_leads_along_is_given_up_at_the_root_of_eps(
+    strut: absolute.Model, monkeypatch: pytest.MonkeyPatch, way: float
+) -> None:
+    mechanism = Mechanism(strut)
+    pose, _ = assemble(mechanism)
+    begin, zeros = mechanism.drawn_inputs.tolist(), [0.0, 0.0]
+    sizes = []
+
+    def watched(within: Mechanism, start: Pose, rate: Array, second: Array) -> tuple[Array, Array]:
+        found = accelerations(within, start, rate, second)
+        sizes.append(float(np.linalg.norm(found[0])))
+        return found
+
+    monkeypatch.setattr(absolute.continuation, "accelerations", watched)
+    monkeypatch.setattr(absolute.continuation, "correct", lambda *_: Corrected(None, 2))
+    with pytest.raises(BlockedError) as caught:
+        follow(
+            mechanism,
+            pose,
+            lambda share: mechanism.targets([begin[0], begin[1] + share * way], [0.0, way], zeros),
+        )
+    # Halves, the last of which is the first at or below it.
+    root = math.sqrt(np.finfo(float).eps)
+    assert sizes[-1] <= root < sizes[-2]
+    assert sizes[-2] == pytest.approx(2.0 * sizes[-1], rel=1e-12, abs=0)
+    assert caught.value.share == 0.0
+    assert caught.value.pose is pose
+    assert caught.value.corrections == 2 * len(sizes)

@@ -110,3 +110,24 @@ def test_the_residual_is_told_in_millimetres(
     points = np.array(list(model.points.values()))
     size = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
     assert motion.residual == pytest.approx(off * size, rel=1e-12)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_rates_of_a_car_at_rest_are_not_off_at_all(model: absolute.Model, known: bool) -> None:
+    # No row has a rate that may be rounded, however far the pose itself is off.
+    drawn = dict(zip(model.inputs, Mechanism(model).drawn_inputs.tolist(), strict=True))
+    motion = absolute.solve(
+        model,
+        {name: np.array([[value, 0.0, 0.0]]) for name, value in drawn.items()},
+        errors=True,
+        input_errors=None if known else {name: np.array([[1e-9, 0.0, 0.0]]) for name in drawn},
+    )
+    assert all((error > 0.0).all() for error in motion.position_error.values())
+    for errors in (
+        motion.velocity_error,
+        motion.acceleration_error,
+        motion.angular_velocity_error,
+        motion.angular_acceleration_error,
+    ):
+        assert errors
+        assert not any(error.any() for error in errors.values())

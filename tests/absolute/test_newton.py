@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import absolute
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
-from absolute.newton import correct, seek
+from absolute.newton import correct, inverse, seek
 from absolute.refine import refine
 from absolute.tracking import Found
 
+Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 
 
@@ -65,3 +67,45 @@ def test_a_pose_is_sought_by_short_steps_as_far_as_two_dozen_lead(far: float, fo
     pose = seek(mechanism, start, mechanism.targets(mechanism.drawn_inputs.tolist(), [0.0], [0.0])[0])
     assert (pose is not None) is found
     assert pose is None or np.abs(pose.q - mechanism.drawn).max() <= 8 * EPS
+
+
+def test_corrections_that_led_nowhere_are_counted_too(
+    strut: absolute.Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mechanism = Mechanism(strut)
+    pose, _ = assemble(mechanism)
+    angle, rack = mechanism.drawn_inputs.tolist()
+    made = []
+
+    def watched(q: Array, rotation: Array, step: Array) -> Array:
+        made.append(step)
+        return moved(q, rotation, step)
+
+    moved = mechanism.moved
+    monkeypatch.setattr(mechanism, "moved", watched)
+    # Rows that are called straight: one correction would be enough, but the next is far above rounding.
+    outcome = correct(
+        mechanism, pose.q, mechanism.targets([angle, rack + 20.0], [0.0] * 2, [0.0] * 2)[0], np.inf
+    )
+    assert outcome.pose is None
+    assert outcome.corrections == len(made) == 1
+
+
+def test_a_condition_number_is_one_over_its_reciprocal_and_infinite_where_that_is_none() -> None:
+    assert inverse(0.25) == 4.0
+    assert inverse(1e-300) == pytest.approx(1e300, rel=2 * EPS)
+    assert inverse(0.0) == inverse(float("nan")) == np.inf
+
+
+@pytest.mark.parametrize("moved", ["arm_angle", "rack"])
+def test_an_instant_that_corrections_do_not_close_is_refused_with_the_input_that_leads_there(
+    strut: absolute.Model, monkeypatch: pytest.MonkeyPatch, moved: str
+) -> None:
+    drawn = dict(zip(strut.inputs, Mechanism(strut).drawn_inputs.tolist(), strict=True))
+    asked = {**drawn, moved: drawn[moved] + 0.5}
+    monkeypatch.setattr(absolute.refine, "MOST_CORRECTIONS", 0)
+    with pytest.raises(absolute.SingularError, match="instant 0: Newton's corrections stall") as caught:
+        absolute.solve(strut, {name: np.array([[value, 0.0, 0.0]]) for name, value in asked.items()})
+    assert caught.value.instant == 0
+    assert caught.value.inputs == asked
+    assert caught.value.limit == moved

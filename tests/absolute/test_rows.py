@@ -248,3 +248,14 @@ def test_slopes_of_targets_are_their_derivatives(strut: absolute.Model) -> None:
     for k in range(7):
         one = mechanism.targets(*series[k].tolist())
         assert np.allclose(one, mechanism.target_series(series)[:, k], rtol=4 * EPS, atol=0)
+
+
+def test_one_number_is_never_spread_over_several_inputs(strut: absolute.Model) -> None:
+    mechanism = Mechanism(strut)
+    two = mechanism.drawn_inputs.tolist()
+    for lists in ((two, [0.0], two), (two, two, [0.0]), (two[:1], two[:1], two)):
+        with pytest.raises(ValueError, match="zip"):
+            mechanism.targets(*lists)
+    for values in (two[:1], [*two, 0.0]):
+        with pytest.raises(ValueError, match="zip"):
+            mechanism.named(values)
