@@ -101,7 +101,10 @@ def study(
         MissingPackage: Cosmic Ray, coverage or pytest is not installed.
     """
     wanted = _wanted(plan, tuple(modules))
-    made = {name: mutants(name, source_of(plan.root, name).read_text("utf-8")) for _, name in wanted}
+    made = {}
+    for done, (_, name) in enumerate(wanted, 1):
+        made[name] = mutants(name, source_of(plan.root, name).read_text("utf-8"))
+        console.progress(f"mutants of {done} of {len(wanted)} modules are made")
     planned = {name: sampled(made[name], None if whole else part.sample) for part, name in wanted}
     every = [mutant for found in planned.values() for mutant in found]
     chosen = set(every if sample is None else random.Random(seed).sample(every, min(sample, len(every))))
