@@ -127,6 +127,21 @@ def test_a_patch_of_another_assembly_is_given_up_at_its_seam(monkeypatch: pytest
     assert [reason for _, reason in seamed.given_up] == [SEAM]
 
 
+@pytest.mark.parametrize("corner", [(0, 0), (128, 0), (0, 128), (128, 128)])
+def test_where_no_path_leads_far_boxes_are_entered_from_their_neighbours(
+    monkeypatch: pytest.MonkeyPatch, corner: tuple[int, int]
+) -> None:
+    mechanism = PAPER_STRUT.mechanism()
+    domain = Domain(mechanism, {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}, 6)
+    arm_angle, rack = domain.inputs_at(np.array(corner))
+    start = assemble(mechanism, {"arm_angle": arm_angle, "rack": rack})
+    monkeypatch.setattr(flooding, "STEPS", 1)
+    found = flood(domain, 8, Limits(1e-6), (np.array(corner), start.y), 4096)
+    assert found.given_up == ()
+    assert found.patches is not None
+    assert np.prod(found.patches.high - found.patches.low, axis=-1).sum() == 64**2
+
+
 def test_a_range_that_the_drawing_cannot_reach_is_refused_with_what_stops_it() -> None:
     scene = scene_of(PAPER_STRUT)
     last = standing(scene).reach["rack"][1].value
