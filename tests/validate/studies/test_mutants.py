@@ -180,23 +180,6 @@ def test_the_projects_plan_and_reasons_are_read_and_speak_of_mutated_modules() -
     assert {change.module for change in read_reasons()} <= mutated
 
 
-def test_what_survives_one_file_of_tests_is_tried_again_when_its_part_has_another(tmp_path: Path) -> None:
-    for name in ("toy.py", "test_one.py", "test_other.py"):
-        (tmp_path / name).write_text("")
-    alone = Part(("toy",), ("test_one.py",))
-    both = Part(("toy",), ("test_one.py", "test_other.py"))
-    plan, lived, died = Plan(tmp_path, (both,), ()), Change("toy", "", "1", "2"), Change("toy", "", "1", "0")
-    for change, verdict in (
-        (lived, Verdict("survived", "", 0.0)),
-        (died, Verdict("killed", "test_one.py::test", 0.0)),
-    ):
-        Store(plan, tmp_path / "store").keep_verdict(alone, change, verdict)
-    store = Store(plan, tmp_path / "store")
-    assert store.verdict(alone, lived) == Verdict("survived", "", 0.0)
-    assert store.verdict(both, lived) is None
-    assert store.verdict(both, died) == store.verdict(alone, died)
-
-
 def test_a_sample_is_drawn_by_name_and_grows_with_its_count() -> None:
     every = mutants("toy.sum", SUM)
     assert sampled(every, None) == every
@@ -224,3 +207,42 @@ def test_a_part_with_a_sample_is_tried_in_part_unless_the_whole_is_asked_for(
     status, _, errors = run()
     assert status == 2
     assert "sample = 0" in errors
+
+
+def test_what_survived_one_file_of_tests_is_tried_again_with_two_and_what_it_killed_is_not(
+    tmp_path: Path,
+) -> None:
+    for name in ("package/__init__.py", "package/module.py", "test_one.py", "test_two.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("", encoding="utf-8")
+    few, more = (
+        Part(("package.module",), tests) for tests in (("test_one.py",), ("test_one.py", "test_two.py"))
+    )
+    plan, path = Plan(tmp_path, (few, more), ()), tmp_path / "store.jsonl"
+    store = Store(plan, path)
+    changes = {result: Change("package.module", "", "a", result) for result in ("killed", "survived")}
+    kept = {
+        "killed": Verdict("killed", "test_one.py::test_it", 1.0),
+        "survived": Verdict("survived", "", 1.0),
+    }
+    for result, change in changes.items():
+        store.keep_verdict(few, change, kept[result])
+    again = Store(plan, path)
+    assert {result: again.verdict(few, change) for result, change in changes.items()} == kept
+    assert again.verdict(more, changes["killed"]) == kept["killed"]
+    assert again.verdict(more, changes["survived"]) is None
+
+
+def test_a_verdict_is_of_the_tests_as_they_were_when_the_run_began(tmp_path: Path) -> None:
+    for name in ("package/__init__.py", "package/module.py", "test_one.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("", encoding="utf-8")
+    part = Part(("package.module",), ("test_one.py",))
+    plan, path = Plan(tmp_path, (part,), ()), tmp_path / "store.jsonl"
+    change = Change("package.module", "", "a", "b")
+    store = Store(plan, path)
+    assert store.verdict(part, change) is None
+    # A test that is mended while the trials of the old one go on.
+    (tmp_path / "test_one.py").write_text("def test_it(): ...", encoding="utf-8")
+    store.keep_verdict(part, change, Verdict("survived", "", 1.0))
+    assert Store(plan, path).verdict(part, change) is None

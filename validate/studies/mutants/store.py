@@ -27,6 +27,8 @@ class Store:
         self.plan, self.path = plan, path
         self._verdicts: dict[tuple[str, Change], Verdict] = {}
         self._baselines: dict[str, Baseline] = {}
+        # As they were at first: what is edited during a run is not what its trials began with.
+        self._contents: dict[Path, bytes] = {}
         if path is None or not path.exists():
             return
         for number, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -101,5 +103,7 @@ class Store:
         sum_of_all = hashlib.sha256()
         for name in names:
             file = self.plan.root / name if name.endswith(".py") else source_of(self.plan.root, name)
-            sum_of_all.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
+            if file not in self._contents:
+                self._contents[file] = file.read_bytes()
+            sum_of_all.update(name.encode() + b"\0" + self._contents[file] + b"\0")
         return sum_of_all.hexdigest()[:16]
