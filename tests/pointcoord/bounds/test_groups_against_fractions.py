@@ -180,6 +180,21 @@ def test_rates_of_neighbours_lie_within_their_radii(off: float, doubt: float, ne
     assert (closest > (0.5 if off + doubt > 1e-12 else 0.02)).all()
 
 
+def test_of_every_coordinate_of_a_group_its_own_rounding_is_expected() -> None:
+    """Also of the poses whose coordinate is larger than the one of the pose that they are seen from."""
+    for seed in SEEDS:
+        case = Case.of(seed, U, 0.0)
+        state, moving = case.states[0], case.terms.moving
+        expected = state.anchor.radius[1].T[moving, :, None]
+        size = np.abs(case.exact[0][moving]).astype(float)
+        assert (expected >= U * size).all(), seed
+        # Of what is driven, and exact, no more: once for where it is seen from, twice for how far from there.
+        driven = np.isin(moving, DRIVEN)
+        far = np.abs(state.change[:-1]).max(axis=-1, keepdims=True)
+        most = U * (size.min(axis=-1, keepdims=True) + 3.1 * far)
+        assert (expected <= most)[driven].all(), seed
+
+
 @pytest.mark.parametrize("off", [1e-9, 1e-5])
 def test_poses_lie_within_what_is_left_of_them(off: float) -> None:
     closest = 0.0

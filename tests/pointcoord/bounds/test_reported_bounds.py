@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.bounds.reported_bounds import Numbers, unit_of_time
 from pointcoord.results.motion import Motion
 
 Array = NDArray[np.float64]
@@ -95,3 +95,25 @@ def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are() -
         factor = 2.0 ** (300 * power.get(quantity, 0))
         for other, scale in ((slow, 1.0 / factor), (fast, factor)):
             assert other[quantity, name] == pytest.approx(scale * bound, rel=1e-3, abs=scale * 1e-25)
+
+
+def test_in_its_unit_of_time_the_fastest_of_a_motion_is_between_a_half_and_one() -> None:
+    """Rates, and roots of accelerations, of whatever size and sign."""
+    rng = np.random.default_rng(2)
+    count, size = 400, 6
+    speed, root = 10.0 ** rng.uniform(-100.0, 100.0, (2, count, 1))
+    shares = rng.uniform(-0.9, 0.9, (2, count, size))
+    shares[:, np.arange(count), rng.integers(size, size=count)] = rng.choice([-1.0, 1.0], (2, count))
+    rate, acceleration = speed * shares[0], root**2 * shares[1]
+    unit = unit_of_time([rng.normal(size=(count, size)), rate, acceleration])
+    assert (np.frexp(unit)[0] == 0.5).all()  # a power of two
+    fastest = np.maximum(speed, root)[:, 0] * unit
+    assert ((fastest > 0.5 - 1e-12) & (fastest < 1.0 + 1e-12)).all()
+
+
+@pytest.mark.parametrize("rate", [0.0, np.inf, np.nan, 5e-324, 1e308])
+def test_every_motion_has_a_unit_of_time_whose_square_is_a_number(rate: float) -> None:
+    (unit,) = unit_of_time([np.ones((1, 3)), np.full((1, 3), rate)])
+    assert np.frexp(unit)[0] == 0.5
+    assert 0.0 < unit**2 < np.inf
+    assert 0.0 < unit**-2 < np.inf
