@@ -303,10 +303,26 @@ def _trial(plan: Plan, module: str, source: str, trial: Trial) -> dict[str, Any]
     started = time.process_time()
     changed = ChangedModule(module, source_of(plan.root, module), source)
     sys.meta_path.insert(0, changed)
+    _join_packages(plan)
     by = _pytest(plan, sorted({test.split("::")[0] for test in trial.order}), trial)
     loaded = sys.modules.get(module)
     unchanged = loaded is not None and loaded.__loader__ is not changed
     return {"by": by, "seconds": time.process_time() - started, "unchanged": unchanged}
+
+
+def _join_packages(plan: Plan) -> None:
+    """Packages that are imported anew have their modules that were loaded before as attributes again.
+
+    Importing a module that is loaded does not make it one: `import package.module` would fail to be read.
+    """
+    for name, module in list(sys.modules.items()):
+        parent, _, last = name.rpartition(".")
+        if parent and name.split(".")[0] in plan.packages and parent not in sys.modules:
+            # What the change breaks is told when the tests import it.
+            with contextlib.suppress(Exception):
+                setattr(importlib.import_module(parent), last, module)
+        elif parent and name.split(".")[0] in plan.packages and not hasattr(sys.modules[parent], last):
+            setattr(sys.modules[parent], last, module)
 
 
 def _measured(plan: Plan, part: Part, plugin: type[Measuring]) -> dict[str, Any]:
