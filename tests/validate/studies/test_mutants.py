@@ -246,3 +246,19 @@ def test_a_verdict_is_of_the_tests_as_they_were_when_the_run_began(tmp_path: Pat
     (tmp_path / "test_one.py").write_text("def test_it(): ...", encoding="utf-8")
     store.keep_verdict(part, change, Verdict("survived", "", 1.0))
     assert Store(plan, path).verdict(part, change) is None
+
+
+def test_a_module_that_a_package_had_before_its_change_is_one_of_its_attributes_still(
+    toy: Path, run: Callable[..., tuple[int, dict[str, Any], str]]
+) -> None:
+    # The package cannot be loaded without the changed module, the other module can.
+    (toy / "toy" / "__init__.py").write_text(
+        "import toy.other\nfrom toy.sum import total\n", encoding="utf-8"
+    )
+    (toy / "toy" / "other.py").write_text("NOTHING = 0.0\n", encoding="utf-8")
+    tests = "import toy.other\nfrom toy.sum import opposite\n\n\ndef test_opposite():\n"
+    tests += "    assert opposite(toy.other.NOTHING) == 0.0\n"
+    (toy / "tests" / "test_sum.py").write_text(tests, encoding="utf-8")
+    found = run()[1]
+    fates = {row["change"]["before"]: (row["result"], row["by"]) for row in found["mutants"]}
+    assert fates["return -x"] == ("survived", "")
