@@ -587,11 +587,12 @@ class _Import:
             (self.format.side, "its format"),
         ):
             if said and said != seen:
-                raise self.refuse(
-                    f"has a {said} wheel by {by}, but {where}",
-                    f"--axes with the other of left and right than {axes.option}, or the {seen} side; "
-                    "--mirror makes the other wheel",
-                )
+                allowed = f"--axes with the other of left and right than {axes.option}, or the {seen} side"
+                # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
+                if by == "--side" and label != said:
+                    of = "--side is of the file's wheel: " if self.choices.mirror else ""
+                    allowed = f"{of}--side {seen} --mirror makes the {said} wheel of it; or {allowed}"
+                raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not (self.choices.side or label or self.format.side):
             raise self.refuse(
                 f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car",

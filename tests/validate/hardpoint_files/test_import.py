@@ -285,6 +285,21 @@ def test_exchanged_front_and_rear_are_refused(tmp_path: Path) -> None:
         imported(tmp_path, table(names=names))
 
 
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_wheel_that_the_file_has_not_is_made_by_the_options_that_the_refusal_names(
+    mirror: bool, tmp_path: Path
+) -> None:
+    text = chrono("macpherson", STRUT.mechanism.points, -1)
+    with pytest.raises(HardpointFileError, match="--side left --mirror makes the right wheel") as caught:
+        imported(tmp_path, text, side="right", mirror=mirror)
+    assert ("--side is of the file's wheel" in str(caught.value)) == mirror
+    assert imported(tmp_path, text, side="left", mirror=True).scene.mechanism.side == "right"
+    # A file that has the wheel is not told to mirror the other one.
+    with pytest.raises(HardpointFileError, match="a right wheel by --side, but") as caught:
+        imported(tmp_path, table(ending=" FR"), side="right", mirror=mirror, axes="forward,right,up")
+    assert "--mirror" not in str(caught.value)
+
+
 def test_a_wheel_on_the_other_side_than_said_is_refused(tmp_path: Path) -> None:
     with pytest.raises(HardpointFileError, match="a left wheel by --side, but wheel_centre lies"):
         imported(tmp_path, table(), side="left")
