@@ -590,8 +590,9 @@ class _Import:
                 allowed = f"--axes with the other of left and right than {axes.option}, or the {seen} side"
                 # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
                 if by == "--side" and label != said:
-                    of = "--side is of the file's wheel: " if self.choices.mirror else ""
-                    allowed = f"{of}--side {seen} --mirror makes the {said} wheel of it; or {allowed}"
+                    made = f"--side {seen} --mirror makes the {said} wheel of it"
+                    both = (f"--side is of the file's wheel: {made}", allowed)
+                    allowed = "; or ".join(both if self.choices.mirror else (allowed, made))
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not (self.choices.side or label or self.format.side):
             raise self.refuse(
