@@ -19,6 +19,8 @@ from pointcoord.linkage.topology import Topology
 Array = NDArray[np.float64]
 
 SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no suspension is smaller, and no car longer
+# Of how far out a wheel's points reach: a rack may end a little across the middle of the car.
+ACROSS = 0.1
 
 
 def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[str, ...]:
@@ -50,6 +52,7 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         ),
         _front_behind_rear(topology, points, axes),
         *_racks_outboard(topology, points, axes),
+        _alone_across(topology, points, axes),
         Doubt(inboard, lambda one: f"{inner} lies outboard of {centre}, so the spin axis points inboard"),
     ]
     for effect in EFFECTS.values():
@@ -87,3 +90,24 @@ def _farther_out(inner: str, outer: str, out: Array) -> Doubt:
         out > 0.0,
         lambda one: f"{inner} lies {float(out[one]):.4g} mm outboard of {outer}: are they swapped?",
     )
+
+
+def _alone_across(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Doubt:
+    """One point clearly on the other side of the car's middle than all the others: a sign mistaken.
+
+    Where a pivot lies at 0 the drawing is not counted from the middle. A point that another may stand in for
+    need not be one of this wheel: the rack's own lies anywhere along it.
+    """
+    names = [name for name in topology.required_points if name in points]
+    out = np.stack([axes.component(points[name], "outboard") for name in names], axis=-1)
+    clearly = ACROSS * out.max(axis=-1, keepdims=True)
+    alone = ((out < -clearly).sum(axis=-1) == 1) & ((out > clearly).sum(axis=-1) == len(names) - 1)
+
+    def words(one: tuple[int, ...]) -> str:
+        at = int(out[one].argmin())
+        return (
+            f"{names[at]} lies {-float(out[one][at]):.4g} mm across the middle of the car, and no other "
+            "point of this wheel does: has its coordinate to the right the wrong sign?"
+        )
+
+    return Doubt(alone, words)

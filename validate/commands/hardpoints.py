@@ -40,7 +40,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--suspension", metavar="TYPE", help="as in a scene; seen in the file or by its points if not given"
     )
     parser.add_argument(
-        "--side", metavar="|".join(SIDES), help="the wheel, of a file that has both or does not say"
+        "--side", metavar="|".join(SIDES), help="the file's wheel, if it has both or does not say"
     )
     parser.add_argument(
         "--part",

@@ -76,7 +76,7 @@ class _Titles:
 
     Attributes:
         columns: of x, y and z, by wheel. name_at: the column of names. wheels_at: columns of wheels.
-        unit: of lengths. directions: where x, y and z point. left_out: titles of other columns of x, y or z.
+        unit: of lengths. directions: where x, y and z point. row: the line itself.
         wheels: the words of wheels in `wheels_at`.
     """
 
@@ -85,7 +85,7 @@ class _Titles:
     wheels_at: tuple[int, ...] = ()
     unit: str = ""
     directions: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()
+    row: Row = ()
     wheels: Mapping[str, Wheel] = field(default_factory=dict)
 
 
@@ -114,19 +114,27 @@ def read(text: str, source: str) -> Contents:
             titles = replace(one, wheels=_wheels_of_lines(one, [row for _, row in rows[at + 1 :]]))
             directions.add(titles.directions)
             units |= {titles.unit} - {""}
-            notes += [f"the column {short(title)} is not read" for title in titles.left_out]
         elif (wheel := _heading(row)) is not None:
             # The left wheel under a heading of the front axle is the front left one.
             heading = (wheel[0], wheel[1] or heading[1])
         elif (of_line := _units_only(row, titles)) is not None:
             units |= of_line
         elif at > first:
+            further = _not_read(row, titles)
+            unread = [titles.row[i] for i in further if i < len(titles.row) and titles.row[i]]
+            if len(unread) < len(further):
+                spoilt.append(_crowded(row, titles, heading, source, line))
+                continue
+            _require_known_titles(row, rows[at + 1 : at + 2], titles, source, line)
             new, broken = _points_of(row, titles, heading, source, line)
             points += new
             spoilt += broken
+            if new:
+                notes += [f"the column {short(title)} is not read" for title in unread]
     _one_decimal_sign(rows, source)
     if not points:
-        if spoilt and first >= 0:
+        crowded = any(_not_read(row, titles) for _, row in rows)
+        if spoilt and (first >= 0 or crowded):
             raise spoilt[0].error
         raise HardpointFileError(source, 0, "has no points", ROW)
     spelt = {SPELLINGS.get(unit, unit) for unit in units}
@@ -174,9 +182,14 @@ def _rows(text: str, source: str) -> list[tuple[int, Row]]:
 
 
 def _spaced(line: str) -> str:
-    """A line of words and three numbers, with the numbers apart from the words."""
-    found = re.fullmatch(r"(.*\S)\s+(\S+)\s+(\S+)\s+(\S+)", line)
-    return "  ".join(found.groups()) if found and all(map(_number, found.groups()[1:])) else line
+    """A line of words and three numbers or more, with the numbers apart from the words."""
+    words = line.split()
+    count = next((n for n, word in enumerate(reversed(words)) if not _number(word)), len(words))
+    # A fourth number may end the name, as in `LBJ 2 6.5 705 132`; more are coordinates of another wheel.
+    count = 3 if count == 4 and words[-4].isdigit() else count
+    if not 3 <= count < len(words):
+        return line
+    return "  ".join([" ".join(words[:-count]), *words[-count:]])
 
 
 def _number(cell: str) -> bool:
@@ -230,7 +243,7 @@ def _titles(row: Row, above: Row, source: str, line: int) -> _Titles | None:
     """What a line of titles says; None if this is none."""
     if any(map(_number, row)):
         return None
-    words = [plain(cell).split() for cell in row]
+    words = _words_of_titles(row)
     axes = [[word for word in cell if word in ("x", "y", "z")] for cell in words]
     if len({axis[0] for axis in axes if len(axis) == 1}) < 2:
         return None
@@ -242,10 +255,8 @@ def _titles(row: Row, above: Row, source: str, line: int) -> _Titles | None:
     there = [at for at, axis in enumerate(axes) if len(axis) == 1]
     idle = {"x", "y", "z"} | IDLE | SPELLINGS.keys() | wheels.keys() | DIRECTIONS.keys()
     clean = [at for at in there if not set(words[at]) - idle]
-    if {axes[at][0] for at in clean} == {"x", "y", "z"}:
-        left_out = tuple(row[at] for at in there if at not in clean)
-    else:
-        clean, left_out = there, ()
+    if {axes[at][0] for at in clean} != {"x", "y", "z"}:
+        clean = there
     directions = {axes[at][0]: _direction(row[at]) for at in clean}
     over = [_wheel_of(plain(cell).split(), wheels) for cell in above]
     columns: dict[Wheel, dict[str, int]] = {}
@@ -267,7 +278,7 @@ def _titles(row: Row, above: Row, source: str, line: int) -> _Titles | None:
         raise HardpointFileError(
             source, line, f"says where only some of its axes point ({', '.join(said)})", "all three, or none"
         )
-    units = {unit for at in clean if (unit := _unit_of(row[at]))}
+    units = {unit for at in clean if (unit := _unit_of(row[at], words[at][-1]))}
     if len(units) > 1:
         allowed = f"one of {', '.join(UNITS)} in all columns"
         raise HardpointFileError(source, line, f"has lengths in {', '.join(sorted(units))}", allowed)
@@ -293,8 +304,40 @@ def _titles(row: Row, above: Row, source: str, line: int) -> _Titles | None:
         wheels_at,
         units.pop() if units else "",
         tuple(directions[axis] for axis in "xyz") if said else (),
-        left_out,
+        row,
     )
+
+
+def _words_of_titles(row: Row) -> list[list[str]]:
+    """The words of each title; `XL`, `LX`, `xLeft`, `X1` and `Xmm` are x and another word.
+
+    A letter that is written to an axis is that of a wheel where the other wheel has its own, or where no
+    other title is an axis: beside x, y and z, the titles RX, RY and RZ may be turns.
+    """
+    cells = [plain(cell).split() for cell in row]
+    axes = sum(word in ("x", "y", "z") for cell in cells for word in cell)
+    parted = [[_parted(word) for word in cell] for cell in cells]
+    letters = {two[1] for cell in parted for two in cell if len(two) == 2 and two[1] in ("l", "r", "f")}
+    alone = len(letters) == 1 and axes > 0
+    return [
+        [
+            part
+            for word, two in zip(cell, of, strict=True)
+            for part in ((word,) if alone and letters & {*two} else two)
+        ]
+        for cell, of in zip(cells, parted, strict=True)
+    ]
+
+
+def _parted(word: str) -> tuple[str, ...]:
+    """An axis and what is written to it; the word itself if it is not so."""
+    # Not an f before it: FX is a force.
+    wheel = "|".join(sorted(WHEELS, key=len, reverse=True))
+    behind = re.fullmatch(rf"([xyz])({wheel}|l|r|f|\d+|{'|'.join(SPELLINGS)})", word)
+    if behind:
+        return behind[1], behind[2]
+    ahead = re.fullmatch(rf"({wheel}|l|r)([xyz])", word)
+    return (ahead[2], ahead[1]) if ahead else (word,)
 
 
 def _with_letters(words: set[str]) -> Mapping[str, Wheel]:
@@ -314,10 +357,9 @@ def _direction(title: str) -> str:
     return words[0] if len(words) == 1 else ""
 
 
-def _unit_of(title: str) -> str:
+def _unit_of(title: str, last: str) -> str:
     """The unit in a title, in brackets or as its last word; an unknown one as it stands there."""
     found = re.search(r"[(\[]\s*([A-Za-z]+)\s*[)\]]", title)
-    last = plain(title).split()[-1]
     if found and found[1].lower() not in (*DIRECTIONS, *WHEELS, "l", "r", "f"):
         return SPELLINGS.get(found[1].lower(), found[1].lower())
     return SPELLINGS.get(last, "")
@@ -404,6 +446,43 @@ def _points_of(
             own = next(filter(_number, three), "")
             spoilt.append(Spoilt(point, error, own or _first_number(row, titles)))
     return points, spoilt
+
+
+def _not_read(row: Row, titles: _Titles) -> list[int]:
+    """The columns of a line's numbers beside a point's own; what is ahead of a name may count the lines."""
+    own = {at for three in titles.columns.values() for at in three.values()}
+    read = own | {titles.name_at, *titles.wheels_at}
+    if not all(at < len(row) and row[at] for at in next(iter(titles.columns.values())).values()):
+        return []
+    return [
+        at
+        for at, cell in enumerate(row)
+        if at not in read
+        and at > min(titles.name_at, *own)
+        and _number(cell)
+        and not (at < len(titles.row) and (said := {*plain(titles.row[at]).split()}) and not said - OF_LINES)
+    ]
+
+
+def _crowded(row: Row, titles: _Titles, heading: Wheel, source: str, line: int) -> Spoilt:
+    """A line with numbers that no title speaks of: which of them are the point's is not known."""
+    name = row[titles.name_at]
+    told = f"has {_numbers_in(row)} numbers for {short(name)}, some of them in columns without a title"
+    allowed = "three, or a line of titles such as Point, Left X, Left Y, Left Z, Right X, Right Y, Right Z"
+    error = HardpointFileError(source, line, told, allowed)
+    return Spoilt(FilePoint(name, NOWHERE, line, *heading), error, _first_number(row, titles))
+
+
+def _require_known_titles(
+    row: Row, below: Sequence[tuple[int, Row]], titles: _Titles, source: str, line: int
+) -> None:
+    """Refuse a line of words over the three numbers of a point: it says what they are, and is not read."""
+    if titles.row or not below or any(map(_number, row)) or len(row) < 4 or not all(row[1:4]):
+        return
+    if all(at < len(below[0][1]) and _number(below[0][1][at]) for at in (1, 2, 3)):
+        told = f"has titles that are not known: {short(', '.join(row[1:]))}"
+        allowed = "X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X, Right Y, Right Z"
+        raise HardpointFileError(source, line, told, allowed)
 
 
 def _first_number(row: Row, titles: _Titles) -> str:

@@ -33,6 +33,7 @@ from validate.hardpoint_files.contents import (
 from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import Format, Names, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
+from validate.hardpoint_files.slips import slips
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
 
@@ -484,7 +485,11 @@ class _Import:
             for wheel in [_seen_side(one, outboard)]
             if wheel == (self.choices.side or side or wheel)
         ]
-        raise self.refuse(told, f"{' or '.join(ways)}, as {words} lie; or others, if they are so")
+        wrong = self.slipped(topology, ours, lambda other: other is not None and other != seen)
+        mended = "a mended point; else " if wrong else ""
+        raise self.refuse(
+            f"{told}{wrong}", f"{mended}{' or '.join(ways)}, as {words} lie; or others, if they are so"
+        )
 
     def seen(self, topology: Topology, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
         """The axes in which a car's points lie as these, where outboard is, and what shows it."""
@@ -520,23 +525,40 @@ class _Import:
     ) -> list[str]:
         """Refuse axes that nobody said and the car's points speak against; doubt those of the user."""
         seen, outboard, words = self.seen(topology, ours)
-        # A left-handed choice may differ in the way of left only, which no point can show.
-        said = set(zip("xyz", axes.directions, strict=True))
-        shown = set() if seen is None else set(zip("xyz", seen.directions, strict=True))
-        sideways = {(axis, way) for axis in "xyz" for way in SIDES}
-        same_line = {axis for axis, way in said if way in SIDES} == {
-            axis for axis, way in shown if way in SIDES
-        }
-        if seen is None or (said - sideways == shown - sideways and same_line):
+        if seen is None or _same_but_for_left(axes, seen):
             return []
         told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
+        wrong = self.slipped(
+            topology, ours, lambda other: other is not None and _same_but_for_left(axes, other)
+        )
         if self.choices.axes is not None:
-            return [f"{told}: are these the right axes and names?"]
+            return [f"{told}{wrong}: are these the right axes and names?"]
         # Which way is left no point shows: it decides which wheel this is.
         ways = [
             f"--axes {one.option} of a {_seen_side(one, outboard)} wheel" for one in (seen, seen.other_handed)
         ]
-        raise self.refuse(told, f"{' or '.join(ways)} if that is so, --axes {axes.option} if not")
+        mended = "a mended point; else " if wrong else ""
+        raise self.refuse(
+            f"{told}{wrong}",
+            f"{mended}{' or '.join(ways)} if that is so, --axes {axes.option} if not",
+        )
+
+    def slipped(
+        self, topology: Topology, ours: Mapping[str, FilePoint], fits: Callable[[Axes | None], bool]
+    ) -> str:
+        """The points by which the axes are seen that one slip puts apart from all others, as a question.
+
+        Args:
+            fits: whether the axes are right that are seen without the slip.
+        """
+        places = {name: point.place for name, point in ours.items()}
+        telling = (*topology.front_and_rear, *topology.steering_axis)
+        found = [
+            f"{short(ours[slip.name].name)} on line {ours[slip.name].line} ({slip.words} would fit)"
+            for slip in slips(places, telling)
+            if fits(self.seen(topology, {**ours, slip.name: replace(ours[slip.name], place=slip.place)})[0])
+        ]
+        return f" (or is one of these wrong: {', '.join(found)}?)" if found else ""
 
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -565,11 +587,13 @@ class _Import:
             (self.format.side, "its format"),
         ):
             if said and said != seen:
-                raise self.refuse(
-                    f"has a {said} wheel by {by}, but {where}",
-                    f"--axes with the other of left and right than {axes.option}, or the {seen} side; "
-                    "--mirror makes the other wheel",
-                )
+                allowed = f"--axes with the other of left and right than {axes.option}, or the {seen} side"
+                # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
+                if by == "--side" and label != said:
+                    made = f"--side {seen} --mirror makes the {said} wheel of it"
+                    both = (f"--side is of the file's wheel: {made}", allowed)
+                    allowed = "; or ".join(both if self.choices.mirror else (allowed, made))
+                raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not (self.choices.side or label or self.format.side):
             raise self.refuse(
                 f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car",
@@ -614,6 +638,14 @@ class _Import:
         printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
         return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+
+
+def _same_but_for_left(axes: Axes, seen: Axes) -> bool:
+    """Whether axes are those seen; left-handed ones may differ in the way of left, which no point shows."""
+    said, shown = (set(zip("xyz", one.directions, strict=True)) for one in (axes, seen))
+    sideways = {(axis, way) for axis in "xyz" for way in SIDES}
+    same_line = {axis for axis, way in said if way in SIDES} == {axis for axis, way in shown if way in SIDES}
+    return said - sideways == shown - sideways and same_line
 
 
 def _seen_side(axes: Axes, outboard: Place) -> str:

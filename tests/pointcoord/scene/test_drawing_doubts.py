@@ -69,6 +69,23 @@ def test_a_misdrawn_axis_is_doubted_with_its_angle(
     assert any(words in doubt for doubt in doubts)
 
 
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+def test_a_point_with_the_wrong_sign_to_the_right_is_doubted_and_a_rack_near_the_middle_is_not(
+    name: str,
+) -> None:
+    scene = Scene.load(name)
+    part = scene.mechanism
+    # A wheel centre across the middle is refused.
+    for point in {*part.topology.required_points} - {"wheel_centre"}:
+        x, y, z = part.points[point]
+        for place, wrong in (((x, -y, z), True), ((x, -0.05 * y, z), False)):
+            points = {**part.points, point: place}
+            doubts = part.model_copy(update={"points": points}).doubts
+            told = [doubt for doubt in doubts if "across the middle of the car" in doubt]
+            assert [doubt.split(" lies ")[0] for doubt in told] == [point] * wrong
+            assert all(f"{abs(y):.4g} mm across" in doubt for doubt in told)
+
+
 def swapped(car: Car, one: str, other: str) -> Car:
     return {**car, one: car[other], other: car[one]}
 

@@ -211,7 +211,15 @@ def test_a_strut_under_another_program_s_names_is_held_to_its_axes_as_well(tmp_p
 
 
 @pytest.mark.parametrize(
-    "axes", ["rearward,left,up", "left,up,forward", "up,right,forward", "down,left,rearward"]
+    "axes",
+    [
+        "rearward,left,up",
+        "forward,up,left",
+        "forward,down,left",
+        "left,up,forward",
+        "up,right,forward",
+        "down,left,rearward",
+    ],
 )
 def test_any_axes_are_turned_and_any_others_than_the_format_s_are_noticed(axes: str, tmp_path: Path) -> None:
     words = axes.split(",")
@@ -220,9 +228,42 @@ def test_any_axes_are_turned_and_any_others_than_the_format_s_are_noticed(axes: 
     for word in words:
         signs[DIRECTIONS[word][0]] = DIRECTIONS[word][1]
     text = table(order=order, signs=(signs[0], signs[1], signs[2]))
-    with pytest.raises(HardpointFileError, match="--axes"):
+    with pytest.raises(HardpointFileError, match="--axes") as caught:
         imported(tmp_path, text)
+    assert "is one of these wrong" not in str(caught.value)
     assert drawn(imported(tmp_path, text, axes=axes)) == CAR
+
+
+def test_a_tie_rod_through_the_middle_of_the_car_is_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, y, z = CAR["tie_rod_inner"]
+    (tmp_path / "car.csv").write_text(table({**CAR, "tie_rod_inner": (x, -y, z)}))
+    assert main(["import", str(tmp_path / "car.csv")]) == 0
+    assert f"tie_rod_inner lies {y:.4g} mm across the middle of the car" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("point", "factors", "words"),
+    [
+        ("lower_arm_rear", (1, -1, 1), "y of the other sign"),
+        ("lower_arm_front", (1, -1, 1), "y of the other sign"),
+        ("upper_ball_joint", (1, -1, 1), "y of the other sign"),
+        ("lower_arm_rear", (0.1, 0.1, 0.1), "ten times as much"),
+        ("lower_ball_joint", (10, 10, 10), "a tenth as much"),
+    ],
+)
+def test_one_point_that_is_at_odds_with_the_axes_is_named_beside_them(
+    point: str, factors: tuple[float, float, float], words: str, tmp_path: Path
+) -> None:
+    x, y, z = np.multiply(CAR[point], factors).tolist()
+    text = table({**CAR, point: (x, y, z)})
+    line = next(at for at, row in enumerate(text.splitlines(), 1) if row.startswith(OPTIMUMK[point]))
+    with pytest.raises(HardpointFileError) as caught:
+        imported(tmp_path, text)
+    named = f"{OPTIMUMK[point]!r} on line {line} ({words} would fit)"
+    assert f"(or is one of these wrong: {named}?)" in str(caught.value)
+    assert "allowed: a mended point; else --axes" in str(caught.value)
 
 
 def test_a_unit_that_makes_no_car_is_refused_with_those_that_do(tmp_path: Path) -> None:
@@ -242,6 +283,21 @@ def test_exchanged_front_and_rear_are_refused(tmp_path: Path) -> None:
     }
     with pytest.raises(HardpointFileError, match="lower_arm_front seen from lower_arm_rear"):
         imported(tmp_path, table(names=names))
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_wheel_that_the_file_has_not_is_made_by_the_options_that_the_refusal_names(
+    mirror: bool, tmp_path: Path
+) -> None:
+    text = chrono("macpherson", STRUT.mechanism.points, -1)
+    with pytest.raises(HardpointFileError, match="--side left --mirror makes the right wheel") as caught:
+        imported(tmp_path, text, side="right", mirror=mirror)
+    assert ("--side is of the file's wheel" in str(caught.value)) == mirror
+    assert imported(tmp_path, text, side="left", mirror=True).scene.mechanism.side == "right"
+    # A file that has the wheel is not told to mirror the other one.
+    with pytest.raises(HardpointFileError, match="a right wheel by --side, but") as caught:
+        imported(tmp_path, table(ending=" FR"), side="right", mirror=mirror, axes="forward,right,up")
+    assert "--mirror" not in str(caught.value)
 
 
 def test_a_wheel_on_the_other_side_than_said_is_refused(tmp_path: Path) -> None:

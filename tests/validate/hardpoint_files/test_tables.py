@@ -242,6 +242,44 @@ def test_a_letter_over_columns_is_read_by_the_other_letter(letters: str, label: 
         assert drawn(found) == car
 
 
+BOTH = [f"{WORDS[name]},{cells(WHEELS['front', 'left'][name])},{cells(CAR[name])}" for name in CAR]
+
+
+@pytest.mark.parametrize(
+    "titles",
+    ["XL,YL,ZL,XR,YR,ZR", "LX,LY,LZ,RX,RY,RZ", "xLeft,yLeft,zLeft,xRight,yRight,zRight", "xl,yl,zl,xr,yr,zr"],
+)
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wheel_written_to_its_axis_has_its_own_columns(titles: str, side: str, tmp_path: Path) -> None:
+    found = imported(tmp_path, "\n".join([f"Point,{titles}", *BOTH]), axes=OURS, side=side)
+    assert drawn(found) == WHEELS["front", side]
+
+
+@pytest.mark.parametrize("ahead", ["", "Point,,,,,,\n", "Point,X,Y,Z\n"])
+@pytest.mark.parametrize("mark", [",", " ", "   "])
+def test_numbers_of_another_wheel_without_a_title_are_refused(ahead: str, mark: str, tmp_path: Path) -> None:
+    text = ahead + "\n".join(BOTH)
+    with pytest.raises(HardpointFileError, match=r"has 6 numbers for 'LCA_IN_FRONT'"):
+        imported(tmp_path, text.replace(",", mark), axes=OURS)
+
+
+def test_titles_that_are_not_known_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(HardpointFileError, match=r"line 1: has two columns of x \(the second is 'X2'\)"):
+        imported(tmp_path, "\n".join(["Point,X1,Y1,Z1,X2,Y2,Z2", *BOTH]), axes=OURS)
+    with pytest.raises(
+        HardpointFileError, match=r"line 1: has titles that are not known: 'Hoch, Quer, Laengs'"
+    ):
+        imported(tmp_path, "\n".join(["Punkt,Hoch,Quer,Laengs", *rows(str)]), axes=OURS)
+
+
+@pytest.mark.parametrize("others", ["RX,RY,RZ", "FX,FY,FZ", "Mass,Stiffness,Preload"])
+def test_numbers_under_other_titles_are_told(others: str, tmp_path: Path) -> None:
+    text = "\n".join([f"Point,X,Y,Z,{others}", *(f"{row},1.5,2.5,3.5" for row in rows(str))])
+    found = imported(tmp_path, text, axes=OURS)
+    assert drawn(found) == CAR
+    assert {f"the column '{title}' is not read" for title in others.split(",")} <= {*found.facts}
+
+
 def test_a_name_of_the_other_side_than_its_column_is_refused(tmp_path: Path) -> None:
     text = "\n".join(["Point,Right X,Right Y,Right Z", *rows(lambda n: n + "_L")])
     with pytest.raises(HardpointFileError, match=r"line 2: has 'LCA_IN_FRONT_L' for the right wheel"):
