@@ -196,6 +196,8 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
     exact = [row for some in _together(exact) if _decided(evidence, some, hypothesis.fitted) for row in some]
     if exact:
         return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
+    if hypothesis.aside:
+        return None
     lowered = {tuple(some): _lowered(evidence, hypothesis, some) for some in _together([*left])}
     partly = {
         rows: factor
@@ -304,7 +306,8 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
     def place(one: _Found) -> tuple[float, ...]:
         decades = 0.0 if one.whole else -np.floor(np.log10(min(one.lowered, 1e300)))
-        return (not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
+        aside = one.hypothesis.aside
+        return (aside, not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
 
     return sorted(found, key=place)
 

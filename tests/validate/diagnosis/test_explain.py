@@ -69,7 +69,11 @@ def arcsin(held: Solution, name: str, axis: int) -> Numbers:
 
 
 def differences(held: Solution) -> Numbers:
-    return {"velocity": {n: np.gradient(p, held.times, axis=0) for n, p in held.numbers["position"].items()}}
+    return {"velocity": by_differences(held.numbers["position"], held.times)}
+
+
+def by_differences(places: Mapping[str, Array], times: Array) -> Mapping[str, Array]:
+    return {n: np.gradient(p, times, axis=0) for n, p in places.items()}
 
 
 def mirrored(held: Solution) -> Numbers:
@@ -541,3 +545,19 @@ def test_two_inputs_with_the_other_sign_are_told_as_two() -> None:
     words = "the input rack has the other sign, and the input heave has the other sign"
     assert first.words.endswith(words), first
     assert (first.kind, first.leftover <= 1.0) == ("input", True)
+
+
+def test_rates_near_the_differences_of_wrong_positions_explain_no_wrong_car() -> None:
+    """Another car's true rates are near its positions' differences, which says nothing of what is wrong."""
+    numbers = drawn_with("double-wishbone", upper_arm_front__z=31.0, lower_arm_rear__y=-27.0)
+    states = {quantity: numbers[quantity] for quantity in STATES}
+    assert not any("differences" in one.words for one in diagnosis("double-wishbone", states))
+
+
+def test_rates_that_are_differences_of_wrong_positions_exactly_are_told_as_such() -> None:
+    _, held = solved("double-wishbone")
+    noise = np.random.default_rng(3)
+    moved = {n: p + noise.normal(0.0, 0.3, p.shape) for n, p in held.position.items()}
+    found = diagnosis("double-wishbone", {"position": moved, "velocity": by_differences(moved, held.times)})
+    assert [one.kind for one in found] == ["differences of wrong numbers"]
+    assert found[0].leftover <= 1.0
