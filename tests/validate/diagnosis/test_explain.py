@@ -561,3 +561,27 @@ def test_rates_that_are_differences_of_wrong_positions_exactly_are_told_as_such(
     found = diagnosis("double-wishbone", {"position": moved, "velocity": by_differences(moved, held.times)})
     assert [one.kind for one in found] == ["differences of wrong numbers"]
     assert found[0].leftover <= 1.0
+
+
+def bent(held: Solution) -> Array:
+    """A hundredth of an angle's largest number, to be off by what no factor makes good."""
+    toe = held.numbers["wheel"]["toe"]
+    return np.asarray(0.01 * np.abs(toe).max() * np.cos(9.0 * np.arange(len(toe))))
+
+
+@pytest.mark.parametrize("change", [lambda v: 1000.0 * v, lambda v: 100.0 * v + 7.0])
+def test_a_unit_that_only_makes_the_difference_small_beside_its_own_numbers_is_none(
+    change: Callable[[Array], Array],
+) -> None:
+    """Minutes of arc make ours 3438 times as large, beside which any difference is small."""
+    _, held = solved("double-wishbone")
+    found = diagnosis("double-wishbone", angle(held, "toe", lambda v: change(v + bent(held))))
+    assert not any("unit" in one.kind for one in found), found
+
+
+@pytest.mark.parametrize(("factor", "told"), [(180.0 / np.pi, True), (60.0, False)])
+def test_a_unit_in_part_is_told_where_its_factor_is_the_one_that_fits_best(factor: float, told: bool) -> None:
+    _, held = solved("double-wishbone")
+    noise = 0.2 * bent(held)
+    found = diagnosis("double-wishbone", angle(held, "toe", lambda v: factor * (v + noise)))
+    assert any("degrees for radians" in one.words for one in found) is told, found
