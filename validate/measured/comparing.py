@@ -46,6 +46,7 @@ from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import SPEED, Found, Numbers, Poses, asked_scene, poses_of
 from validate.measured.supposed import in_reach, likely
+from validate.measured.units import named
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -194,8 +195,12 @@ def compare_results(
         others = _other_independent(scene, measured, held, outcome, accuracy, poses)
         # Of a single number its own fault is as likely.
         whole = len(rows) == 1 and any(one.leftover <= 1.0 for one in explanations)
+        travel = _other_travel(scene, measured, held, outcome, accuracy)
+        if others or travel:
+            # What explains the whole file leaves nothing for what explains a part of some difference.
+            explanations = tuple(one for one in explanations if one.leftover <= 1.0)
         explanations = (*explanations, *others) if whole else (*others, *explanations)
-        explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
+        explanations = (*travel, *explanations)
     outcome = replace(outcome, explanations=explanations)
     over = _over(measured)
     return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
@@ -356,6 +361,8 @@ def _explained(
         solved=Solved(there),
         over_time=over_time,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
+        units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
+        theirs={row: unit for row, columns in whole.items() if (unit := _given_in(columns))},
         known={} if over_time else {n: a[told] for n, a in ours.numbers[_PLACES].items()},
     )
     try:
@@ -363,6 +370,16 @@ def _explained(
     except MissingPackage:
         # Laws in many digits are an extra that the verdict needs not.
         return ()
+
+
+def _given_in(columns: Sequence[Held]) -> tuple[str, float] | None:
+    """The unit that columns are in where it is not ours, and how many of ours it is; None of several."""
+    factors, ours = {h.series.factor for h in columns}, columns[0].series.meaning.unit
+    if len(factors) != 1 or factors == {1.0}:
+        return None
+    (factor,) = factors
+    unit = named(factor, ours)
+    return (unit, factor) if unit else None
 
 
 def _on_the_grid(scene: Scene, times: Array) -> Scene:

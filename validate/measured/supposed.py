@@ -87,8 +87,18 @@ def likely(scene: Scene, measured: Measured, poses: Poses) -> Iterator[Supposed]
             replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
             for s, c in zip(measured.independent, changes, strict=True)
         )
-        other = replace(measured, independent=independent)
-        yield Supposed(", and ".join(told), other, any(change.found for change in changes))
+        words, fitted = ", and ".join(told), any(change.found for change in changes)
+        turned = {s.meaning.words for s, c in zip(independent, changes, strict=True) if c.factor < 0.0}
+        slopes = [s for s in measured.numbers if s.meaning.per in turned]
+        numbers = tuple(
+            replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers
+        )
+        yield Supposed(words, replace(measured, independent=independent, numbers=numbers), fitted)
+        if slopes:
+            # Derivatives by a column that counts the other way do so too, if they were not made of another.
+            names = ", ".join(shown(s.column) for s in slopes)
+            words = f"{words}, and {names} is by it as it is said"
+            yield Supposed(words, replace(measured, independent=independent), fitted)
 
 
 def in_reach(scene: Scene, measured: Measured, poses: Poses) -> Iterator[str]:
