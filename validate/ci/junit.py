@@ -67,11 +67,12 @@ def _suites(record: Record) -> Iterator[Suite]:
     for examined in record.examined:
         for outcome in examined.outcomes:
             first, second = (solution.formulation for solution in outcome.solutions)
+            given = len(outcome.solutions[0].times)
             properties = {
                 "scene": examined.name,
                 "first": first,
                 "second": second,
-                "instants": str(len(outcome.solutions[0].times)),
+                "instants": str(given if outcome.compared is None else outcome.compared),
                 **factor,
             }
             cases = [*(_compared(row, outcome) for row in outcome.rows), *_unusable(outcome)]

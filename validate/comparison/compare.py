@@ -76,6 +76,7 @@ class Outcome:
             what they gave.
         missing: what one formulation does not give, a line each.
         faults: what one gives that cannot be used, a line each, which are among the notes too.
+        compared: at how many instants, of a file of results; None: at all that both give.
         factor: how many times the derived tolerance the differences were held to.
         explanations: what would explain that they disagree, the best first, where it was looked for.
     """
@@ -88,6 +89,7 @@ class Outcome:
     factor: float = 1.0
     explanations: tuple[Explanation, ...] = ()
     faults: tuple[str, ...] = ()
+    compared: int | None = None
 
     @property
     def agreed(self) -> bool:

@@ -52,6 +52,10 @@ def kind_of(row: Row) -> str:
     return QUANTITIES[row[0]].of
 
 
+def _told(amount: Array | float) -> str:
+    return f"{amount:.6g}" if np.ndim(amount) == 0 else f"({', '.join(f'{c:.6g}' for c in np.ravel(amount))})"
+
+
 def _apart_by(step: float, numbers: Array) -> int:
     """How many numbers can be picked that are all farther apart than a step; MOST_DISTINCT at most."""
     rising = np.sort(numbers[np.isfinite(numbers)])
@@ -105,6 +109,8 @@ class Evidence:
         over_time: whether the instants are times; else rows of a file, of inputs or travels.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
+        units: of rows that have another than their quantity, such as of derivatives.
+        theirs: the units that rows are given in, where these are not ours, and how many of ours each is.
         in_our_units: whether the held numbers are; after another fault they may be in no unit that is known.
     """
 
@@ -120,6 +126,8 @@ class Evidence:
     over_time: bool = True
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
+    units: Mapping[Row, str] = field(default_factory=dict)
+    theirs: Mapping[Row, tuple[str, float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -169,7 +177,16 @@ class Evidence:
 
     def unit_of(self, row: Row) -> str:
         """The unit of a row's held numbers, in words."""
-        return length_or_angle(row) if self.in_our_units else "in its own unit"
+        own = self.units.get(row, length_or_angle(row))
+        return own if self.in_our_units else "in its own unit"
+
+    def in_words(self, row: Row, amount: Array | float) -> str:
+        """An amount of a row with its unit, and in the one that it is given in."""
+        said = f"{_told(amount)} {self.unit_of(row)}"
+        if row not in self.theirs or not self.in_our_units:
+            return said
+        unit, factor = self.theirs[row]
+        return f"{said} ({_told(amount / factor)} {unit})"
 
     def wants(self, key: Hashable) -> bool:
         """Whether a fault is to be looked at."""

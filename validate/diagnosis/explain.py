@@ -42,6 +42,8 @@ from validate.formulations.protocol import Solution
 WORTH = 20.0
 # By how many times, so that no other car is solved for what is left.
 ENOUGH = 1e3
+# By how many times another factor may leave less than a unit's own does, as one fitted to noise may.
+FITTED = 2.0
 # More instants than this are looked at in part first.
 MANY = 300
 UNIT = "unit"
@@ -196,6 +198,8 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
     exact = [row for some in _together(exact) if _decided(evidence, some, hypothesis.fitted) for row in some]
     if exact:
         return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
+    if hypothesis.aside:
+        return None
     lowered = {tuple(some): _lowered(evidence, hypothesis, some) for some in _together([*left])}
     partly = {
         rows: factor
@@ -209,18 +213,32 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
 
 
 def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) -> float:
-    """By what factor a fault lowers the difference of rows, both in parts of the largest number there."""
+    """By what factor a fault lowers the difference of rows, both in parts of the largest number there.
+
+    That rewards whatever makes theirs small beside it; so a fault counts for no more than the factor by which
+    zeros leave more than it does (of a unit with an offset, one number), and none has another unit whose
+    factor is not the one that fits them best.
+    """
     before = evidence.share_apart(tuple(rows))
     if before is None:
         return 0.0
-    apart = most = 0.0
-    for row in rows:
-        then = hypothesis.rows[row][0]
-        apart = max(apart, float(np.abs(evidence.given[row] - then).max()))
-        most = max(most, float(np.abs(then).max()))
+    then, theirs = (
+        np.concatenate([part[row].reshape(len(evidence.times), -1) for row in rows])
+        for part in ({row: hypothesis.rows[row][0] for row in rows}, evidence.given)
+    )
+    faults = hypothesis.kind.split(" and ")
+    apart, most = float(np.abs(theirs - then).max()), float(np.abs(then).max())
     if not most > 0.0:
         return 0.0
-    return before * most / apart if apart > 0.0 else np.inf
+    if not apart > 0.0:
+        return np.inf
+    nothing = theirs - theirs.mean(axis=0) if UNIT in faults and "offset" in faults else theirs
+    lowered = min(before * most / apart, float(np.abs(nothing).max()) / apart)
+    if UNIT in faults:
+        factor = float(np.sum(then * theirs) / np.sum(then * then))
+        if apart > FITTED * float(np.abs(theirs - factor * then).max()):
+            return 0.0
+    return lowered
 
 
 def _together(rows: Sequence[Row]) -> list[list[Row]]:
@@ -304,7 +322,8 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
     def place(one: _Found) -> tuple[float, ...]:
         decades = 0.0 if one.whole else -np.floor(np.log10(min(one.lowered, 1e300)))
-        return (not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
+        aside = one.hypothesis.aside
+        return (aside, not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
 
     return sorted(found, key=place)
 

@@ -27,6 +27,7 @@ class Hypothesis:
         fitted: how many numbers were chosen so that it fits.
         cost: how far-fetched it is; the fitted numbers and the choices made.
         looser: whether it says that the numbers are ours, and may be farther off than is claimed of them.
+        aside: whether it says not what is wrong first, and counts where it explains all, after all others.
         whole: whether it is about the whole car, so that rows that agree must agree under it too.
     """
 
@@ -37,6 +38,7 @@ class Hypothesis:
     fitted: int = 0
     cost: float = 1.0
     looser: bool = False
+    aside: bool = False
     whole: bool = False
 
 

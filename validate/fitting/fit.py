@@ -12,10 +12,10 @@ columns does to it, and the accuracy that the user states:
 
 With J = dq/da / s = U diag(w) V^T at the solution the file knows the combination V_k . a to f / w_k mm; f is
 the r.m.s. of what is left over the degrees of freedom, at least 1, for more digits than these were not
-given. A combination that it knows no better than to the bounds it cannot see: the prior alone settles it, at
-as little as possible. The corrections' covariance is V diag(1 / (w^2 / f^2 + 1 / prior^2)) V^T, of those that
-end on no bound, the others held there; where f was estimated, what holds in 95 of 100 files is Student's
-t(freedom) times as wide as a standard deviation.
+given. A combination that it knows no better than the prior or the bounds do it cannot see: the prior settles
+it, at as little as possible. The corrections' covariance is V diag(1 / (w^2 / f^2 + 1 / prior^2)) V^T, of
+those that end on no bound, the others held there; where f was estimated, what holds in 95 of 100 files is
+Student's t(freedom) times as wide as a standard deviation.
 
 Least squares are scipy's (dogleg in boxes, which end on bounds exactly: Voglis and Lagaris, WSEAS Conference
 on Applied Mathematics, 2004); the prior gives the Jacobian its full rank, which the method asks for. A design
@@ -56,8 +56,9 @@ LEAST = {"mm": 1e-4, "rad": 3e-7}
 ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
-# Of the bounds: how far a correction may go along what the file cannot see, where it is asked what the file
-# alone knows. So a coordinate is unknown that has a quarter of such a combination.
+# Of the bounds, or of the prior if that is less: how far a correction may go along what the file cannot see,
+# where it is asked what the file alone knows. So a coordinate is unknown that has a quarter of such a
+# combination.
 OPEN = 4.0
 MOST_SOLVES = 60
 NAMED = 3  # rows that are left out, one by one
@@ -73,7 +74,7 @@ class Combination:
         parts: by coordinate, of unit length together.
         singular: what moving 1 mm along it does to the numbers, in their standard deviations.
         deviation: how well the file alone knows it, mm; infinite if not at all.
-        seen: whether that is better than the bounds.
+        seen: whether that is better than the bounds and the prior.
     """
 
     parts: dict[str, float]
@@ -107,7 +108,7 @@ class Fit:
         scene: corrected.
         drawn, corrections: by coordinate, mm.
         deviations: by coordinate, mm; of one on its bound 0: it is held there.
-        unknown: coordinates that the file does not know to within the bounds, whatever the prior says.
+        unknown: coordinates that the file alone does not know to within the bounds and the prior.
         widening: how many deviations to either side hold in 95 of 100 files.
         columns: of the file.
         combinations: of the corrections, the best known first.
@@ -143,7 +144,7 @@ class Fit:
 
     @property
     def unique(self) -> bool:
-        """Whether the file alone settles every correction to within the bounds."""
+        """Whether the file alone settles every correction, to within the bounds and better than the prior."""
         return not self.unseen
 
     @property
@@ -244,9 +245,10 @@ def fit_hardpoints(
     factor = max(1.0, estimated)
     with np.errstate(divide="ignore"):
         deviations = factor / singular
+    known = min(bounds, prior)  # beforehand
     variance, alone = np.zeros(len(zero)), np.zeros(len(zero))
     variance[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2))
-    alone[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + (OPEN * bounds) ** -2))
+    alone[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + (OPEN * known) ** -2))
     tail = 0.5 * (1.0 + CONFIDENCE)
     better = lsq_linear(whole, -rest, bounds=(-bounds - amounts, bounds - amounts))
     return Fit(
@@ -255,13 +257,13 @@ def fit_hardpoints(
         dict(zip(curves.free, amounts.tolist(), strict=True)),
         dict(zip(curves.free, np.sqrt(variance).tolist(), strict=True)),
         tuple(
-            name for name, open_ in zip(curves.free, np.sqrt(alone).tolist(), strict=True) if open_ >= bounds
+            name for name, open_ in zip(curves.free, np.sqrt(alone).tolist(), strict=True) if open_ >= known
         ),
         float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail)),
         _columns(measured, used, gap(first), after, spread),
         tuple(
             Combination(
-                dict(zip(curves.free, row.tolist(), strict=True)), float(w), float(d), bool(d < bounds)
+                dict(zip(curves.free, row.tolist(), strict=True)), float(w), float(d), bool(d < known)
             )
             for row, w, d in zip(turned, singular, deviations, strict=True)
         ),

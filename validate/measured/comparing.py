@@ -17,7 +17,9 @@ point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `s
 what that makes of the number at that pose, with the worst signs: see `validate.solvers.held`. A travel in
 full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
 are not tested. Where S alone is as wide as half of the whole range that the quantity
-has in the file, no number of it could tell its curve from a level line: it is not tested.
+has in the file, no number of it could tell its curve from a level line: it is not tested. Nor is a number of
+the car that agrees where fewer than half of what the file gives of it can be compared: the others would be as
+little tested in a file of them alone.
 """
 
 from __future__ import annotations
@@ -43,7 +45,8 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import SPEED, Found, Numbers, Poses, asked_scene, poses_of
-from validate.measured.supposed import likely
+from validate.measured.supposed import in_reach, likely
+from validate.measured.units import named
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -89,6 +92,18 @@ class Held:
         gap = np.abs(self.series.values - self.ours)
         # Whole turns apart is the same angle.
         return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if self.series.meaning.unit == "rad" else gap
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """How many of its numbers are compared, and how many there are."""
+        there = np.isfinite(self.series.values)
+        return int((there & np.isfinite(self.gap) & np.isfinite(self.tolerance)).sum()), int(there.sum())
+
+    @property
+    def few(self) -> bool:
+        """Whether most of its numbers cannot be compared."""
+        compared, there = self.counts
+        return 2 * compared < there
 
     @property
     def blind(self) -> bool:
@@ -163,14 +178,29 @@ def compare_results(
         for of, columns in part.items()
     ]
     lacking, absent = _lacking(scene, measured)
-    outcome = Outcome(name, tuple(rows), (solution, ours), notes, lacking, factor)
+    compared = int(np.any([np.isfinite(h.gap) & np.isfinite(h.tolerance) for h in held], axis=0).sum())
+    faults = _too_few(measured, scene, poses, held, compared)
+    outcome = Outcome(
+        name,
+        tuple(rows),
+        (solution, ours),
+        (*notes, *faults),
+        lacking,
+        factor,
+        faults=faults,
+        compared=compared,
+    )
     explanations = _explained(scene, measured, held, ours, outcome, factor)
     if outcome.disagreements:
         others = _other_independent(scene, measured, held, outcome, accuracy, poses)
         # Of a single number its own fault is as likely.
         whole = len(rows) == 1 and any(one.leftover <= 1.0 for one in explanations)
+        travel = _other_travel(scene, measured, held, outcome, accuracy)
+        if others or travel:
+            # What explains the whole file leaves nothing for what explains a part of some difference.
+            explanations = tuple(one for one in explanations if one.leftover <= 1.0)
         explanations = (*explanations, *others) if whole else (*others, *explanations)
-        explanations = (*_other_travel(scene, measured, held, outcome, accuracy), *explanations)
+        explanations = (*travel, *explanations)
     outcome = replace(outcome, explanations=explanations)
     over = _over(measured)
     return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
@@ -206,11 +236,33 @@ def _other_independent(
 
 def _with_meant(error: ResultsError, measured: Measured, scene: Scene, poses: Poses) -> ResultsError:
     """A file of which no row can be reached, with what its columns may be meant as."""
-    meant = next((one.words for one in likely(scene, measured, poses)), "")
+    meant = _meant(measured, scene, poses)
     if not meant:
         return error
     allowed = f"{error.allowed}; they nearly are if {meant}"
     return ResultsError(error.source, error.place, error.problem, allowed)
+
+
+def _meant(measured: Measured, scene: Scene, poses: Poses) -> str:
+    """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely."""
+    known = (one.words for one in likely(scene, measured, poses))
+    return next(known, "") or next(in_reach(scene, measured, poses), "")
+
+
+def _too_few(
+    measured: Measured, scene: Scene, poses: Poses, held: Sequence[Held], compared: int
+) -> tuple[str, ...]:
+    """That most of what is given cannot be compared, and what the file may be meant as, if that is so."""
+    there = int(np.any([np.isfinite(h.series.values) for h in held], axis=0).sum())
+    if 2 * compared < there:
+        meant = _meant(measured, scene, poses)
+        more = f"; nearly all can if {meant}" if meant else ""
+        return (f"only {compared} of {there} rows that hold numbers can be compared{more}",)
+    few = [h for h in held if h.few and not h.unknown and h.counts[0]]
+    return tuple(
+        f"only {h.counts[0]} of {h.counts[1]} numbers of {shown(h.series.column)} can be compared"
+        for h in few
+    )
 
 
 def _other_travel(
@@ -309,6 +361,8 @@ def _explained(
         solved=Solved(there),
         over_time=over_time,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
+        units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
+        theirs={row: unit for row, columns in whole.items() if (unit := _given_in(columns))},
         known={} if over_time else {n: a[told] for n, a in ours.numbers[_PLACES].items()},
     )
     try:
@@ -316,6 +370,16 @@ def _explained(
     except MissingPackage:
         # Laws in many digits are an extra that the verdict needs not.
         return ()
+
+
+def _given_in(columns: Sequence[Held]) -> tuple[str, float] | None:
+    """The unit that columns are in where it is not ours, and how many of ours it is; None of several."""
+    factors, ours = {h.series.factor for h in columns}, columns[0].series.meaning.unit
+    if len(factors) != 1 or factors == {1.0}:
+        return None
+    (factor,) = factors
+    unit = named(factor, ours)
+    return (unit, factor) if unit else None
 
 
 def _on_the_grid(scene: Scene, times: Array) -> Scene:
@@ -547,8 +611,6 @@ def _out_of_reach(measured: Measured, found: Found) -> list[str]:
         others = ", ".join(measured.rows[i] for i in lost[NAMED : 2 * NAMED])
         more = f" and {len(lost) - 2 * NAMED} more" if len(lost) > 2 * NAMED else ""
         notes.append(f"likewise left out: {others}{more}")
-    if len(lost) * 2 > len(measured.rows):
-        notes.append(f"only {len(measured.rows) - len(lost)} of {len(measured.rows)} rows are compared")
     return notes
 
 
@@ -625,10 +687,13 @@ def _row(
     seen = shares > 1.0 if share > 1.0 else compared
     worst, when = (int(i) for i in np.unravel_index(int(np.argmax(np.where(seen, gaps, -1.0))), gaps.shape))
     verdict: Verdict = "agrees"
+    why = ""
     if share > 1.0:
         verdict = "disagrees"
     elif all(h.blind for h in columns):
-        verdict = "not tested"
+        verdict, why = "not tested", TOO_COARSE
+    elif few := [h.counts for h in columns if h.few]:
+        verdict, why = "not tested", "only {} of its {} numbers can be compared".format(*min(few))
     return Comparison(
         *ends,
         float(gaps[worst, when]),
@@ -639,7 +704,7 @@ def _row(
         measured.source,
         1.0,
         measured.rows[when],
-        why=TOO_COARSE if verdict == "not tested" else "",
+        why=why,
     )
 
 

@@ -87,8 +87,33 @@ def likely(scene: Scene, measured: Measured, poses: Poses) -> Iterator[Supposed]
             replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
             for s, c in zip(measured.independent, changes, strict=True)
         )
-        other = replace(measured, independent=independent)
-        yield Supposed(", and ".join(told), other, any(change.found for change in changes))
+        words, fitted = ", and ".join(told), any(change.found for change in changes)
+        turned = {s.meaning.words for s, c in zip(independent, changes, strict=True) if c.factor < 0.0}
+        slopes = [s for s in measured.numbers if s.meaning.per in turned]
+        numbers = tuple(
+            replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers
+        )
+        yield Supposed(words, replace(measured, independent=independent, numbers=numbers), fitted)
+        if slopes:
+            # Derivatives by a column that counts the other way do so too, if they were not made of another.
+            names = ", ".join(shown(s.column) for s in slopes)
+            words = f"{words}, and {names} is by it as it is said"
+            yield Supposed(words, replace(measured, independent=independent), fitted)
+
+
+def in_reach(scene: Scene, measured: Measured, poses: Poses) -> Iterator[str]:
+    """Units of a column that bring nearly all rows within reach, in words; nearest the said one first."""
+    rates = [s.values for s in measured.rates]
+    for i, s in enumerate(measured.independent):
+        units = [(n, size / s.factor) for n, size in _units(s.meaning.unit)]
+        for name, factor in sorted(units, key=lambda one: abs(math.log(one[1]))):
+            values = [factor * v.values if k == i else v.values for k, v in enumerate(measured.independent)]
+            try:
+                reached = poses.at(values, rates).reached
+            except PointcoordError:
+                continue
+            if abs(factor - 1.0) > 1e-9 and reached.mean() >= NEARLY_ALL:
+                yield f"{shown(s.column)} is in {name}, not in {_unit_of(s)}"
 
 
 def _is_of_a_pose(series: Series) -> bool:
@@ -156,7 +181,7 @@ class _Trial:
         if drawn:
             yield 1.1, _Change("counts from the drawing on", 1.0, drawn)
             yield 1.3, _Change("counts from the drawing on, the other way", -1.0, drawn)
-        said = self._unit_of(s)
+        said = _unit_of(s)
         for name, size in _units(unit):
             factor = size / s.factor
             if abs(factor - 1.0) > 1e-9:
@@ -166,10 +191,6 @@ class _Trial:
                         back = f"is in {name}, not in {said}, and has the other sign{words}"
                         yield 2.1 + i, _Change(back, -factor, more)
 
-    @staticmethod
-    def _unit_of(s: Series) -> str:
-        return next((n for n, size in _units(s.meaning.unit) if math.isclose(size, s.factor)), s.meaning.unit)
-
     def _drawn(self, s: Series) -> float:
         """An input of the drawing; a travel counts from there by itself."""
         return self.plan.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
@@ -177,7 +198,7 @@ class _Trial:
     def offset(self, s: Series, factor: float, found: float) -> str:
         """What is missing of a column, in words."""
         theirs = found / s.factor
-        unit, word = self._unit_of(s), "missing" if found > 0.0 else "too many"
+        unit, word = _unit_of(s), "missing" if found > 0.0 else "too many"
         drawn = self._drawn(s)
         if drawn and abs(found - drawn) <= NEAR * abs(drawn) and factor > 0.0:
             return "counts from the drawing on"
@@ -304,6 +325,11 @@ class _Trial:
 
 
 _PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
+
+
+def _unit_of(s: Series) -> str:
+    """The unit that a column is said to be in."""
+    return next((n for n, size in _units(s.meaning.unit) if math.isclose(size, s.factor)), s.meaning.unit)
 
 
 def _units(unit: str) -> list[tuple[str, float]]:

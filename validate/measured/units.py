@@ -44,6 +44,18 @@ def below_of(unit: str, ours: str) -> str:
     return theirs[2]
 
 
+def named(factor: float, ours: str) -> str:
+    """The unit of which one is so many of ours; empty if none is known.
+
+    >>> named(1000.0, "mm/s"), named(0.3, "mm")
+    ('m/s', '')
+    """
+    above, slash, below = ours.partition("/")
+    under = KINDS.get(below, [below])
+    units = (f"{unit}{slash}{per}" for per in under for unit in KINDS[above])
+    return next((unit for unit in units if math.isclose(factor_of(unit, ours) or 0.0, factor)), "")
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of any kind."""
     return _taken_apart(text) is not None

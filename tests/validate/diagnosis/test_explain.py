@@ -69,7 +69,11 @@ def arcsin(held: Solution, name: str, axis: int) -> Numbers:
 
 
 def differences(held: Solution) -> Numbers:
-    return {"velocity": {n: np.gradient(p, held.times, axis=0) for n, p in held.numbers["position"].items()}}
+    return {"velocity": by_differences(held.numbers["position"], held.times)}
+
+
+def by_differences(places: Mapping[str, Array], times: Array) -> Mapping[str, Array]:
+    return {n: np.gradient(p, times, axis=0) for n, p in places.items()}
 
 
 def mirrored(held: Solution) -> Numbers:
@@ -541,3 +545,43 @@ def test_two_inputs_with_the_other_sign_are_told_as_two() -> None:
     words = "the input rack has the other sign, and the input heave has the other sign"
     assert first.words.endswith(words), first
     assert (first.kind, first.leftover <= 1.0) == ("input", True)
+
+
+def test_rates_near_the_differences_of_wrong_positions_explain_no_wrong_car() -> None:
+    """Another car's true rates are near its positions' differences, which says nothing of what is wrong."""
+    numbers = drawn_with("double-wishbone", upper_arm_front__z=31.0, lower_arm_rear__y=-27.0)
+    states = {quantity: numbers[quantity] for quantity in STATES}
+    assert not any("differences" in one.words for one in diagnosis("double-wishbone", states))
+
+
+def test_rates_that_are_differences_of_wrong_positions_exactly_are_told_as_such() -> None:
+    _, held = solved("double-wishbone")
+    noise = np.random.default_rng(3)
+    moved = {n: p + noise.normal(0.0, 0.3, p.shape) for n, p in held.position.items()}
+    found = diagnosis("double-wishbone", {"position": moved, "velocity": by_differences(moved, held.times)})
+    assert [one.kind for one in found] == ["differences of wrong numbers"]
+    assert found[0].leftover <= 1.0
+
+
+def bent(held: Solution) -> Array:
+    """A hundredth of an angle's largest number, to be off by what no factor makes good."""
+    toe = held.numbers["wheel"]["toe"]
+    return np.asarray(0.01 * np.abs(toe).max() * np.cos(9.0 * np.arange(len(toe))))
+
+
+@pytest.mark.parametrize("change", [lambda v: 1000.0 * v, lambda v: 100.0 * v + 7.0])
+def test_a_unit_that_only_makes_the_difference_small_beside_its_own_numbers_is_none(
+    change: Callable[[Array], Array],
+) -> None:
+    """Minutes of arc make ours 3438 times as large, beside which any difference is small."""
+    _, held = solved("double-wishbone")
+    found = diagnosis("double-wishbone", angle(held, "toe", lambda v: change(v + bent(held))))
+    assert not any("unit" in one.kind for one in found), found
+
+
+@pytest.mark.parametrize(("factor", "told"), [(180.0 / np.pi, True), (60.0, False)])
+def test_a_unit_in_part_is_told_where_its_factor_is_the_one_that_fits_best(factor: float, told: bool) -> None:
+    _, held = solved("double-wishbone")
+    noise = 0.2 * bent(held)
+    found = diagnosis("double-wishbone", angle(held, "toe", lambda v: factor * (v + noise)))
+    assert any("degrees for radians" in one.words for one in found) is told, found

@@ -292,7 +292,8 @@ def test_what_is_not_known_is_marked_whatever_the_prior_and_no_interval_leaves_t
     # The wheel's centre is in the file; the spin axis's inner point may go along the axis.
     assert "wheel_axis_inner.y" in fit.unknown
     assert "wheel_centre.y" not in fit.unknown
-    assert fit.unknown == with_every_point_free(PRIOR).unknown
+    # A prior knows some coordinates better than the file does; without one these are the bounds' at least.
+    assert set(fit.unknown) >= set(with_every_point_free(100.0).unknown)
     said = text_of(fit, "x", "y").splitlines()
     line = next(line for line in said if line.startswith("    wheel_axis_inner.y "))
     assert line.endswith("not known from these data")
@@ -408,6 +409,22 @@ def test_a_prior_draws_corrections_back_as_tikhonov_s_closed_form_says() -> None
     assert [*fit.corrections.values()] == pytest.approx((share * right).tolist(), rel=1e-6)
     assert [*fit.deviations.values()] == pytest.approx([(known + prior**-2) ** -0.5] * 3, rel=1e-9)
     assert [one.singular for one in fit.combinations] == pytest.approx([math.sqrt(known)] * 3, rel=1e-9)
+
+
+@pytest.mark.parametrize(("times", "settled"), [(0.9, False), (1.1, True)])
+def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
+    times: float, settled: bool
+) -> None:
+    """q = R a with turns R: the file knows each direction to s / sqrt(N), all within the bounds."""
+    turns, moved = linear_case()
+    right, accuracy = np.array([3.0, -2.0, 1.0]), 5.0
+    data = measured(centre_table(moved["wheel_centre"] + turns @ right), CAR)
+    known = accuracy / math.sqrt(3.0) / math.sqrt(ROWS)
+    fit = fit_hardpoints(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
+    assert [one.deviation for one in fit.combinations] == pytest.approx([known] * 3, rel=1e-9)
+    assert fit.unique is settled
+    assert (fit.unknown == ()) is settled
+    assert ("settle every combination" in text_of(fit, "x", "y")) is settled
 
 
 def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not() -> None:

@@ -246,3 +246,31 @@ def test_of_two_columns_that_a_gradient_may_be_by_its_name_says_which() -> None:
     named = {"columns": {**bump, "rack": {}, "toe": {"is": "d(wheel.toe)/d(bump)"}}}
     (toe,) = understood(columns_of_text(table.format("toe"), "mine.csv"), named, CAR, "map.toml").numbers
     assert toe.meaning.per == "travel.wheel_centre"
+
+
+@pytest.mark.parametrize(
+    ("sign", "words"),
+    [
+        (-1.0, "bump has the other sign"),
+        (1.0, "bump has the other sign, and steer is by it as it is said"),
+    ],
+)
+def test_a_travel_with_the_other_sign_is_told_as_that_where_a_derivative_by_it_is_given(
+    sign: float, words: str
+) -> None:
+    """By minus x, what was d/dx is minus that; unless the derivative was made of another column."""
+    slope = sign * np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1])
+    camber = np.degrees(BUMP.wheel["camber"][1:-1])
+    table = text(**{"bump [mm]": -rise(BUMP)[1:-1], "steer [deg/mm]": slope, "camber [deg]": camber})
+    parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-7}}
+    found = compared(table, {"columns": {**parts, "camber": {"accuracy": 1e-9}}})
+    assert [one.words for one in found.explanations] == [words]
+    assert found.explanations[0].leftover <= 1.0
+
+
+def test_an_offset_is_said_in_our_unit_and_in_the_columns() -> None:
+    slope = np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1]) + 0.25
+    table = text(**{"bump [mm]": rise(BUMP)[1:-1], "steer [deg/mm]": slope})
+    parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-6}}
+    first = compared(table, {"columns": parts}).explanations[0]
+    assert first.words.endswith("a constant offset of 0.00436332 rad/mm (0.25 deg/mm)")

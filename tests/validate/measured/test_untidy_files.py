@@ -2,12 +2,18 @@
 
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
 import pytest
 
+import pointcoord
 from pointcoord import Scene
+from validate.ci.junit import junit
+from validate.ci.record import Record
+from validate.comparison.examined import Examined
+from validate.exit_status import ExitStatus
 from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.errors import ResultsError
 from validate.measured.mapping import read_results
@@ -71,9 +77,37 @@ def compared(folder: Path, text: str) -> DataOutcome:
     return compare_results(read(folder, text.encode()), CAR, "car")
 
 
-def test_a_file_of_which_few_rows_are_compared_says_so(tmp_path: Path) -> None:
-    found = compared(tmp_path, "time [s],camber [deg]\n0.000,0\n10.000,0\n20.000,0\n")
-    assert "only 1 of 3 rows are compared" in found.outcome.notes
+def test_a_file_of_which_most_rows_cannot_be_compared_has_no_verdict_and_says_what_would_reach_them(
+    tmp_path: Path,
+) -> None:
+    """Milliseconds titled [s]: all but t = 0 are outside the scene's time, and t = 0 agrees with anything."""
+    camber = pointcoord.simulate(CAR).wheel["camber"]
+    rows = zip(1000.0 * CAR.instants, np.degrees(camber), strict=True)
+    found = compared(tmp_path, "time [s],camber [deg]\n" + "".join(f"{t:.3f},{c:.4f}\n" for t, c in rows))
+    count = len(CAR.instants)
+    assert [row.verdict for row in found.outcome.rows] == ["not tested"]
+    (fault,) = found.outcome.faults
+    assert fault.startswith(f"only 1 of {count} rows that hold numbers can be compared")
+    assert fault.endswith("nearly all can if time is in ms, not in s")
+    record = Record(["car"])
+    record.add(Examined("car", outcomes=(found.outcome,), solved=("pointcoord",)), None)
+    assert record.status is ExitStatus.NO_VERDICT
+    suite = ElementTree.fromstring(junit(record))[0]
+    assert suite.get("errors") == "1"
+    told = {one.get("name"): one.get("value") for one in suite.iter("property")}
+    assert told["instants"] == "1"
+
+
+@pytest.mark.parametrize(("lost", "verdict"), [(2, "agrees"), (3, "not tested")])
+def test_more_than_half_of_the_rows_have_to_be_left_out_for_that(
+    lost: int, verdict: str, tmp_path: Path
+) -> None:
+    """Rows without numbers count for nothing."""
+    camber = np.degrees(pointcoord.simulate(CAR).wheel["camber"])
+    told = "".join(f"{t!r},{camber[i]:.4f}\n" for i, t in enumerate(CAR.instants[:2].tolist()))
+    late = "".join(f"{1e3 * k},0\n" for k in range(1, lost + 1))
+    found = compared(tmp_path, f"time [s],camber [deg]\n{told}{late}5e6,\n6e6,\n7e6,\n")
+    assert [row.verdict for row in found.outcome.rows] == [verdict]
 
 
 def test_a_loop_is_refused_with_what_to_do(tmp_path: Path) -> None:

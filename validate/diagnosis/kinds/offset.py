@@ -40,8 +40,7 @@ class Offset(Kind):
             clear = np.abs(gap).max() > 8.0 * evidence.rounded(row).max()
             if np.isfinite(gap).all() and clear and len(evidence.times) > 2:
                 gap = np.where(np.abs(gap) <= evidence.rounded(row).max(), 0.0, gap)
-                said = f"({', '.join(f'{c:.6g}' for c in gap)})" if vector else f"{gap:.6g}"
-                words = f"a constant offset of {said} {evidence.unit_of(row)}"
+                words = f"a constant offset of {evidence.in_words(row, gap)}"
                 rows = {row: self._less(evidence, row, -gap)}
                 fitted = 3 if vector else 1
                 yield Hypothesis(self.name, (row, "constant"), words, rows, fitted, 1.0 + fitted)
@@ -73,7 +72,7 @@ class Offset(Kind):
         points = [row for row in evidence.given if row[0] == rows[0][0]]
         every = set(points) == set(rows) and all(evidence.left(row, *moved[row]) <= 1.0 for row in rows)
         # The points that agree say where the origin is: what is off beside them is off by itself.
-        told = f"({', '.join(f'{c:.6g}' for c in shift)}) {evidence.unit_of(rows[0])}"
+        told = evidence.in_words(rows[0], shift)
         words = f"another origin: every point is shifted by {told}" if every else f"shifted by {told}"
         yield Hypothesis(self.name, "origin", words, moved, fitted, 1.0 + 0.5 * fitted)
 
