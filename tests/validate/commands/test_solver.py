@@ -102,6 +102,19 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
     assert lines["toe"].endswith("agrees")
     # A coarser accuracy is what it would have to state.
     assert run("own_solvers.wrong:solve", "--accuracy", "1e3", "off-axis-strut.toml") == 3
+    capfd.readouterr()
+    assert run("own_solvers.wrong:solve", "--accuracy", "1e6", "off-axis-strut.toml", "-q") == 3
+    (line,) = capfd.readouterr().err.splitlines()
+    assert "no verdict: no number that is given is tested; camber: " in line
+
+
+def test_another_solver_than_the_baselines_is_no_verdict(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run("own_solvers.right:solve", "off-axis-strut.toml", "--save-baseline", "b.npz") == 0
+    assert run("own_solvers.prints:solve", "off-axis-strut.toml", "--baseline", "b.npz", "-q") == 3
+    (line,) = (one for one in capfd.readouterr().err.splitlines() if one.startswith("pointcoord: "))
+    assert "own_solvers.prints:solve in the place of own_solvers.right:solve" in line
 
 
 def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
