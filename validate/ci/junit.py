@@ -11,7 +11,8 @@ where it agrees.
 | not tested, not given, new since the baseline, not run | `skipped`, with the reason |
 | gone with a formulation that this run does not ask | `skipped` |
 | what is given and cannot be used, or tells nothing | `error` |
-| a scene that cannot be read, is refused, or fails; another car or formulation than in the baseline | `error` |
+| a scene that cannot be read, is refused, or fails | `error` |
+| another car or another formulation than in the baseline | `error` |
 
 The elements, attributes and their order are those of the schema `junit-10.xsd` of Jenkins' xUnit plugin. It
 asks for no time stamps and no times: the same run gives the same bytes.

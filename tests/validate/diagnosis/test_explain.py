@@ -541,3 +541,15 @@ def test_two_inputs_with_the_other_sign_are_told_as_two() -> None:
     words = "the input rack has the other sign, and the input heave has the other sign"
     assert first.words.endswith(words), first
     assert (first.kind, first.leftover <= 1.0) == ("input", True)
+
+
+@pytest.mark.parametrize(
+    ("name", "closure", "asked"), [("steer", "drawn", "collinear"), ("off-axis-strut", "collinear", "drawn")]
+)
+def test_another_closure_than_the_scene_asks_for_is_told_first(name: str, closure: str, asked: str) -> None:
+    scene, _ = solved(name)
+    part = scene.mechanism.model_copy(update={"closure": closure})
+    motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
+    first = diagnosis(name, motion.numbers)[0]
+    assert (first.kind, first.leftover <= 1.0) == ("closure", True)
+    assert first.words.endswith(f"the car is closed as {closure}, where the scene asks for {asked}")
