@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from pointcoord import PointcoordError
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, solve_task
 from pointcoord.suspensions import SUSPENSIONS
 from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis, Kind
+from validate.diagnosis.kinds.inputs import rows_of
 
 
 class Closure(Kind):
@@ -30,16 +29,11 @@ class Closure(Kind):
             try:
                 # No drawing check: a drawing that is asked to close otherwise may not close so by itself.
                 task = prepare_task(scene.model_copy(update={"mechanism": mechanism, "points": None}), AUTO)
-                numbers = solve_task(task).at(evidence.times).numbers
+                rows = rows_of(evidence, solve_task(task))
             except PointcoordError:
                 continue
-            rows = {
-                row: (np.array(numbers[row[0]][row[1]]), evidence.rounded(row, numbers[row[0]][row[1]]))
-                for row in evidence.held
-                if row[1] in numbers[row[0]]
-            }
             words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
-            # The links of a car that is closed otherwise may be those of another assembly, which is less likely.
+            # Closed otherwise, a car may have the lengths of another assembly of it, which is less likely.
             yield Hypothesis(self.name, closure, words, rows, cost=0.9, whole=True)
 
 

@@ -171,8 +171,11 @@ def _motion(evidence: Evidence, laws: Mapping[str, InputPart]) -> Motion | None:
 
 def _rows(evidence: Evidence, laws: Mapping[str, InputPart]) -> dict[Row, tuple[Array, Array]] | None:
     motion = _motion(evidence, laws)
-    if motion is None:
-        return None
+    return None if motion is None else rows_of(evidence, motion)
+
+
+def rows_of(evidence: Evidence, motion: Motion) -> dict[Row, tuple[Array, Array]]:
+    """What each row would be of another motion, and how far from that it may be."""
     samples = motion.at(evidence.times)
     proven = motion.proof_of(samples, rates=True).proven
     rows: dict[Row, tuple[Array, Array]] = {}
@@ -180,8 +183,8 @@ def _rows(evidence: Evidence, laws: Mapping[str, InputPart]) -> dict[Row, tuple[
         quantity, of = row
         if of in samples.numbers[quantity]:
             value = np.array(samples.numbers[quantity][of])
-            # Ours by this input are off by their own bound, and by as much again for what the law's numbers
-            # and a factor that is found are rounded by.
+            # These are off by their own bound, and by as much again for what numbers of its laws, such as a
+            # factor that is found, are rounded by.
             bound = np.nan_to_num(proven[quantity][of], posinf=0.0)
             rows[row] = (value, 2.0 * (evidence.rounded(row, value) + bound))
     return rows
