@@ -438,6 +438,7 @@ def scaled(factor: float) -> Callable[[InputPart], InputPart]:
         (0.5, "the input rack is taken 0.5 times"),
         (21.0 / 20.0, "the input rack is taken 1.05 times"),
         (20.0 / 21.0, "the input rack is taken 0.952381 times"),
+        (0.0, "the input rack is taken as 0"),
     ],
 )
 @pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
@@ -553,3 +554,32 @@ def test_another_closure_than_the_scene_asks_for_is_told_first(name: str, closur
     first = diagnosis(name, motion.numbers)[0]
     assert (first.kind, first.leftover <= 1.0) == ("closure", True)
     assert first.words.endswith(f"the car is closed as {closure}, where the scene asks for {asked}")
+
+
+@pytest.mark.parametrize(
+    ("rack", "arm", "words"),
+    [
+        ((-1.0, 5.0), (1.0, 0.0), "the input rack is taken as 5 mm minus it"),
+        (
+            (-1.0, 0.0),
+            (1.0, 0.02),
+            "the input arm_angle is taken 0.02 rad more, and the input rack has the other sign",
+        ),
+        (
+            (1.05, 0.0),
+            (0.99, 0.0),
+            "the input arm_angle is taken 0.99 times, and the input rack is taken 1.05 times",
+        ),
+    ],
+)
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+def test_inputs_that_are_wrong_in_two_ways_are_told_and_nothing_else_is(
+    name: str, rack: tuple[float, float], arm: tuple[float, float], words: str
+) -> None:
+    scene, _ = solved(name)
+    laws = scene.inputs
+    wrong = {given: more(m)(scaled(k)(laws[given])) for given, (k, m) in (("rack", rack), ("arm_angle", arm))}
+    other = scene.model_copy(update={"inputs": {**laws, **wrong}})
+    (only,) = diagnosis(name, formulation("pointcoord").solve(other).numbers)
+    assert (only.kind, only.leftover <= 1.0) == ("input", True)
+    assert only.words.endswith(f": {words}")
