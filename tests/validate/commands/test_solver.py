@@ -182,7 +182,7 @@ def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest
         (["own_solvers/right.py:solve"], "try own_solvers.right:solve"),
         (["own_solvers.right"], "give MODULE:NAME"),
         ([""], "give MODULE:NAME"),
-        (["math:pi"], "is a float, which is no solver"),
+        (["math:pi"], "is of type float, which is no solver"),
         (["own_solvers.right:solve", "--accuracy", "0"], "give a length above 0"),
         (["own_solvers.right:solve", "--accuracy", "fine"], "invalid float value: 'fine'"),
         (["own_solvers.right:solve", "--first", "absolute"], "--solver and --first are both given"),
@@ -204,7 +204,7 @@ def test_an_accuracy_without_a_solver_is_a_mistake(capfd: pytest.CaptureFixture[
 
 def test_an_answer_that_is_no_mapping_is_told(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run("own_solvers.none:solve", "off-axis-strut.toml") == 3
-    assert "it answers with a NoneType; needed: a mapping" in capfd.readouterr().err
+    assert "it answers with None; needed: a mapping" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize("module", ENDS)
