@@ -4,10 +4,12 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from plain_solvers import closed_form
 
 from pointcoord import Scene, sweep
 from pointcoord.method import AUTO
@@ -582,4 +584,26 @@ def test_inputs_that_are_wrong_in_two_ways_are_told_and_nothing_else_is(
     other = scene.model_copy(update={"inputs": {**laws, **wrong}})
     (only,) = diagnosis(name, formulation("pointcoord").solve(other).numbers)
     assert (only.kind, only.leftover <= 1.0) == ("input", True)
+    assert only.words.endswith(f": {words}")
+
+
+@pytest.mark.parametrize(
+    ("names", "rate", "factor", "words"),
+    [
+        (("rack",), "velocity", -1.0, "the velocity of the input rack taken with the other sign"),
+        (("rack", "arm_angle"), "acceleration", 0.0, "the acceleration of all inputs taken as 0"),
+        (("arm_angle",), "acceleration", 0.0, "the acceleration of the input arm_angle taken as 0"),
+    ],
+)
+def test_rates_of_inputs_that_are_taken_otherwise_are_told_and_nothing_else_is(
+    names: tuple[str, ...], rate: str, factor: float, words: str
+) -> None:
+    def other(given: Mapping[str, Any]) -> Mapping[str, Any]:
+        inputs = {name: {**law} for name, law in given["inputs"].items()}
+        for name in names:
+            inputs[name][rate] = factor * inputs[name][rate]
+        return closed_form({**given, "inputs": inputs})
+
+    (only,) = check(other, solved("double-wishbone", 12)[0]).explanations
+    assert (only.kind, only.leftover <= 1.0) == ("rates of inputs", True)
     assert only.words.endswith(f": {words}")
