@@ -24,6 +24,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import IO, Any, BinaryIO, Literal
 
 import numpy as np
@@ -104,7 +105,7 @@ class Since:
 
     Attributes:
         standing: whether it could be compared, and why not.
-        words: more of that, such as what of the car is another.
+        words: more of that, such as what of the car is another, or that a formulation is.
     """
 
     scene: str
@@ -129,14 +130,29 @@ class Since:
         return tuple(move for move in self.moves if move.verdict == "gone" and move.formulation in here)
 
     @property
+    def replaced(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+        """The baseline's formulations that this run lacks, and its own in their place; None without either.
+
+        Under another name it may be another solver: whether its numbers moved cannot be said.
+        """
+        then, now = (
+            {move.formulation: None for move in self.moves if move.verdict != verdict}
+            for verdict in ("new", "gone")
+        )
+        lacking, others = tuple(n for n in then if n not in now), tuple(n for n in now if n not in then)
+        return (lacking, others) if lacking and others else None
+
+    @property
     def status(self) -> ExitStatus:
         """What the scene's movement alone would end the run with.
 
         A scene that is new or that is refused now says nothing of movement; the latter is told of anyway. So
-        are the numbers of a formulation that this run does not ask.
+        are the numbers of a formulation that this run does not ask, unless it asks another one in its place.
         """
         if self.moved or self.lost:
             return ExitStatus.DISAGREE
+        if self.replaced:
+            return ExitStatus.NO_VERDICT
         if self.standing in ("new", "not solved now"):
             return ExitStatus.AGREE
         untested = any(move.verdict == "not tested" for move in self.moves)
@@ -184,12 +200,20 @@ class Baseline:
             return Since(name, "another motion", words)
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
-        return Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
+        found = Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
+        return found if found.replaced is None else replace(found, words=_another(name, *found.replaced))
 
     def gone(self, names: Iterable[str]) -> tuple[str, ...]:
         """The scenes of the baseline that are none of these."""
         there = set(names)
         return tuple(name for name in self.scenes if name not in there)
+
+
+def _another(name: str, lacking: Sequence[str], others: Sequence[str]) -> str:
+    return (
+        f"{name} has another formulation than in the baseline: {', '.join(others)} in the place of "
+        f"{', '.join(lacking)}, of which no number could be held to it"
+    )
 
 
 def _moves(

@@ -11,7 +11,8 @@ where it agrees.
 | not tested, not given, new since the baseline, not run | `skipped`, with the reason |
 | gone with a formulation that this run does not ask | `skipped` |
 | what is given and cannot be used, or tells nothing | `error` |
-| a scene that cannot be read, is refused, or fails; another car than in the baseline | `error` |
+| a scene that cannot be read, is refused, or fails | `error` |
+| another car or another formulation than in the baseline | `error` |
 
 The elements, attributes and their order are those of the schema `junit-10.xsd` of Jenkins' xUnit plugin. It
 asks for no time stamps and no times: the same run gives the same bytes.
@@ -197,8 +198,9 @@ def _about(refusal: Refusal) -> Iterator[str]:
 def _since(since: Since, factor: float) -> Iterator[_Case]:
     if since.standing == "new" or since.standing == "not solved now":
         yield _Case("in the baseline", "skipped", since.standing, since.words)
-    elif since.standing != "compared":
-        yield _Case("in the baseline", "error", since.standing, since.words)
+    elif since.standing != "compared" or since.replaced:
+        standing = "another formulation" if since.replaced else since.standing
+        yield _Case("in the baseline", "error", standing, since.words)
     for move in since.moves:
         yield _moved(move, factor, move in since.lost)
 

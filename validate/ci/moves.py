@@ -47,7 +47,8 @@ def since_text(since: Since) -> str:
     ]
     head = ("formulation", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
     lines = [f"{since.scene}: since the baseline", *([table(head, rows)] if rows else [])]
-    return "\n".join((*lines, *(f"  note: {line}" for line in _alone(since))))
+    notes = (*((since.words,) if since.words else ()), *_alone(since))
+    return "\n".join((*lines, *(f"  note: {line}" for line in notes)))
 
 
 def _numbers(move: Move) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import Any, get_args
 from pointcoord import Scene, SceneError
 from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
 from validate.ci.moves import baseline_data, lost_lines, since_text
-from validate.ci.record import Record, ends_the_run
+from validate.ci.record import Record, ends_the_run, why_undecided
 from validate.ci.scene_folder import scenes_below
 from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
@@ -304,6 +304,9 @@ def compare_scenes(
             results.paper = compare_with_paper()
         _say_at_the_end(results, pairs, len(names), console)
         ending.status = record.ended = record.status
+        if console.quiet and ending.status is ExitStatus.NO_VERDICT:
+            for line in _why_no_verdict(record):
+                console.complain(line)
         if page is not None and telling is not None:
             told("the page", len(names))
             whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
@@ -460,4 +463,22 @@ def _say_what_moved(record: Record, console: Console) -> None:
     lacking = f"; given then and not now: {'; '.join(lost)}" if lost else ""
     gone = f"; gone, in the baseline and not in this run: {', '.join(record.gone)}" if record.gone else ""
     nothing = "; nothing of this run could be held to it" if not held else ""
-    console.say(f"{told}{lacking}{gone}{nothing}.")
+    others = [since.words for since in record.since if since.replaced]
+    another = f"; no verdict: {'; '.join(others)}" if others else ""
+    console.say(f"{told}{lacking}{another}{gone}{nothing}.")
+
+
+def _why_no_verdict(record: Record) -> Iterator[str]:
+    """Why scenes have no verdict, a line each; not those of which a complaint has said it."""
+    for examined in record.examined:
+        for outcome in examined.outcomes[: 0 if examined.complaint else None]:
+            if not outcome.passed and not outcome.disagreements:
+                words = outcome.why_no_verdict or "not every number is tested"
+                untested = [row for row in outcome.undecided if row.verdict == "not tested"]
+                for row in (*untested, *outcome.undecided)[:1]:
+                    words += f"; {report.about(row.quantity, row.name)}: {why_undecided(row, outcome)}"
+                yield f"{examined.name}: no verdict: {words}"
+    for since in record.since:
+        if since.status is ExitStatus.NO_VERDICT:
+            words = since.words or f"{since.scene}: not every number is tested"
+            yield f"no verdict since the baseline: {words}"

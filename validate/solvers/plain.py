@@ -123,7 +123,7 @@ def as_function(solver: object, name: str) -> Solve:
     method = getattr(solver, METHOD, None)
     found = method if callable(method) else solver
     if not callable(found):
-        problem = f"is a {type(solver).__name__}, which is no solver"
+        problem = f"is of type {type(solver).__name__}, which is no solver"
         raise NoSolver(name, problem, f"give a function, or an object or a class with a method {METHOD!r}")
     return cast("Solve", found)
 
@@ -136,7 +136,8 @@ def said(error: BaseException) -> str:
 
 def no_mapping(answer: object) -> str:
     """What is wrong with an answer that is none."""
-    return f"it answers with a {type(answer).__name__}; needed: a mapping of what it has"
+    what = "None" if answer is None else f"data of type {type(answer).__name__}"
+    return f"it answers with {what}; needed: a mapping of what it has"
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,11 @@ from pointcoord import Scene
 from validate import Outcome, Solution, compare
 from validate.ci import baseline as module
 from validate.ci.baseline import Baseline, BaselineError, Recorder, read_baseline
+from validate.ci.junit import junit
+from validate.ci.record import Record
 from validate.cli import main
 from validate.comparison.compare import compare_solutions
+from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 
@@ -123,17 +126,35 @@ def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:
     assert set(odd.values()) == {"gone"}
     assert since.lost
     assert since.status is ExitStatus.DISAGREE
-    # More than then is no loss, and neither is a formulation that is not asked.
+    # More than then is no loss.
     grown = replace(OUTCOME, solutions=(one, two.with_numbers(more)))
     assert saved(tmp_path).since("steer", SCENE, [grown]).status is ExitStatus.AGREE
-    other = replace(OUTCOME, solutions=(one, replace(two, formulation="another")))
-    told = saved(tmp_path).since("steer", SCENE, [other])
-    assert not told.lost
-    assert told.status is ExitStatus.AGREE
     renamed = replace(
         OUTCOME, solutions=tuple(replace(s, formulation=s.formulation + "x") for s in (one, two))
     )
     assert saved(tmp_path).since("steer", SCENE, [renamed]).status is ExitStatus.NO_VERDICT
+
+
+def test_a_formulation_in_the_place_of_another_is_no_verdict_and_one_that_is_not_asked_is_no_loss(
+    tmp_path: Path,
+) -> None:
+    one, two = OUTCOME.solutions
+    other = replace(OUTCOME, solutions=(one, replace(two, formulation="another")))
+    told = saved(tmp_path).since("steer", SCENE, [other])
+    assert not told.lost
+    assert told.status is ExitStatus.NO_VERDICT
+    assert "another formulation than in the baseline: another in the place of absolute" in told.words
+    root = checked(
+        junit(Record(["steer"], since=[told], examined=[Examined(name="steer", outcomes=(other,))]))
+    )
+    assert [case.get("type") for case in root.iter("error")] == ["another formulation"]
+    with Recorder("1.0") as recorder:
+        third = replace(OUTCOME, solutions=(one, replace(two, formulation="third")))
+        recorder.add("steer", SCENE, [OUTCOME, third])
+        recorder.write(str(tmp_path / "three.npz"))
+    fewer = read_baseline(str(tmp_path / "three.npz")).since("steer", SCENE, [OUTCOME])
+    assert {m.formulation for m in fewer.moves if m.verdict == "gone"} == {"third"}
+    assert (fewer.status, fewer.words) == (ExitStatus.AGREE, "")
 
 
 def test_the_file_is_the_same_bytes_and_holds_nothing_that_runs(tmp_path: Path) -> None:

@@ -102,6 +102,19 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
     assert lines["toe"].endswith("agrees")
     # A coarser accuracy is what it would have to state.
     assert run("own_solvers.wrong:solve", "--accuracy", "1e3", "off-axis-strut.toml") == 3
+    capfd.readouterr()
+    assert run("own_solvers.wrong:solve", "--accuracy", "1e6", "off-axis-strut.toml", "-q") == 3
+    (line,) = capfd.readouterr().err.splitlines()
+    assert "no verdict: no number that is given is tested; camber: " in line
+
+
+def test_another_solver_than_the_baselines_is_no_verdict(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run("own_solvers.right:solve", "off-axis-strut.toml", "--save-baseline", "b.npz") == 0
+    assert run("own_solvers.prints:solve", "off-axis-strut.toml", "--baseline", "b.npz", "-q") == 3
+    (line,) = (one for one in capfd.readouterr().err.splitlines() if one.startswith("pointcoord: "))
+    assert "own_solvers.prints:solve in the place of own_solvers.right:solve" in line
 
 
 def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
@@ -169,7 +182,7 @@ def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest
         (["own_solvers/right.py:solve"], "try own_solvers.right:solve"),
         (["own_solvers.right"], "give MODULE:NAME"),
         ([""], "give MODULE:NAME"),
-        (["math:pi"], "is a float, which is no solver"),
+        (["math:pi"], "is of type float, which is no solver"),
         (["own_solvers.right:solve", "--accuracy", "0"], "give a length above 0"),
         (["own_solvers.right:solve", "--accuracy", "fine"], "invalid float value: 'fine'"),
         (["own_solvers.right:solve", "--first", "absolute"], "--solver and --first are both given"),
@@ -191,7 +204,7 @@ def test_an_accuracy_without_a_solver_is_a_mistake(capfd: pytest.CaptureFixture[
 
 def test_an_answer_that_is_no_mapping_is_told(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run("own_solvers.none:solve", "off-axis-strut.toml") == 3
-    assert "it answers with a NoneType; needed: a mapping" in capfd.readouterr().err
+    assert "it answers with None; needed: a mapping" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize("module", ENDS)

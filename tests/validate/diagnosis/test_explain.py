@@ -4,10 +4,12 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from plain_solvers import closed_form
 
 from pointcoord import Scene, sweep
 from pointcoord.method import AUTO
@@ -442,6 +444,7 @@ def scaled(factor: float) -> Callable[[InputPart], InputPart]:
         (0.5, "the input rack is taken 0.5 times"),
         (21.0 / 20.0, "the input rack is taken 1.05 times"),
         (20.0 / 21.0, "the input rack is taken 0.952381 times"),
+        (0.0, "the input rack is taken as 0"),
     ],
 )
 @pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
@@ -585,3 +588,66 @@ def test_a_unit_in_part_is_told_where_its_factor_is_the_one_that_fits_best(facto
     noise = 0.2 * bent(held)
     found = diagnosis("double-wishbone", angle(held, "toe", lambda v: factor * (v + noise)))
     assert any("degrees for radians" in one.words for one in found) is told, found
+
+
+@pytest.mark.parametrize(
+    ("name", "closure", "asked"), [("steer", "drawn", "collinear"), ("off-axis-strut", "collinear", "drawn")]
+)
+def test_another_closure_than_the_scene_asks_for_is_told_first(name: str, closure: str, asked: str) -> None:
+    scene, _ = solved(name)
+    part = scene.mechanism.model_copy(update={"closure": closure})
+    motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
+    first = diagnosis(name, motion.numbers)[0]
+    assert (first.kind, first.leftover <= 1.0) == ("closure", True)
+    assert first.words.endswith(f"the car is closed as {closure}, where the scene asks for {asked}")
+
+
+@pytest.mark.parametrize(
+    ("rack", "arm", "words"),
+    [
+        ((-1.0, 5.0), (1.0, 0.0), "the input rack is taken as 5 mm minus it"),
+        (
+            (-1.0, 0.0),
+            (1.0, 0.02),
+            "the input arm_angle is taken 0.02 rad more, and the input rack has the other sign",
+        ),
+        (
+            (1.05, 0.0),
+            (0.99, 0.0),
+            "the input arm_angle is taken 0.99 times, and the input rack is taken 1.05 times",
+        ),
+    ],
+)
+@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+def test_inputs_that_are_wrong_in_two_ways_are_told_and_nothing_else_is(
+    name: str, rack: tuple[float, float], arm: tuple[float, float], words: str
+) -> None:
+    scene, _ = solved(name)
+    laws = scene.inputs
+    wrong = {given: more(m)(scaled(k)(laws[given])) for given, (k, m) in (("rack", rack), ("arm_angle", arm))}
+    other = scene.model_copy(update={"inputs": {**laws, **wrong}})
+    (only,) = diagnosis(name, formulation("pointcoord").solve(other).numbers)
+    assert (only.kind, only.leftover <= 1.0) == ("input", True)
+    assert only.words.endswith(f": {words}")
+
+
+@pytest.mark.parametrize(
+    ("names", "rate", "factor", "words"),
+    [
+        (("rack",), "velocity", -1.0, "the velocity of the input rack taken with the other sign"),
+        (("rack", "arm_angle"), "acceleration", 0.0, "the acceleration of all inputs taken as 0"),
+        (("arm_angle",), "acceleration", 0.0, "the acceleration of the input arm_angle taken as 0"),
+    ],
+)
+def test_rates_of_inputs_that_are_taken_otherwise_are_told_and_nothing_else_is(
+    names: tuple[str, ...], rate: str, factor: float, words: str
+) -> None:
+    def other(given: Mapping[str, Any]) -> Mapping[str, Any]:
+        inputs = {name: {**law} for name, law in given["inputs"].items()}
+        for name in names:
+            inputs[name][rate] = factor * inputs[name][rate]
+        return closed_form({**given, "inputs": inputs})
+
+    (only,) = check(other, solved("double-wishbone", 12)[0]).explanations
+    assert (only.kind, only.leftover <= 1.0) == ("rates of inputs", True)
+    assert only.words.endswith(f": {words}")

@@ -155,7 +155,7 @@ def test_an_accuracy_that_says_nothing_is_no_agreement_either(states) -> None:
 
 
 def test_what_is_no_mapping_and_no_accuracy_is_refused(states) -> None:
-    with pytest.raises(FormulationError, match="it answers with a list"):
+    with pytest.raises(FormulationError, match="it answers with data of type list"):
         assert_agrees([1.0], SCENE)
     with pytest.raises(NoSolver, match="give a length above 0"):
         assert_agrees(states, SCENE, accuracy=0.0)
