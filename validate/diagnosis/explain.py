@@ -94,8 +94,9 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = list(_supposed(evidence, _quick()))
-    if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
-        solving = [kind for kind in kinds() if kind.solves]
+    if evidence.over_time and _open(evidence, found, mostly=True):
+        elsewhere = _elsewhere(evidence)
+        solving = [kind for kind in kinds() if kind.solves and (elsewhere or kind.in_place)]
         deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
         if _open(evidence, deep):
             deep += _supposed(evidence, [kind for kind in solving if not kind.first])

@@ -49,6 +49,7 @@ class Kind(ABC):
         name: of the kind.
         solves: whether trying it takes solving other cars or motions.
         first: of those that solve, whether it is tried before the others, which are left out if it does.
+        in_place: of those that solve, whether it is tried too where points are given and are in their places.
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
         follows: kinds of first faults that it may be the second of; all if empty. One that has such is none
@@ -62,6 +63,7 @@ class Kind(ABC):
     name: str
     solves = False
     first = False
+    in_place = False
     opens = False
     closes = False
     follows: tuple[str, ...] = ()

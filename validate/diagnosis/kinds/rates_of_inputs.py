@@ -32,7 +32,7 @@ PROMISING = 0.1
 class RatesOfInputs(Kind):
     """Of each input and of all, each rate and both."""
 
-    name, of_time = "rates of inputs", True
+    name, solves, first, in_place, of_time = "rates of inputs", True, True, True, True
 
     def hypotheses(self, evidence: Evidence) -> Iterator[Hypothesis]:
         """None where a place is wrong, or no rate of a point or body is."""
