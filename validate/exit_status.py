@@ -26,7 +26,7 @@ MEANINGS = {
     ExitStatus.AGREE: "all agree; of a command that compares nothing: done",
     ExitStatus.DISAGREE: "something disagrees, or moved since its baseline, and the table says what",
     ExitStatus.WRONG_INPUT: "the command line or a scene is wrong, or a package is missing",
-    ExitStatus.NO_VERDICT: "no verdict: a scene is refused, another car than its baseline, or tests nothing",
+    ExitStatus.NO_VERDICT: "no verdict: a scene is refused, is not its baseline's, or tests nothing",
     ExitStatus.NOT_FINISHED: "could not finish or write: a full disk, no memory, an error of the program",
     ExitStatus.INTERRUPTED: "interrupted by Ctrl-C",
 }
