@@ -15,7 +15,7 @@ from absolute.expansion import Expansion, Line, between, expand, line_between
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
 from absolute.newton import Pose
-from absolute.tracking import Ahead, Tracking
+from absolute.tracking import LARGEST_BEND, LONGEST_RUN, Ahead, Tracking
 
 Array = NDArray[np.float64]
 Inputs = dict[str, Array]
@@ -86,6 +86,30 @@ def test_unrelated_inputs_make_no_runs_and_are_solved_all_the_same(
     mixed = {name: series[order] for name, series in inputs.items()}
     assert predictions(model, mixed) < 10
     assert_same(absolute.solve(model, mixed), one_by_one(monkeypatch, model, mixed))
+
+
+def test_a_run_ends_before_the_first_instant_that_is_too_far_or_bends_too_much() -> None:
+    steps = np.linspace(0.1, 0.5, 5) * LONGEST_RUN
+    far, bent = steps.copy(), np.zeros(5)
+    far[3] = 1.1 * LONGEST_RUN
+    bent[1] = 1.1 * LARGEST_BEND * steps[1]
+    nothing = np.zeros(5)
+    for size, bend, count in ((steps, nothing, 5), (far, nothing, 3), (steps, bent, 1), (far, bent, 1)):
+        assert Ahead(np.zeros((5, 1)), size, bend, nothing).length() == count
+
+
+def test_of_instants_the_first_of_which_has_no_pose_none_is_found(kind: Kind, model: absolute.Model) -> None:
+    mechanism = Mechanism(model)
+    inputs = swinging(kind, 6, 1.0)
+    beyond = {name: series.copy() for name, series in inputs.items()}
+    beyond["rack"][:, 0] = 100.0 * mechanism.drawing.size
+    rows = [np.stack([given[name] for name in model.inputs], -1) for given in (inputs, beyond)]
+    tracking = Tracking(mechanism)
+    tracking.advance(rows[0][:, 0].tolist(), mechanism.target_series(rows[0])[0])
+    assert len(tracking.found.q) == 6
+    with pytest.raises(absolute.AbsoluteError):
+        tracking.advance(rows[1][:, 0].tolist(), mechanism.target_series(rows[1])[0])
+    assert len(tracking.found.q) == 0
 
 
 def expansions(model: absolute.Model, changes: list[Array]) -> tuple[Mechanism, list[Expansion], list[Pose]]:
