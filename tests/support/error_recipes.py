@@ -456,7 +456,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.solvers.plain.NoSolver": Recipe(
         lambda *_: check(3.0, BOUNCE),
-        ("the solver is a float", "give a function, or an object or a class with a method 'solve'"),
+        ("the solver is of type float", "give a function, or an object or a class with a method 'solve'"),
         {"what": "the solver"},
     ),
     "validate.solvers.plain.SolverFailed": Recipe(
