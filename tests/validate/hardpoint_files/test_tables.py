@@ -483,13 +483,13 @@ def test_other_columns_of_numbers_are_left_out_and_told(tmp_path: Path) -> None:
 def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = "\n".join(["Point,X,Y,Z", *rows(str), ",,,", "Steering rack,1.3,,", "Wheel size,n.a.,,"])
+    text = "\n".join(["Point,X,Y,Z", *rows(str), ",,,", "Steering rack,1.3,,", "Wheel size,none,,"])
     found = imported(tmp_path, text, axes=OURS)
     assert drawn(found) == CAR
     assert "lines without a point: 'Steering rack' 1.3 on line 13" in found.facts
-    broken = text.replace(f"{WORDS['tie_rod_inner']},{cells(CAR['tie_rod_inner'])}", "TIE_ROD_IN,n.a.,,")
-    assert "TIE_ROD_IN,n.a." in broken
-    with pytest.raises(HardpointFileError, match="x of 'TIE_ROD_IN' is 'n.a.'"):
+    broken = text.replace(f"{WORDS['tie_rod_inner']},{cells(CAR['tie_rod_inner'])}", "TIE_ROD_IN,none,,")
+    assert "TIE_ROD_IN,none" in broken
+    with pytest.raises(HardpointFileError, match="x of 'TIE_ROD_IN' is 'none'"):
         imported(tmp_path, broken, axes=OURS)
     assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
