@@ -1,7 +1,8 @@
-"""Suspensions in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
+"""Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
 from absolute.closing import ClosedDrawing, close_drawing
-from absolute.description import Axis, BranchSign, Carried, Corner, Input, Joint, Model
+from absolute.compiler import compile
+from absolute.description import Axis, Corner, Input, Joint, Model
 from absolute.effects import EFFECTS
 from absolute.effects.effect import Effect
 from absolute.errors import (
@@ -17,19 +18,13 @@ from absolute.errors import (
 )
 from absolute.solution import Solution
 from absolute.solve import solve
-from absolute.suspensions import SUSPENSIONS, suspension_of
-from absolute.suspensions.macpherson import macpherson
-from absolute.suspensions.suspension import Suspension
 
 __all__ = [
     "EFFECTS",
-    "SUSPENSIONS",
     "AbsoluteError",
     "AssemblyError",
     "Axis",
     "BranchError",
-    "BranchSign",
-    "Carried",
     "ClosedDrawing",
     "Corner",
     "DescriptionError",
@@ -42,10 +37,8 @@ __all__ = [
     "PoseError",
     "SingularError",
     "Solution",
-    "Suspension",
     "UnreachableError",
     "close_drawing",
-    "macpherson",
+    "compile",
     "solve",
-    "suspension_of",
 ]

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from absolute.mechanism import Mechanism
-from absolute.newton import Pose, accelerations, correct
+from absolute.newton import Pose, accelerations, correct, held_at
 from absolute.precision import EPS
 from absolute.solution import Array
 from absolute.vectors import cross
@@ -15,8 +15,11 @@ Path = Callable[[float], Array]
 # All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
 # over that distance the second-order prediction holds for any linkage that is not near a fold.
 LONGEST_STEP = 0.5
-# The curved part of a step must be small against its straight part.
-LARGEST_CURVE = 0.5
+# The curved part of a step must be small against its straight part, and Newton's first correction against
+# the step. Where x is the distance from a fold, so that the other branch is 2 x away, a step s has a curved
+# part of s / 2 x: it ends within half the way to the fold and a quarter of that to the other branch.
+LARGEST_CURVE = 0.25
+LARGEST_CORRECTION = 0.1
 # A step below sqrt(eps) that still bends this much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
 # Thousands of the longest steps would be many turns around. A guard against endless work.
@@ -37,8 +40,9 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
     """The pose at the end of a path, and the Newton corrections it took.
 
     Each step is predicted to second order by the factors of the last pose and corrected by Newton.
-    It is refused and halved when it is long, bends much, does not converge, or changes the sign of
-    the determinant.
+    It is refused and halved when it is long, bends much, needs a large correction, does not converge, leaves
+    rows that were left out, or changes the sign of the determinant of a group: assemblies meet where one is
+    zero.
 
     Raises:
         BlockedError: steps have become too short to go on: the mechanism locks there.
@@ -61,9 +65,15 @@ def follow(mechanism: Mechanism, start: Pose, path: Path) -> tuple[Pose, int]:
                 mechanism, mechanism.moved(pose.q, pose.poses.rotation, step), path(end)[0], pose.rcond
             )
             spent += outcome.corrections
-            # Branches meet at folds, and the determinant changes its sign there.
-            if outcome.pose is not None and outcome.pose.sign == pose.sign:
-                arrived = outcome.pose
+            small = outcome.first <= LARGEST_CORRECTION * size + pose.floor
+            there = outcome.pose
+            if (
+                there is not None
+                and small
+                and (there.signs == pose.signs).all()
+                and held_at(mechanism, there)
+            ):
+                arrived = there
         if arrived is not None:
             pose, share, length = arrived, end, 2.0 * length
             if share >= 1.0:

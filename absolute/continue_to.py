@@ -66,18 +66,23 @@ def _straight(mechanism: Mechanism, begin: Sequence[float], end: Sequence[float]
 def _refusal(
     mechanism: Mechanism, blocked: BlockedError, start: Sequence[float], goal: Sequence[float], instant: int
 ) -> AbsoluteError:
-    names = tuple(mechanism.model.inputs)
-    wanted = dict(zip(names, goal, strict=True))
-    reached = {name: a + blocked.share * (b - a) for name, a, b in zip(names, start, goal, strict=True)}
+    wanted = mechanism.named(goal)
+    reached = mechanism.named([a + blocked.share * (b - a) for a, b in zip(start, goal, strict=True)])
     residual = blocked.pose.residual * mechanism.drawing.size
     condition = inverse(blocked.pose.rcond)
     asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
-    limits = limits_at(mechanism, blocked.pose.placed.world)
+    jacobian = mechanism.stack.jacobian(blocked.pose.placed)
+    limits = limits_at(mechanism, jacobian)
+    if not limits and mechanism.redundant is not None:
+        # Far from singular: the way leads on, but only without the rows that were left out.
+        limits = tuple(dict.fromkeys(mechanism.redundant.owners))
     # What the targets change along the straight way, at its end.
     change = _straight(mechanism, start, goal)(blocked.share)[1][mechanism.joint_rows :]
-    limit = limiting_input(mechanism, mechanism.stack.jacobian(blocked.pose.placed), change)
-    if blocked.share == 1.0 or np.allclose(list(reached.values()), goal, rtol=SMALLEST_RCOND, atol=0):
+    limit = limiting_input(mechanism, jacobian, change)
+    if blocked.share == 1.0 or np.allclose(
+        list(reached.values()), list(wanted.values()), rtol=SMALLEST_RCOND, atol=0
+    ):
         return SingularError(
             f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
             f"{condition:.3g}, "

@@ -1,7 +1,7 @@
 """A linkage as plain data: points, the bodies that hold them, joints and inputs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,7 +13,18 @@ from absolute.solution import Array
 Vector = tuple[float, float, float]
 
 # Rows each joint kind takes away from the six relative freedoms of its two bodies.
-JOINT_ROWS = {"spherical": 3, "universal": 4, "cylindrical": 4, "revolute": 5, "prismatic": 5}
+JOINT_ROWS = {
+    "spherical": 3,
+    "revolute": 5,
+    "prismatic": 5,
+    "on_line": 2,
+    "key": 1,
+    "parallel": 3,
+    "level": 1,
+    "distance": 1,
+}
+# Of these only the points matter.
+WITHOUT_LINE = ("spherical", "parallel", "distance")
 
 # The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
 LARGEST_COORDINATE = 1e100
@@ -37,10 +48,12 @@ class Axis:
 class Joint:
     """Two bodies and the axis each brings; the joint makes the two axes fit.
 
-    Kinds: `spherical` joins the points; `revolute` joins points and lines; `cylindrical` makes the
-    two lines one line; `prismatic` does so and lets neither body turn about it against the other;
-    `universal` joins the points and keeps the two lines at a right angle (the pins of a cross).
-    Lines that become one keep the sense in which they are drawn.
+    Kinds: `spherical` joins the points; `revolute` joins points and lines; `prismatic` makes the two
+    lines one line and lets neither body turn against the other; `on_line` keeps the point of the second
+    body on the line of the first, and `key` keeps the second body from turning about its line there;
+    `parallel` lets neither body turn against the other; `level` keeps the two lines at a right angle;
+    `distance` keeps the points as far apart as drawn. Lines that become one keep the sense in which they
+    are drawn.
     """
 
     kind: str
@@ -52,10 +65,16 @@ class Joint:
 
 @dataclass(frozen=True)
 class Input:
-    """A driven coordinate: how far a point of one body stands along an axis of another.
+    """A driven coordinate: how far a point of one body stands along an axis of another, or from it.
 
     axis . (point - axis.through) = factor * value          law "linear", value in mm
     axis . (point - axis.through) = factor * cos(value)     law "cosine", value in rad, factor in mm
+    |point - axis.through|        = factor * value          law "distance", value in mm
+    turn of `second` against `first` about the axis, which a hinge gives them = factor * value
+                                                            law "turn", value in rad, 0 in the drawing
+
+    Attributes:
+        value: name of the value where several coordinates take the same; the coordinate's own by default.
     """
 
     first: str
@@ -64,54 +83,27 @@ class Input:
     point: str
     law: str
     factor: float
-
-
-@dataclass(frozen=True)
-class Carried:
-    """The vector between two points as drawn, carried by a body that need not hold them."""
-
-    body: str
-    start: str
-    end: str
-
-
-@dataclass(frozen=True)
-class BranchSign:
-    """A product of vectors whose sign tells the assemblies of a linkage apart.
-
-    Two vectors give a . b, three give (a x b) . c. Choose it so that it is zero where two assemblies
-    meet and nowhere else: then no regular motion changes its sign, and the drawing's sign is the
-    branch. Each vector leads from one point to another, or is carried, or is a direction of the chassis.
-
-    Attributes:
-        vectors: two or three.
-        limits: the links that are at their dead point where the product is zero, for messages.
-    """
-
-    vectors: tuple[tuple[str, str] | Vector | Carried, ...]
-    limits: tuple[str, ...] = ()
+    value: str = ""
 
 
 @dataclass(frozen=True)
 class Corner:
-    """What of a linkage is the wheel, the knuckle and the steering axis, and which way the car points.
+    """What of a linkage is the wheel and the steering axis, and which way the car points.
 
     Attributes:
-        knuckle: the body that carries the wheel.
-        wheel_axis: the wheel's spin axis, from its inner point to the wheel centre.
-        steering_axis: the axis about which the wheel is steered, from its lower to its upper point.
         up, right, outboard: directions of the car in the frame of the points, given at any length and kept
             as unit vectors; outboard leads from the car's middle to the wheel: right or minus right.
+        wheel_axis: the wheel's spin axis, from its inner point to the wheel centre, if there is one.
+        steering_axis: the axis about which the wheel is steered, from its lower to its upper point, likewise.
     Raises:
         DescriptionError: a direction is no three finite numbers, or zero.
     """
 
-    knuckle: str
-    wheel_axis: tuple[str, str]
-    steering_axis: tuple[str, str]
     up: Vector
     right: Vector
     outboard: Vector
+    wheel_axis: tuple[str, str] | None = None
+    steering_axis: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         for name in ("up", "right", "outboard"):
@@ -138,6 +130,21 @@ class Corner:
         """Minus forward."""
         return plain(np.cross(self.right, self.up))
 
+    def ends(self, role: str) -> tuple[str, str]:
+        """The two points of `wheel_axis` or `steering_axis`.
+
+        Raises:
+            DescriptionError: the mechanism has no such role.
+        """
+        ends: tuple[str, str] | None = getattr(self, role)
+        if ends is None:
+            raise DescriptionError(
+                f"the mechanism has no role {role!r}, so it has no effect that needs it: name the two "
+                f"points of its {role}, or ask for other effects",
+                role,
+            )
+        return ends
+
 
 @dataclass(frozen=True)
 class Model:
@@ -149,11 +156,11 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        branch_signs: name -> BranchSign, whose sign in the drawing every pose must keep; none by default.
         corner: what of it is the wheel, where effects are asked for; none by default.
+        aids: bodies, and points, that are there for the equations only and are not reported.
     Raises:
         DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
-            LARGEST_COORDINATE, an axis has no length, or joints and inputs do not give six rows per
+            LARGEST_COORDINATE, an axis has no length, or joints and inputs give fewer than six rows per
             moving body.
     """
 
@@ -162,26 +169,27 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    branch_signs: Mapping[str, BranchSign] = field(default_factory=dict)
     corner: Corner | None = None
+    aids: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         points = {name: point_of(name, value) for name, value in self.points.items()}
         object.__setattr__(self, "points", ReadOnly(points))
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
-        object.__setattr__(self, "inputs", ReadOnly(self.inputs))
-        object.__setattr__(self, "branch_signs", ReadOnly(self.branch_signs))
+        # Turns last: rows of lengths and rows of angles stay apart.
+        driven = sorted(self.inputs.items(), key=lambda drive: drive[1].law == "turn")
+        object.__setattr__(self, "inputs", ReadOnly(dict(driven)))
         _check_bodies(self)
         for name, joint in self.joints.items():
             _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
             _check_pair(self, f"joint {name!r}", name, joint.first, joint.second)
             for body, axis in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
-                _check_axis(self, f"joint {name!r}", name, body, axis, joint.kind != "spherical")
+                _check_axis(self, f"joint {name!r}", name, body, axis, joint.kind not in WITHOUT_LINE)
         for name, drive in self.inputs.items():
             _check_choice(f"law of input {name!r}", name, drive.law, LAWS)
             _check_pair(self, f"input {name!r}", name, drive.first, drive.second)
-            _check_axis(self, f"input {name!r}", name, drive.first, drive.axis, True)
+            _check_axis(self, f"input {name!r}", name, drive.first, drive.axis, drive.law != "distance")
             _check_axis(self, f"input {name!r}", name, drive.second, Axis(drive.point), False)
             if not np.isfinite(drive.factor) or drive.factor == 0:
                 raise DescriptionError(
@@ -189,8 +197,6 @@ class Model:
                     name,
                     drive.factor,
                 )
-        for name, sign in self.branch_signs.items():
-            _check_branch_sign(self, name, sign)
         if self.corner is not None:
             _check_corner(self, self.corner)
         self._check_count()
@@ -200,11 +206,21 @@ class Model:
         """Names of the bodies that move, in the order given."""
         return tuple(name for name in self.bodies if name != self.chassis)
 
-    def require_corner(self) -> Corner:
-        """The corner, for those who need one.
+    @property
+    def values(self) -> tuple[str, ...]:
+        """Names of the values that the inputs take, each once."""
+        return tuple(dict.fromkeys(drive.value or name for name, drive in self.inputs.items()))
+
+    @property
+    def reported(self) -> tuple[str, ...]:
+        """Names of the points that are not aids."""
+        return tuple(name for name in self.points if name not in self.aids)
+
+    def require(self, role: str) -> None:
+        """Refuse to go on without a role of the corner.
 
         Raises:
-            DescriptionError: the model has none.
+            DescriptionError: there is none.
         """
         if self.corner is None:
             raise DescriptionError(
@@ -212,16 +228,16 @@ class Model:
                 "`corner`, or ask for no effects",
                 "corner",
             )
-        return self.corner
+        self.corner.ends(role)
 
     def _check_count(self) -> None:
         rows = sum(JOINT_ROWS[joint.kind] for joint in self.joints.values()) + len(self.inputs)
         unknowns = 6 * len(self.moving)
-        if rows != unknowns:
-            cure = "add an input or a joint" if rows < unknowns else "remove an input or free a joint"
+        if rows < unknowns:
             raise DescriptionError(
-                f"joints and inputs give {rows} rows for {unknowns} unknown velocities "
-                f"(6 for each of {len(self.moving)} moving bodies); they must be equal: {cure}",
+                f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
+                f"{len(self.moving)} moving bodies), so {unknowns - rows} freedoms are left over: add "
+                "an input or a joint",
                 "rows",
                 rows,
             )
@@ -312,30 +328,9 @@ def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs
         _check_direction(what, name, axis.toward)
 
 
-def _check_branch_sign(model: Model, name: str, sign: BranchSign) -> None:
-    if len(sign.vectors) not in (2, 3):
-        raise DescriptionError(
-            f"branch sign {name!r} has {len(sign.vectors)} vectors; a product of two or three is needed",
-            name,
-            sign,
-        )
-    for vector in sign.vectors:
-        if isinstance(vector, Carried):
-            _check_choice(f"a body of branch sign {name!r}", name, vector.body, model.bodies)
-            ends: tuple[object, ...] = (vector.start, vector.end)
-        elif len(vector) == 2 and all(isinstance(end, str) for end in vector):
-            ends = vector
-        else:
-            _check_direction(f"branch sign {name!r}", name, vector)
-            continue
-        for end in ends:
-            _check_choice(f"a point of branch sign {name!r}", name, str(end), model.points)
-
-
 def _check_corner(model: Model, corner: Corner) -> None:
-    _check_choice("the knuckle", "knuckle", corner.knuckle, model.bodies)
-    for what, ends in (("wheel_axis", corner.wheel_axis), ("steering_axis", corner.steering_axis)):
-        for end in ends:
+    for what in ("wheel_axis", "steering_axis"):
+        for end in getattr(corner, what) or ():
             _check_choice(f"an end of the {what}", what, end, model.points)
 
 

@@ -35,7 +35,7 @@ class Drawing:
     """
 
     def __init__(self, model: Model) -> None:
-        coordinates = np.array(list(model.points.values()))
+        coordinates = np.array([model.points[name] for name in model.reported])
         largest = float(np.abs(coordinates).max())
         # Scaled before the mean and the norms: the smallest numbers have too few digits for them.
         unit = largest if largest > 0 else 1.0
@@ -57,7 +57,7 @@ class Drawing:
                 self.size,
             )
         self._drawn = model.points
-        self._given = dict(zip(model.points, coordinates, strict=True))
+        self._given = {name: np.array(place) for name, place in model.points.items()}
         self.bodies = {name: index for index, name in enumerate((model.chassis, *model.moving))}
         self._anchors = {body: self._anchor(model.bodies[body]) for body in model.moving}
         self.origins = np.zeros((len(self.bodies), 3))
@@ -73,19 +73,23 @@ class Drawing:
         anchor = self._anchors.get(body)
         return self._from_middle(point) if anchor is None else self.line(anchor, point)
 
+    def length(self, what: str, start: str, end: str) -> float:
+        """Distance of two drawn points, in units of size; `what` names its owner in the message."""
+        length = float(np.linalg.norm(self.line(start, end)))
+        if length < SHORTEST_AXIS:
+            raise DescriptionError(
+                f"{what}: {start!r} and {end!r} are {length * self.size:.3g} mm apart; "
+                f"an axis needs more than {SHORTEST_AXIS * self.size:.3g} mm: move one of them",
+                start,
+                length * self.size,
+            )
+        return length
+
     def direction(self, what: str, axis: Axis) -> Array:
         """Unit vector along a drawn axis; `what` names its owner in the message."""
         if isinstance(axis.toward, str):
-            line = self.line(axis.through, axis.toward)
-            length = float(np.linalg.norm(line))
-            if length < SHORTEST_AXIS:
-                raise DescriptionError(
-                    f"{what}: {axis.through!r} and {axis.toward!r} are {length * self.size:.3g} mm apart; "
-                    f"an axis needs more than {SHORTEST_AXIS * self.size:.3g} mm: move one of them",
-                    axis.through,
-                    length * self.size,
-                )
-            return np.asarray(line / length, dtype=float)
+            length = self.length(what, axis.through, axis.toward)
+            return np.asarray(self.line(axis.through, axis.toward) / length, dtype=float)
         line = np.array(axis.toward, dtype=float)
         line = line / np.abs(line).max()
         return np.asarray(line / np.linalg.norm(line), dtype=float)

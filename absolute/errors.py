@@ -58,8 +58,7 @@ class PoseError(AbsoluteError):
         reached: the inputs of the last pose that could be solved on the way there.
         residual: largest violation of any row at that last pose, mm.
         condition: estimate of the condition number (1-norm) at that last pose.
-        limits: the links at their dead point there, such as "link tie_rod_inner - tie_rod_outer" or
-            "strut axis"; empty where the model does not tell them or none is.
+        limits: the joints that hold each other there, the strongest first; empty where none do.
         limit: the input that meets the end of its range there, or "" where it was not one of them.
     """
 
@@ -89,28 +88,7 @@ class AssemblyError(PoseError):
 
 
 class BranchError(PoseError):
-    """The branch of the drawing is not found, or the drawing has none.
-
-    Attributes:
-        branch_sign: name of the product whose sign is not that of the drawing; `limits` are its links.
-        drawn, found: its value in the drawing and where it was found otherwise, divided by the
-            lengths of its factors: between -1 and 1.
-    """
-
-    def __init__(
-        self,
-        message: str,
-        instant: int | None = None,
-        inputs: Mapping[str, float] | None = None,
-        branch_sign: str = "",
-        drawn: float = float("nan"),
-        found: float = float("nan"),
-        limits: tuple[str, ...] = (),
-    ) -> None:
-        super().__init__(message, instant, inputs, limits=limits)
-        self.branch_sign = branch_sign
-        self.drawn = drawn
-        self.found = found
+    """The pose found for an instant is not on the branch of the drawing."""
 
 
 class UnreachableError(PoseError):

@@ -16,10 +16,13 @@ import numpy as np
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
 from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
-from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
+from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose
 from absolute.solution import Array
-from absolute.stack import WHEEL, Placed
+from absolute.stack import Placed
 from absolute.vectors import cross
+
+# v @ WHEEL is the matrix of "x v", row by row: a product with it is  x @ wheel(v) = v x x.
+WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 
 # A turned arm has 13 roundings; each product with an angular velocity adds three.
 TURNED = spread(13 + 3)
@@ -202,7 +205,7 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
     displaced = np.einsum("nij,nj->ni", inverse, np.sign(inverse[count, worst]) * doubt)
     twist = np.zeros((len(doubt), len(mechanism.drawing.bodies), 2, 3))
     twist[:, 1:] = displaced.reshape(len(doubt), -1, 2, 3)
-    bend = np.einsum("nij,nj->ni", inverse, stack.drift(placed, twist[:, :, 0], twist[:, :, 1]))
+    bend = np.einsum("nij,nj->ni", inverse, stack.drift(placed, twist))
     near = 0.5 * np.abs(bend).max(axis=1) / np.abs(displaced).max(axis=1)
     root = np.sqrt(np.maximum(1.0 - 4.0 * near, 0.0))
     with np.errstate(divide="ignore"):
@@ -220,11 +223,14 @@ def _answers(
     targets = mechanism.target_series(series)
     jacobian = stack.jacobian(placed)
     inverse = np.asarray(np.linalg.inv(jacobian), dtype=float)
-    moving, bending = (row_motion(stack, placed, rates) for rates in (motion.velocity, motion.acceleration))
+    moving = stack.motion(placed, motion.velocity)
+    # Of the accelerations only the first rates count: their squares may be beyond any number.
+    with np.errstate(over="ignore", invalid="ignore"):
+        bending = stack.motion(placed, motion.acceleration)
     speeds, seconds = (
         rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
     )
-    drift = stack.drift(placed, motion.velocity[:, :, 0], motion.velocity[:, :, 1])
+    drift = stack.drift(placed, motion.velocity)
     three = [
         pose_doubt(mechanism, placed, targets[0]),
         rate_doubt(moving, jacobian, speeds, targets[1]),

@@ -64,7 +64,7 @@ def expand(
     ways[count:] += straight[second[count:]]
     twist = np.zeros((len(ways), len(placed.origin), 2, 3))
     twist[:, 1:] = ways.reshape(len(ways), -1, 2, 3)
-    drift = mechanism.stack.drift(placed, twist[:, :, 0], twist[:, :, 1])
+    drift = mechanism.stack.drift(placed, twist)
     curve = factors.solve(-drift.T).reshape(rows, len(ways)).T.reshape(len(ways), -1, 2, 3)
     body = q.reshape(-1, 7)
     turn = body[:, 3:]

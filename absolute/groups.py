@@ -6,8 +6,8 @@ Jacobian J is block triangular, and so is its inverse K,
 
     K_gg = J_gg^-1,    K_gp = -K_gg J_gp K_pp
 
-with p all groups before g: small inverses and a few products. det J is the product of those of the blocks,
-but for the sign of both orders.
+with p all groups before g: small inverses and a few products. A block's determinant changes its sign where
+the assemblies of its group meet, and so tells more than that of J, which is the product of all.
 
 Successive instants are near each other and share the inverse K of a block J: with E = I - K J', |E| < 1,
 
@@ -17,11 +17,12 @@ are off from the inverse of J' by E to the power 2, 4, 8 (Newton, Schulz), and d
 since no eigenvalue of K J' = I - E is zero on the way from E to nothing.
 """
 
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from absolute.solution import Array
 
@@ -41,51 +42,67 @@ class Groups(NamedTuple):
         rows, columns: places of the Jacobian's rows and columns in that order.
         column_place: where each column of the Jacobian is in it.
         ends: after how many each group ends.
-        sign: of the determinant of both orders together.
     """
 
     rows: Places
     columns: Places
     column_place: Places
     ends: tuple[int, ...]
-    sign: float
+
+    @property
+    def blocks(self) -> list[slice]:
+        """Where each group is in that order."""
+        return [slice(*ends) for ends in zip((0, *self.ends[:-1]), self.ends, strict=True)]
 
 
 def groups_of(first: Places, second: Places, bodies: int) -> Groups:
     """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
 
+    Rows are matched with freedoms of their bodies. A body then waits for all others in its own rows, and
+    bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched,
+    all are one group: some body can still move.
+
     Args:
         first, second: the two bodies of each row.
     """
-    done, rows, columns, ends = {0}, list[int](), list[int](), list[int]()
-    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
-    while len(done) < bodies:
-        group, own = _next(pairs, done, bodies)
-        done |= group
-        rows += own
-        columns += [6 * (body - 1) + place for body in sorted(group) for place in range(6)]
+    freedoms = 6 * (bodies - 1)
+    pairs = np.array([first, second]).T
+    touched = np.zeros((len(pairs), bodies), dtype=np.bool_)
+    touched[np.arange(len(pairs))[:, None], pairs] = True
+    pattern = csr_array(np.repeat(touched[:, 1:], 6, axis=1))
+    of_row = maximum_bipartite_matching(pattern, perm_type="column") // 6
+    if len(pairs) != freedoms or (of_row < 0).any():
+        whole = np.arange(freedoms)
+        return Groups(np.arange(len(pairs)), whole, whole, (freedoms,))
+    waits = np.zeros((bodies - 1, bodies - 1), dtype=np.bool_)
+    for row, body in enumerate(of_row):
+        waits[body] |= touched[row, 1:]
+    count, label = connected_components(csr_array(waits), connection="strong")
+    ahead = [set(label[waits[label == group].any(axis=0)].tolist()) - {group} for group in range(count)]
+    rows, columns, ends, done = list[int](), list[int](), list[int](), set[int]()
+    while len(done) < count:
+        group = min(
+            (group for group in range(count) if group not in done and ahead[group] <= done),
+            key=lambda group: int(np.argmax(label == group)),
+        )
+        done.add(group)
+        rows += np.flatnonzero(label[of_row] == group).tolist()
+        columns += np.flatnonzero(np.repeat(label == group, 6)).tolist()
         ends.append(len(columns))
     orders = np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp)
-    signs = [np.linalg.det(np.eye(len(order))[order]) for order in orders]
-    sign = float(np.round(np.prod(signs)))
-    return Groups(*orders, np.argsort(orders[1]), tuple(ends), sign)
+    return Groups(*orders, np.argsort(orders[1]), tuple(ends))
 
 
-def _next(pairs: list[tuple[int, int]], done: set[int], bodies: int) -> tuple[set[int], list[int]]:
-    """The smallest group that the next rows fix, and these; all that is left if there is no smaller one."""
-    left = sorted(set(range(bodies)) - done)
-    for count in range(1, len(left)):
-        for some in combinations(left, count):
-            group = set(some)
-            known = done | group
-            own = [row for row, pair in enumerate(pairs) if set(pair) <= known and not set(pair) <= done]
-            if len(own) == 6 * count:
-                return group, own
-    return set(left), [row for row, pair in enumerate(pairs) if not set(pair) <= done]
+def signs_of(groups: Groups, jacobian: Array) -> Array:
+    """(..., groups) signs of the determinants of the blocks of Jacobians (..., rows, rows)."""
+    ordered = jacobian[..., groups.rows[:, None], groups.columns]
+    signs = [np.sign(np.linalg.det(ordered[..., block, block])) for block in groups.blocks]
+    return np.stack(signs, axis=-1)
 
 
 def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
-    """Inverses of Jacobians (N, rows, rows) of successive instants, and signs (N,) of their determinants.
+    """Inverses of Jacobians (N, rows, rows) of successive instants, and signs (N, groups) of the determinants
+    of their blocks.
 
     The inverses are in the order of the groups and off by some SERVES of themselves; not numbers, with a sign
     of 0, where one is singular.
@@ -95,17 +112,14 @@ def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
     flat = jacobian.swapaxes(-1, -2).reshape(count, -1)
     places = groups.columns * size + groups.rows[:, None]
     inverse = np.zeros((count, size, size))
-    signs = np.full(count, groups.sign)
-    start = 0
-    for end in groups.ends:
-        own, before = slice(start, end), slice(start)
-        found, sign = _of_block(flat.take(places[own, own], 1))
+    signs = np.empty((count, len(groups.ends)))
+    for number, own in enumerate(groups.blocks):
+        before = slice(own.start)
+        found, signs[:, number] = _of_block(flat.take(places[own, own], 1))
         inverse[:, own, own] = found
-        signs *= sign
-        if start:
+        if own.start:
             coupling = flat.take(places[own, before], 1)
             inverse[:, own, before] = -found @ (coupling @ inverse[:, before, before])
-        start = end
     return inverse, signs
 
 

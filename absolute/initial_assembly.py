@@ -1,6 +1,6 @@
 """Putting the drawn bodies together on the branch of the drawing, or saying why not."""
 
-from collections.abc import Iterator
+import math
 
 import numpy as np
 
@@ -8,111 +8,177 @@ from absolute.backend import eigenpy
 from absolute.continuation import BlockedError, follow
 from absolute.errors import AssemblyError, BranchError, SingularError
 from absolute.limits import limited_by, limits_at
-from absolute.mechanism import Mechanism
-from absolute.newton import SMALLEST_RCOND, Pose, inverse, pose_at, seek
+from absolute.mechanism import Mechanism, too_many_rows
+from absolute.newton import SMALLEST_RCOND, Pose, correct, held_at, inverse, pose_at
+from absolute.precision import EPS
 from absolute.solution import Array
+from absolute.stack import Placed, RowStack
 
-# Other starts than the drawing, each body turned and moved at random by up to these amounts (rad
-# and units of size, as standard deviations): near the drawing and anywhere, by turns.
-TURNS = (0.2, 0.4, 0.6, 1.0)
-STARTS_PER_TURN = 40
+# Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
+# to 200 mm off, two closed to another one than their rods are drawn on, and moved by 0.82 and 1.11 of it.
+FURTHEST = 0.8
+# Where the drawing is x from a fold and the closed pose N x, the step that the drawing's own derivatives give
+# is (N + 1) / 2 times as long as the way that is gone: with g = (N^2 - 1) x^2, g / 2 x against (N - 1) x.
+# From 7 times as far on, which rows are chosen tells the side of the fold as much as the drawing does.
+LONGEST_ESTIMATE = 4.0
 
 
 def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     """The assembled pose on the branch of the drawing, at the inputs of the drawing.
 
-    First the rows keep a shrinking share of the violation they have in the drawing: rows(q) =
-    (1 - share) rows(drawn) + share * target. A drawing far from assembled may end on another
-    branch, or lock; then Newton starts from the drawing with its bodies turned. Whatever the way,
-    the pose has the branch signs of the drawing. Without any in the model only the first way is tried.
+    The rows keep a shrinking share of the violation they have in the drawing: rows(q) =
+    (1 - share) rows(drawn) + share * target, without meeting a singular pose.
 
     Returns:
         The pose and the Newton corrections of the way that led to it.
     Raises:
         SingularError: the drawing itself is singular.
-        BranchError: a branch sign of the drawing is zero, or only poses with others are found.
-        AssemblyError: no pose is found.
+        AssemblyError: closing the drawing locks the mechanism.
+        DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     drawn = _drawn_pose(mechanism)
-    _check_branch_signs(mechanism)
     inputs = mechanism.drawn_inputs.tolist()
     zeros = [0.0] * len(inputs)
     target = mechanism.targets(inputs, zeros, zeros)[0]
-    gap = target - drawn.placed.values
+    gap = mechanism.stack.gap(drawn.placed, target)
 
     def closing(share: float) -> Array:
         return np.array([drawn.placed.values + share * gap, gap, np.zeros_like(gap)])
 
-    wrong: Pose | None = None
-    blocked: BlockedError | None = None
     try:
         pose, spent = follow(mechanism, drawn, closing)
-    except BlockedError as block:
-        blocked = block
-    else:
-        if mechanism.branch_signs.kept(pose.placed.world):
-            return pose, spent
-        wrong = pose
-    if mechanism.branch_signs.told:
-        for start in _starts(mechanism, drawn):
-            found = seek(mechanism, start, target)
-            if found is None:
-                continue
-            if mechanism.branch_signs.kept(found.placed.world):
-                return found, 0
-            wrong = wrong or found
-    if wrong is not None:
-        raise branch_error(mechanism, None, inputs, wrong.placed.world) from blocked
+    except BlockedError as blocked:
+        raise _locked(mechanism, blocked, gap) from blocked
+    _require_near(mechanism, pose)
+    _require_clear(mechanism, drawn, pose, target)
+    _require_redundant(mechanism, pose)
+    return pose, spent
+
+
+def _require_near(mechanism: Mechanism, pose: Pose) -> None:
+    """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
+    drawing, model = mechanism.drawing, mechanism.model
+    furthest, moved = "", 0.0
+    for body, index in drawing.bodies.items():
+        for point in model.bodies[body]:
+            arm = drawing.arm(body, point)
+            there = pose.poses.origin[index] + pose.poses.rotation[index] @ arm
+            distance = float(np.linalg.norm(there - drawing.origins[index] - arm))
+            if distance > moved:
+                furthest, moved = point, distance
+    if moved > FURTHEST:
+        raise AssemblyError(
+            f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
+            f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
+            "meant: draw the points closer to an assembled pose",
+            None,
+            mechanism.named(mechanism.drawn_inputs.tolist()),
+            {},
+            moved * drawing.size,
+        )
+
+
+def _require_clear(mechanism: Mechanism, drawn: Pose, pose: Pose, target: Array) -> None:
+    """Refuse a drawing that is so much nearer to a fold than its closed pose that its side is not clear.
+
+    Where Newton's method comes to the same assembly in one go, two ways say which one is drawn.
+    """
+    gap = mechanism.stack.gap(drawn.placed, target)
+    estimate = float(np.linalg.norm(drawn.factors.solve(gap)))
+    turns = pose.poses.rotation @ drawn.poses.rotation.swapaxes(-1, -2)
+    angles = np.arccos(np.clip(0.5 * (np.trace(turns, axis1=-2, axis2=-1) - 1.0), -1.0, 1.0))
+    gone = math.hypot(np.linalg.norm(pose.poses.origin - drawn.poses.origin), np.linalg.norm(angles))
+    # A cosine tells no angle below the root of eps.
+    if estimate > LONGEST_ESTIMATE * gone and estimate > LONGEST_ESTIMATE * math.sqrt(EPS) * len(angles):
+        direct = correct(mechanism, drawn.q, target, drawn.rcond).pose
+        if direct is not None and np.abs(direct.poses.origin - pose.poses.origin).max() < math.sqrt(EPS):
+            return
+        limits = limits_at(mechanism, mechanism.stack.jacobian(drawn.placed))
+        raise AssemblyError(
+            f"the drawing lies nearer to a pose where two assemblies meet than closing moves it: "
+            f"{limited_by(limits)}"
+            "draw the points closer to an assembled pose",
+            None,
+            mechanism.named(mechanism.drawn_inputs.tolist()),
+            {},
+            float(np.abs(gap).max()) * mechanism.drawing.size,
+            inverse(drawn.rcond),
+            limits,
+        )
+
+
+def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> AssemblyError:
     size, largest = mechanism.drawing.size, float(np.abs(gap).max())
-    reached = blocked or BlockedError(1.0, drawn, 0)
     left = largest * (1 - reached.share) * size
     owner = mechanism.stack.owners[int(np.abs(gap).argmax())]
-    limits = limits_at(mechanism, reached.pose.placed.world)
-    raise AssemblyError(
+    limits = limits_at(mechanism, mechanism.stack.jacobian(reached.pose.placed))
+    return AssemblyError(
         f"the drawing cannot be assembled: rows are violated by up to {largest * size:.3g} mm "
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
         f"{limited_by(limits)}"
         "draw the points closer to an assembled pose",
         None,
-        mechanism.named(inputs),
+        mechanism.named(mechanism.drawn_inputs.tolist()),
         {},
         left,
         inverse(reached.pose.rcond),
         limits,
-    ) from blocked
+    )
 
 
-def branch_error(mechanism: Mechanism, instant: int | None, inputs: list[float], world: Array) -> BranchError:
+def branch_error(mechanism: Mechanism, instant: int, inputs: list[float], jacobian: Array) -> BranchError:
     """The refusal of a pose that is not on the branch of the drawing."""
-    signs = mechanism.branch_signs
-    place = signs.lost(world)
-    drawn, found = float(signs.drawn[place]), float(signs.shares(world)[place])
-    if instant is None:
-        where = "the drawing can be assembled, but not on its own branch"
-        cure = "draw the points closer to an assembled pose"
-    else:
-        where = f"instant {instant}: the pose found is not on the branch of the drawing"
-        cure = "lead up to these inputs by closer instants, or stay away from the limit of the motion"
+    limits = limits_at(mechanism, jacobian)
     return BranchError(
-        f"{where}: the branch sign {signs.names[place]!r} is {drawn:.3g} in the drawing and {found:.3g} "
-        f"there (its product divided by the lengths of its vectors, from -1 to 1); the sign must stay: "
-        f"{limited_by(signs.limits[place])}{cure}",
+        f"instant {instant}: the pose found is not on the branch of the drawing: a determinant or the sense "
+        f"of a joint has changed its sign on the way; {limited_by(limits)}lead up to these inputs by closer "
+        "instants, or stay away from the limit of the motion",
         instant,
         mechanism.named(inputs),
-        signs.names[place],
-        drawn,
-        found,
-        signs.limits[place],
+        limits=limits,
+    )
+
+
+def _require_redundant(mechanism: Mechanism, pose: Pose) -> None:
+    """Refuse rows that are too many and say something else than the others."""
+    left_out, stack = mechanism.redundant, mechanism.stack
+    if left_out is None:
+        return
+    placed = left_out.place(*pose.poses)
+    joints = np.vstack((stack.jacobian(pose.placed)[: mechanism.joint_rows], left_out.jacobian(placed)))
+    strengths = np.linalg.svd(joints, compute_uv=False)
+    if strengths[mechanism.joint_rows] > SMALLEST_RCOND * strengths[0]:
+        raise too_many_rows(left_out.owners, stack.count)
+    if not held_at(mechanism, pose):
+        raise locked(mechanism, None, left_out, placed, mechanism.drawn_inputs.tolist())
+
+
+def locked(
+    mechanism: Mechanism, instant: int | None, left_out: RowStack, placed: Placed, inputs: list[float]
+) -> AssemblyError:
+    """The refusal of a pose that rows which were left out do not hold."""
+    off = np.abs(left_out.gap(placed, left_out.drawn))
+    names = tuple(dict.fromkeys(left_out.owners[row] for row in np.argsort(-off)))
+    where = "the closed drawing" if instant is None else f"instant {instant}"
+    return AssemblyError(
+        f"{where}: {', '.join(names)} cannot hold together with the other joints, by "
+        f"{float(off.max()) * mechanism.drawing.size:.3g} mm: their rows follow from the others in the "
+        "drawing, but not here, so the mechanism is locked: draw axes that should be parallel or meet "
+        "exactly so, or free a joint",
+        instant,
+        mechanism.named(inputs),
+        limits=names,
     )
 
 
 def _drawn_pose(mechanism: Mechanism) -> Pose:
     poses = mechanism.poses(mechanism.drawn)
     placed = mechanism.stack.place(*poses)
-    factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
-    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, factors)
+    jacobian = mechanism.stack.jacobian(placed)
+    factors = eigenpy.PartialPivLU(jacobian)
+    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, jacobian, factors)
     if not drawn.rcond >= SMALLEST_RCOND:
-        limits = limits_at(mechanism, placed.world)
+        limits = limits_at(mechanism, jacobian)
         raise SingularError(
             f"the drawing is singular: condition number about {inverse(drawn.rcond):.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
@@ -127,30 +193,3 @@ def _drawn_pose(mechanism: Mechanism) -> Pose:
             limits,
         )
     return drawn
-
-
-def _check_branch_signs(mechanism: Mechanism) -> None:
-    """Refuse a drawing that stands where its branches meet."""
-    signs = mechanism.branch_signs
-    for name, wanted, drawn, limits in zip(signs.names, signs.wanted, signs.drawn, signs.limits, strict=True):
-        if wanted == 0:
-            raise BranchError(
-                f"the drawing has no branch: the branch sign {name!r} is {drawn:.3g} there, zero within "
-                "rounding (its product divided by the lengths of its vectors, from -1 to 1): two assemblies "
-                f"are equally near; {limited_by(limits)}move a point off that limit, to the side "
-                "that is meant",
-                None,
-                mechanism.named(mechanism.drawn_inputs.tolist()),
-                name,
-                float(drawn),
-                limits=limits,
-            )
-
-
-def _starts(mechanism: Mechanism, drawn: Pose) -> Iterator[Array]:
-    # Seeded: the same drawing gives the same answer, to the last digit.
-    random = np.random.default_rng(0)
-    for _ in range(STARTS_PER_TURN):
-        for turn in TURNS:
-            step = random.normal(scale=turn, size=mechanism.stack.count)
-            yield mechanism.moved(drawn.q, drawn.poses.rotation, step)

@@ -24,9 +24,13 @@ def _cosine(angle: float) -> tuple[float, float, float]:
     return cosine, -math.sin(angle), -cosine
 
 
+_LINEAR = Law(lambda value: (value, 1.0, 0.0), lambda value: 0.0, lambda ratio: ratio)
+
 LAWS = {
-    # coordinate = factor * value, value in mm
-    "linear": Law(lambda value: (value, 1.0, 0.0), lambda value: 0.0, lambda ratio: ratio),
+    # coordinate = factor * value, value in mm, or in rad for a turn
+    "linear": _LINEAR,
+    "distance": _LINEAR,
+    "turn": _LINEAR,
     # coordinate = factor * cos(value), value in rad, factor in mm
     "cosine": Law(_cosine, math.sin, lambda ratio: math.acos(max(-1.0, min(1.0, ratio)))),
 }

@@ -1,26 +1,38 @@
-"""What stands in the way where a motion ends: the links at their dead point, and the input that meets it."""
+"""What stands in the way where a motion ends: joints that hold each other, and the input that meets it."""
 
 import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.solution import Array
 
-# A motion is followed until a fold is about sqrt(eps) away, and a share there is of that order, times
-# ratios of lengths: this is ten thousand times as much.
+# A motion is followed until a fold is about sqrt(eps) away, and the smallest singular value there is of that
+# order, times ratios of lengths: this is ten thousand times as much.
 LARGEST_SHARE = 1e-4
-# Two branch signs whose shares differ by less than this factor have come to their ends together.
-TOGETHER = 10.0
+# Joints with less of the largest force than this carry what the others hold each other with.
+SMALLEST_FORCE = 0.1
 
 
-def limits_at(mechanism: Mechanism, world: Array) -> tuple[str, ...]:
-    """Links at their dead point, from placed features; empty where no branch sign is near zero."""
-    signs = mechanism.branch_signs
-    shares = np.abs(signs.shares(world))
-    smallest = float(shares.min(initial=1.0))
-    if not smallest <= LARGEST_SHARE:
+def limits_at(mechanism: Mechanism, jacobian: Array) -> tuple[str, ...]:
+    """Joints that hold each other near a singular pose, the strongest first; empty where none is near.
+
+    There some forces y in the rows are in equilibrium, y J = 0 nearly, without any load: in the group of
+    bodies whose block is nearest to singular.
+    """
+    groups = mechanism.groups
+    ordered = jacobian[groups.rows[:, None], groups.columns]
+    blocks = [(block, np.linalg.svd(ordered[block, block])) for block in groups.blocks]
+    block, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
+    if not strengths[-1] <= LARGEST_SHARE * strengths[0]:
         return ()
-    near = np.flatnonzero(shares <= TOGETHER * smallest).tolist()
-    return tuple(dict.fromkeys(link for place in near for link in signs.limits[place]))
+    forces: dict[str, float] = {}
+    for row, force in zip(groups.rows[block].tolist(), left[:, -1].tolist(), strict=True):
+        if row < mechanism.joint_rows:
+            owner = mechanism.stack.owners[row]
+            forces[owner] = forces.get(owner, 0.0) + force * force
+    least = SMALLEST_FORCE**2 * max(forces.values(), default=0.0)
+    return tuple(
+        sorted((owner for owner in forces if forces[owner] >= least), key=lambda owner: -forces[owner])
+    )
 
 
 def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:
@@ -31,7 +43,8 @@ def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:
     """
     left = np.linalg.svd(jacobian)[0]
     blocked = np.abs(left[mechanism.joint_rows :, -1] * change)
-    return tuple(mechanism.model.inputs)[int(np.argmax(blocked))]
+    name, drive = list(mechanism.model.inputs.items())[int(np.argmax(blocked))]
+    return drive.value or name
 
 
 def limited_by(limits: tuple[str, ...]) -> str:

@@ -7,15 +7,17 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
 from absolute.backend import pin
-from absolute.branch_signs import BranchSigns, sign_vectors
 from absolute.description import Model
 from absolute.drawing import Drawing
-from absolute.features import Features
-from absolute.groups import groups_of
+from absolute.errors import DescriptionError
+from absolute.groups import groups_of, signs_of
 from absolute.laws import LAWS
 from absolute.rows import rows_of
 from absolute.solution import Array
 from absolute.stack import RowStack
+
+# Rows that depend on each other do so only nearly where the drawing does not close yet.
+LARGEST_DEPENDENT = 0.1
 
 
 class Poses(NamedTuple):
@@ -36,7 +38,9 @@ class Mechanism:
     The chassis is the universe: its motion is added to the solution afterwards.
 
     Attributes:
-        model, drawing, stack, branch_signs: what was described, its lengths, its rows, its branch.
+        model, drawing, stack: what was described, its lengths, its rows.
+        redundant: rows that depend on others in the drawing, so that they are left out and only held to;
+            None where there are no such.
         groups: bodies that their rows fix one after the other.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
@@ -47,13 +51,14 @@ class Mechanism:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.drawing = drawing = Drawing(model)
+        bodies, inputs = len(drawing.bodies), len(model.inputs)
         rows = rows_of(model, drawing)
-        features = Features(len(drawing.bodies))
-        vectors = sign_vectors(model, drawing, rows.senses, features)
-        self.stack = RowStack(rows, features)
-        self.branch_signs = BranchSigns(model, vectors, features)
-        self.groups = groups_of(self.stack.first, self.stack.second, len(drawing.bodies))
-        self.joint_rows = self.stack.count - len(model.inputs)
+        still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), drawing.origins
+        left_out = _left_out(RowStack(rows, bodies), inputs, *still)
+        self.stack = RowStack(rows.part(lambda row: row not in left_out), bodies)
+        self.redundant = RowStack(rows.part(lambda row: row in left_out), bodies) if left_out else None
+        self.groups = groups_of(self.stack.first, self.stack.second, bodies)
+        self.joint_rows = self.stack.count - inputs
         self.pin_model = pin.Model()
         for body in model.moving:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
@@ -71,22 +76,27 @@ class Mechanism:
         self._origins = as_strided(origin, (count, 3), (apart, *origin.strides))
         # A rotation and the translation after it, column by column.
         self._placements = as_strided(rotation, (count, 12), (apart, rotation.itemsize))
+        # Turns are no lengths.
         self._laws = [
-            (LAWS[drive.law].expand, drive.factor / drawing.size) for drive in model.inputs.values()
+            (LAWS[drive.law].expand, drive.factor / (1.0 if drive.law == "turn" else drawing.size))
+            for drive in model.inputs.values()
         ]
+        values = self.stack.place(*still).values[self.joint_rows :]
+        for number, drive in enumerate(model.inputs.values()):
+            # From the coordinates given: the places of bodies have been rounded before.
+            if drive.law in ("linear", "cosine"):
+                along = drawing.direction("input", drive.axis)
+                values[number] = along @ drawing.line(drive.axis.through, drive.point)
         self.drawn_inputs = np.array(
             [
-                LAWS[drive.law].invert(
-                    float(row.direction @ drawing.line(drive.axis.through, drive.point)) / factor
-                )
-                for drive, row, (_, factor) in zip(
-                    model.inputs.values(),
-                    rows.offsets[len(rows.offsets) - len(model.inputs) :],
-                    self._laws,
-                    strict=True,
-                )
+                LAWS[drive.law].invert(float(value) / factor)
+                for drive, value, (_, factor) in zip(model.inputs.values(), values, self._laws, strict=True)
             ]
         )
+
+    def signs(self, jacobian: Array) -> Array:
+        """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
+        return signs_of(self.groups, jacobian)
 
     def poses(self, q: Array) -> Poses:
         """Poses of all bodies at a configuration."""
@@ -123,8 +133,11 @@ class Mechanism:
         return unit
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
-        """Values of the inputs by name."""
-        return dict(zip(self.model.inputs, values, strict=True))
+        """Values by name; of inputs that take the same one, that of the first."""
+        named: dict[str, float] = {}
+        for (name, drive), value in zip(self.model.inputs.items(), values, strict=True):
+            named.setdefault(drive.value or name, value)
+        return named
 
     def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> Array:
         """(3, rows): what the rows shall equal, and its first and second rate, for inputs and their rates."""
@@ -133,12 +146,14 @@ class Mechanism:
             f, f1, f2 = law(value)
             driven.append((factor * f, factor * f1 * speed, factor * (f2 * speed * speed + f1 * second)))
         targets = np.zeros((3, self.stack.count))
+        targets[0] = self.stack.drawn
         targets[:, self.joint_rows :] = np.array(driven).T
         return targets
 
     def target_series(self, series: Array) -> Array:
         """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
         targets = np.zeros((3, len(series), self.stack.count))
+        targets[0] = self.stack.drawn
         for row, ((law, factor), column) in enumerate(
             zip(self._laws, series.transpose(2, 1, 0), strict=True), self.joint_rows
         ):
@@ -163,3 +178,36 @@ class Mechanism:
             slopes[1, 1:, :, place] = f1, 2.0 * f2 * speed
             slopes[2, 2, :, place] = f1
         return slopes
+
+
+def _left_out(stack: RowStack, inputs: int, rotation: Array, origin: Array) -> set[int]:
+    """Numbers of the rows of joints that are too many, chosen so that the others say as much as all.
+
+    Those rows whose parts in the linear combinations of rows that vanish in the drawing are largest. Whether
+    they do follow from the others is seen when the drawing is closed.
+    """
+    many = stack.count - 6 * (len(origin) - 1)
+    if many <= 0:
+        return set()
+    joints = stack.jacobian(stack.place(rotation, origin))[: stack.count - inputs]
+    combined, strengths, _ = np.linalg.svd(joints)
+    vanishing, chosen = combined[:, len(joints) - many :], set[int]()
+    for _ in range(many):
+        row = int(np.argmax(np.vecdot(vanishing, vanishing)))
+        chosen.add(row)
+        way = vanishing[row] / np.linalg.norm(vanishing[row])
+        vanishing = vanishing - np.outer(vanishing @ way, way)
+    if strengths[len(joints) - many] > LARGEST_DEPENDENT * strengths[0]:
+        raise too_many_rows(tuple(stack.owners[row] for row in sorted(chosen)), stack.count - many)
+    return chosen
+
+
+def too_many_rows(owners: tuple[str, ...], unknowns: int) -> DescriptionError:
+    """The refusal of rows that say something else than the others, by the owners of those too many."""
+    return DescriptionError(
+        f"joints and inputs give {unknowns + len(owners)} rows for {unknowns} unknown velocities, and "
+        f"{len(owners)} of them ({', '.join(dict.fromkeys(owners))}) do not follow from the others in the "
+        "drawing: the mechanism is held more than once: remove an input, or free a joint",
+        owners[0],
+        unknowns + len(owners),
+    )

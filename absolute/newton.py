@@ -4,12 +4,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from absolute.backend import eigenpy
 from absolute.mechanism import Mechanism, Poses
 from absolute.precision import EPS
 from absolute.solution import Array
-from absolute.stack import Placed
+from absolute.stack import Placed, RowStack
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
 # branches that meet there can no longer be told apart, nor half of the digits trusted.
@@ -21,12 +22,6 @@ GOOD_CONTRACTION = 1e-2
 # Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 is a stall.
 MOST_CORRECTIONS = 25
 
-# Newton's steps from far away (2-norm, rad and units of size): half a radian at most, and 24 of
-# them are nearly two turns; a correction of 0.1 is near enough to converge.
-SHORT_STEP = 0.5
-MOST_SHORT_STEPS = 24
-NEAR = 0.1
-
 
 class Pose(NamedTuple):
     """A configuration where the rows meet their target, with the factorised Jacobian there.
@@ -36,7 +31,7 @@ class Pose(NamedTuple):
         poses, placed: body poses and rows there.
         factors: LU factors of the Jacobian.
         rcond: estimate of its reciprocal condition number (1-norm).
-        sign: sign of its determinant; it changes only through a singular pose.
+        signs: signs of the determinants of its groups; they change only through a singular pose.
         residual: largest violation of a row, in units of size.
         floor: the largest correction that rounding explains.
     """
@@ -46,7 +41,7 @@ class Pose(NamedTuple):
     placed: Placed
     factors: eigenpy.PartialPivLU
     rcond: float
-    sign: float
+    signs: Array
     residual: float
     floor: float
 
@@ -66,20 +61,27 @@ def inverse(rcond: float) -> float:
 
 
 def pose_at(
-    mechanism: Mechanism, q: Array, poses: Poses, placed: Placed, target: Array, factors: eigenpy.PartialPivLU
+    mechanism: Mechanism,
+    q: Array,
+    poses: Poses,
+    placed: Placed,
+    target: Array,
+    jacobian: Array,
+    factors: eigenpy.PartialPivLU,
 ) -> Pose:
-    """The pose at a configuration whose Jacobian is factorised."""
+    """The pose at a configuration with its Jacobian and the factors of that."""
     rcond = factors.rcond()
-    floor = rounding_of(rcond)
-    sign = math.copysign(1.0, factors.determinant())
-    return Pose(q, poses, placed, factors, rcond, sign, float(np.abs(target - placed.values).max()), floor)
+    residual = float(np.abs(mechanism.stack.gap(placed, target)).max())
+    signs = mechanism.signs(jacobian)
+    return Pose(q, poses, placed, factors, rcond, signs, residual, rounding_of(rcond))
 
 
 class Corrected(NamedTuple):
-    """Outcome of Newton's method: the pose or None, corrections spent."""
+    """Outcome of Newton's method: the pose or None, corrections spent, size of the first."""
 
     pose: Pose | None
     corrections: int
+    first: float
 
 
 def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corrected:
@@ -95,28 +97,30 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
     is no pose, it is as small. Anything else is a failure: `pose` is None.
     """
     factors = None
-    previous = np.inf
+    previous = first = np.inf
     settled = False
     for count in range(1, MOST_CORRECTIONS + 1):
         poses = mechanism.poses(q)
         placed = mechanism.stack.place(*poses)
         if factors is None or settled:
-            factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
-        step = factors.solve(target - placed.values)
+            jacobian = mechanism.stack.jacobian(placed)
+            factors = eigenpy.PartialPivLU(jacobian)
+        step = factors.solve(mechanism.stack.gap(placed, target))
         size = math.sqrt(step @ step)
         if not math.isfinite(size):
             break
         if settled:
-            pose = pose_at(mechanism, q, poses, placed, target, factors)
+            pose = pose_at(mechanism, q, poses, placed, target, jacobian, factors)
             if not size <= pose.floor:
-                return Corrected(None, count - 1)
+                return Corrected(None, count - 1, first)
             if mechanism.stack.closed(placed, target):
-                return Corrected(pose, count - 1)
+                return Corrected(pose, count - 1, first)
         contraction = size / previous
         q = mechanism.moved(q, poses.rotation, step)
         if settled:
             continue
         if count == 1:
+            first = size
             settled = size * size <= EPS * rcond
             renew = size > GOOD_CONTRACTION
         else:
@@ -125,26 +129,7 @@ def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corr
         if renew:
             factors = None
         previous = size
-    return Corrected(None, count)
-
-
-def seek(mechanism: Mechanism, q: Array, target: Array) -> Pose | None:
-    """Any pose with  rows(q) = target,  by Newton's method with short steps from far away.
-
-    Nothing holds it to a branch: only the branch signs of the pose found tell which one it is.
-    """
-    for _ in range(MOST_SHORT_STEPS):
-        poses = mechanism.poses(q)
-        placed = mechanism.stack.place(*poses)
-        step = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed)).solve(target - placed.values)
-        size = math.sqrt(step @ step)
-        if not math.isfinite(size):
-            return None
-        if size <= NEAR:
-            pose = correct(mechanism, q, target, SMALLEST_RCOND).pose
-            return pose if pose is not None and pose.rcond >= SMALLEST_RCOND else None
-        q = mechanism.moved(q, poses.rotation, step * min(1.0, SHORT_STEP / size))
-    return None
+    return Corrected(None, count, first)
 
 
 def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) -> tuple[Array, Array]:
@@ -155,5 +140,26 @@ def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) 
     velocity = pose.factors.solve(rate)
     moving = np.zeros((len(pose.poses.origin), 2, 3))
     moving[1:] = velocity.reshape(-1, 2, 3)
-    drift = mechanism.stack.drift(pose.placed, moving[:, 0], moving[:, 1])
+    drift = mechanism.stack.drift(pose.placed, moving)
     return velocity, pose.factors.solve(second - drift)
+
+
+def held_at(mechanism: Mechanism, pose: Pose) -> bool:
+    """Whether the rows that were left out hold at a pose."""
+    left_out = mechanism.redundant
+    if left_out is None:
+        return True
+    placed = left_out.place(*pose.poses)
+    return bool(held_to(left_out, placed, mechanism.stack.count, inverse(pose.rcond)).all())
+
+
+def held_to(left_out: RowStack, placed: Placed, unknowns: int, strength: Array | float) -> NDArray[np.bool_]:
+    """(..., rows) whether rows that were left out hold at poses that close to rounding.
+
+    Args:
+        placed: these rows there. strength: (...) norm of the inverse of the Jacobian: the pose is off by so
+            many times the rounding of its rows, and a row changes by no more than a few times that.
+    """
+    more = 1.0 + np.sqrt(unknowns) * np.asarray(strength)[..., None]
+    gap = left_out.gap(placed, left_out.drawn)
+    return np.asarray(np.abs(gap) <= left_out.rounding(placed) * more)

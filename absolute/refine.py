@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from absolute.backend import eigenpy
 from absolute.groups import SERVES, Groups, inverses, magnitude, times
 from absolute.mechanism import Mechanism
-from absolute.newton import MOST_CORRECTIONS, rounding_of
+from absolute.newton import MOST_CORRECTIONS, held_to, rounding_of
 from absolute.precision import EPS
 from absolute.solution import Array, Counts
 from absolute.tracking import SMALL, Found
@@ -21,6 +21,8 @@ ROUNDING = 32 * EPS
 
 # A solution whose last correction is this share of it is left with SERVES of that: rounding.
 SETTLED = EPS / SERVES
+# Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `stack`).
+LEFT_OUT = 3 * 4 * EPS
 # From an error of SERVES to rounding takes four; what takes more than eight is all but singular.
 MOST_REFINEMENTS = 8
 
@@ -35,10 +37,10 @@ class Refined(NamedTuple):
         residual: (N,) largest violation of a row.
         step: (N,) the last correction, not made.
         closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
-        kept: (N,) whether the pose is on the branch of the drawing.
+        kept: (N,) whether the pose is on the branch of the drawing: signs of its groups and its joints.
         left: (N, 3, rows) what is left of the equations of the pose and its rates as computed, zero without
             rates.
-        world: (N, features, 3) points and directions that tell it.
+        held: (N,) whether the rows that were left out hold.
         sure: (N,) whether what was predicted was right: a small first correction, the determinant's sign.
         q: (N, configuration) of Pinocchio.
     """
@@ -53,7 +55,7 @@ class Refined(NamedTuple):
     closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
     left: Array
-    world: Array
+    held: NDArray[np.bool_]
     sure: NDArray[np.bool_]
     q: Array
 
@@ -77,7 +79,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     jacobian = stack.jacobian(placed)
     groups = mechanism.groups
     inverse, signs = inverses(groups, jacobian)
-    steps = solved(groups, jacobian, inverse, targets[0] - placed.values)
+    steps = solved(groups, jacobian, inverse, stack.gap(placed, targets[0]))
     first = previous = lengths(steps)
     # How far a pose may move so that its inverse is off by no more than SERVES.
     reach = SERVES / magnitude(inverse)
@@ -101,7 +103,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
             inverse[stale], signs[stale] = inverses(groups, jacobian[stale])
             reach[stale] = SERVES / magnitude(inverse[stale])
         of = slice(None) if whole else pending
-        steps = times(groups, inverse[of], targets[0, of] - fresh.values)
+        steps = times(groups, inverse[of], stack.gap(fresh, targets[0, of]))
         size = lengths(steps)
         # Negated, so that what is not a number counts as more to do.
         more = ~(size <= ROUNDING)
@@ -123,16 +125,30 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         velocity = solved(groups, jacobian, inverse, targets[1])
         moving = np.zeros((*origin.shape[:2], 2, 3))
         moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
-        drift = stack.drift(placed, moving[:, :, 0], moving[:, :, 1])
+        drift = stack.drift(placed, moving)
         acceleration = solved(groups, jacobian, inverse, targets[2] - drift)
     left = np.zeros((len(q), 3, stack.count))
-    left[:, 0] = targets[0] - placed.values
+    left[:, 0] = stack.gap(placed, targets[0])
     if rates:
         left[:, 1] = targets[1] - np.matvec(jacobian, velocity)
         left[:, 2] = targets[2] - drift - np.matvec(jacobian, acceleration)
     residual = np.abs(left[:, 0]).max(axis=1)
-    kept = mechanism.branch_signs.kept(placed.world)
-    sure = ~found.predicted | ((first <= SMALL) & (signs == found.sign))
+    sure = ~found.predicted | (first <= SMALL)
+    # Those of the inverses were found a correction before.
+    changed = np.flatnonzero((signs != found.signs).any(axis=1))
+    if changed.size:
+        sure[changed] &= ~found.predicted[changed]
+        signs[changed] = mechanism.signs(jacobian[changed])
+    kept = stack.kept(placed) & np.asarray((signs == found.signs).all(axis=1))
+    held: NDArray[np.bool_] = np.ones(len(q), dtype=np.bool_)
+    left_out = mechanism.redundant
+    if left_out is not None:
+        again, strength = left_out.place(rotation, origin), magnitude(inverse)
+        held = np.asarray(held_to(left_out, again, stack.count, strength).all(axis=1))
+        if rates:
+            # A row that follows from the others has no rate, but for what the pose is off.
+            rate = np.abs(np.matvec(left_out.jacobian(again), velocity)).max(axis=1)
+            held &= rate <= LEFT_OUT * (1.0 + np.sqrt(stack.count) * strength) * lengths(velocity)
     return Refined(
         rotation,
         origin,
@@ -144,7 +160,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         closed,
         kept,
         left,
-        placed.world,
+        held,
         sure,
         q,
     )
@@ -165,7 +181,8 @@ def solved(groups: Groups, jacobian: Array, inverse: Array, right_hand: Array) -
     for _ in range(MOST_REFINEMENTS):
         change = times(groups, inverse, right_hand - np.matvec(jacobian, solution))
         solution += change
-        # What is not a number is never corrected.
-        if not (lengths(change) > SETTLED * lengths(solution)).any():
+        # What is not a number is never corrected. Squares of what is one may be none.
+        largest, whole = (np.abs(part).max(axis=1) for part in (change, solution))
+        if not (largest > SETTLED * whole).any():
             break
     return solution

@@ -80,7 +80,7 @@ class Record:
         acceleration: dict[str, Array] = {}
         for body, index in drawing.bodies.items():
             for point in model.bodies[body]:
-                if point in position:
+                if point in position or point in model.aids:
                     continue
                 if index == 0:
                     position[point] = np.array(model.points[point]) + chassis[:count, 0]
@@ -101,7 +101,8 @@ class Record:
                     acceleration[point] = (
                         second + cross(spin1, arm) + cross(spin, turning)
                     ) * drawing.size + chassis[:count, 2]
-        turns = drawing.bodies if self._rates else {}
+        turns = {body: i for body, i in drawing.bodies.items() if self._rates and body not in model.aids}
+        bodies = tuple(body for body in model.moving if body not in model.aids)
         spins = {body: self._velocity[:count, i, 1].copy() for body, i in turns.items() if i}
         spins1 = {body: self._acceleration[:count, i, 1].copy() for body, i in turns.items() if i}
         iterations = self._iterations[:count].copy()
@@ -110,26 +111,22 @@ class Record:
         effects = self._asked.effects
         told = effects if self._asked.doubts is not None else ()
         lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors)
-        in_order = {name: position[name] for name in model.points}
+        in_order = {name: position[name] for name in model.reported}
         return Solution(
             position=_fixed(in_order),
-            velocity=_fixed({name: velocity[name] for name in model.points} if self._rates else {}),
-            acceleration=_fixed({name: acceleration[name] for name in model.points} if self._rates else {}),
+            velocity=_fixed({name: velocity[name] for name in model.reported} if self._rates else {}),
+            acceleration=_fixed({name: acceleration[name] for name in model.reported} if self._rates else {}),
             angular_velocity=_fixed(spins),
             angular_acceleration=_fixed(spins1),
             iterations=iterations,
             residual=_locked(self._residual[:count] * drawing.size),
             condition=None if condition is None else _locked(condition),
-            position_error=_fixed(
-                {name: errors.position[name] for name in (model.points if errors.position else ())}
-            ),
-            velocity_error=_fixed(
-                {name: errors.velocity[name] for name in (model.points if errors.velocity else ())}
-            ),
-            acceleration_error=_fixed(errors.acceleration),
-            rotation_error=_fixed(errors.rotation),
-            angular_velocity_error=_fixed(errors.angular_velocity),
-            angular_acceleration_error=_fixed(errors.angular_acceleration),
+            position_error=_told(errors.position, model.reported),
+            velocity_error=_told(errors.velocity, model.reported),
+            acceleration_error=_told(errors.acceleration, model.reported),
+            rotation_error=_told(errors.rotation, bodies),
+            angular_velocity_error=_told(errors.angular_velocity, bodies),
+            angular_acceleration_error=_told(errors.angular_acceleration, bodies),
             effects=_fixed({effect.name: effect.value(lines) for effect in effects}),
             effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
         )
@@ -198,3 +195,7 @@ def _locked(array: Array) -> Array:
 
 def _fixed(arrays: dict[str, Array]) -> ReadOnly[Array]:
     return ReadOnly({name: _locked(array) for name, array in arrays.items()})
+
+
+def _told(arrays: dict[str, Array], names: tuple[str, ...]) -> ReadOnly[Array]:
+    return _fixed({name: arrays[name] for name in names} if arrays else {})

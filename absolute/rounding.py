@@ -14,9 +14,8 @@ import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.sensitivity import RowMotion
 from absolute.solution import Array
-from absolute.stack import Placed
+from absolute.stack import Placed, RowMotion
 
 
 def spread(roundings: int) -> float:
@@ -60,11 +59,12 @@ def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Doubt:
     rounded: Array = REACH * length(placed.reach) + TARGET * np.abs(target)
     # The partner of a right angle is another direction; points have arms, and are somewhere.
     rounded[:, : offsets.start] += DIRECTION
+    rounded[:, stack.turn_rows] += DIRECTION
     second, first = placed.parts[:, 1, offsets], placed.parts[:, 2, offsets]
     rounded[:, offsets] += PLACE * (length(first) + length(second))
     r1 = placed.parts[:, 3, offsets] - placed.reach[:, offsets]
     rounded[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
-    return Doubt(np.abs(target - placed.values), rounded)
+    return Doubt(np.abs(stack.gap(placed, target)), rounded)
 
 
 def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Doubt:
@@ -82,7 +82,8 @@ def second_doubt(
         motion, bending: rows at the velocities and at the accelerations of the bodies.
     """
     left = target - drift - np.einsum("nij,nj->ni", jacobian, seconds)
-    w1, w2 = length(motion.w1), length(motion.w2)
+    # The direction of a distance turns by itself.
+    w1, w2 = np.maximum(length(motion.w1), length(motion.a1)), length(motion.w2)
     e, r1, r2 = length(motion.e), length(motion.r1), length(motion.r2)
     speeds = length(motion.s1) + length(motion.s2) + w1 * r1 + w2 * r2
     terms = w1 * w1 * (e + r1) + w2 * w2 * r2 + 2.0 * w1 * speeds

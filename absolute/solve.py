@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from absolute.description import Model
 from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.initial_assembly import branch_error
+from absolute.initial_assembly import branch_error, locked
 from absolute.input_arrays import chassis_series, doubt_series, input_series
 from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
@@ -35,7 +35,7 @@ def solve(
 
     Args:
         model: the linkage.
-        inputs: name -> (N, 3) value, rate and acceleration of every input (rad or mm, per s).
+        inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s).
         chassis: (N, 3, 3) translation, velocity, acceleration of the chassis in the frame of the
             points, mm, mm/s, mm/s^2; None for a chassis at rest as drawn.
         rates: False for positions only.
@@ -50,38 +50,38 @@ def solve(
     Returns:
         Solution with one row per instant.
     Raises:
-        DescriptionError: an axis of the model has no length or its lines point apart; effects of a
-            linkage without a wheel.
+        DescriptionError: an axis of the model has no length or its lines point apart; rows that are too many;
+            effects of a linkage that lacks what they are effects of.
         InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
-        BranchError: the drawing stands where its branches meet, or a pose is on another branch.
+        BranchError: a pose is on another branch.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
 
     >>> import absolute
-    >>> points = {  # two level arms of one length: the wheel keeps its camber
-    ...     "lower_arm_front": (-100, 0, 0), "lower_arm_rear": (100, 0, 0), "lower_ball_joint": (0, -300, 0),
-    ...     "upper_arm_front": (-100, 0, 200), "upper_arm_rear": (100, 0, 200),
-    ...     "upper_ball_joint": (0, -300, 200),
-    ...     "tie_rod_inner": (-90, 0, 100), "tie_rod_outer": (-90, -300, 100),
-    ...     "wheel_axis_inner": (0, -300, 100), "wheel_centre": (0, -350, 100),
-    ... }
-    >>> model = absolute.suspension_of("double_wishbone")(points)
-    >>> inputs = {"arm_angle": np.array([[1.5, 0.0, 0.0]]), "rack": np.zeros((1, 3))}
-    >>> solution = solve(model, inputs, effects=["camber"])
-    >>> bool(abs(solution.effects["camber"][0]) < 1e-14)
+    >>> model = absolute.compile({  # a crank on a hinge, and how high its end is
+    ...     "name": "crank",
+    ...     "bodies": {"chassis": ["a", "b"], "crank": ["a", "b", "end"]},
+    ...     "inputs": {"turn": {"angle": "crank", "from": "drawing", "on": "chassis"}},
+    ...     "points": {"a": (0, 0, 0), "b": (100, 0, 0), "end": (0, 300, 0)},
+    ...     "up": (0, 0, 1), "right": (0, 1, 0), "side": "left",
+    ... })
+    >>> solution = solve(model, {"turn": np.array([[np.pi / 6, 0.0, 0.0]])})
+    >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
     asked = effects_of(effects)
-    if asked:
-        model.require_corner()
+    for effect in asked:
+        model.require(effect.role)
     rates = rates or any(effect.derivative > 0 for effect in asked)
-    series = input_series(tuple(model.inputs), inputs)
+    # Inputs that take the same value have a column each.
+    of_input = [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
+    series = input_series(model.values, inputs)[..., of_input]
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
-    doubts = doubt_series(tuple(model.inputs), input_errors or {}, count) if errors else None
+    doubts = doubt_series(model.values, input_errors or {}, count)[..., of_input] if errors else None
     record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked))
     try:
         with np.errstate(over="ignore", invalid="ignore"):
@@ -136,10 +136,15 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
             continue
         if not refined.closed[place]:
             raise _stalled(mechanism, bad, values[here], refined, place)
+        there = refined.rotation[place], refined.origin[place]
         if refined.kept[place]:
+            left_out = mechanism.redundant
+            if left_out is not None and not refined.held[place]:
+                raise locked(mechanism, bad, left_out, left_out.place(*there), values[here])
             raise _overflow(mechanism, bad, series[here, 1:])
         if again == bad:
-            raise branch_error(mechanism, bad, values[here], refined.world[place])
+            jacobian = mechanism.stack.jacobian(mechanism.stack.place(*there))
+            raise branch_error(mechanism, bad, values[here], jacobian)
         again = bad
         tracking.back_to(bad)
 
@@ -160,7 +165,7 @@ def _store(
     for number in range(parts if whole else 0):
         part = slice(whole * number // parts, whole * (number + 1) // parts)
         refined = refine(mechanism, found.part(part), targets[:, part], rates)
-        good = refined.closed & refined.kept & refined.sure
+        good = refined.closed & refined.kept & refined.held & refined.sure
         if rates:
             good &= _in_range(mechanism, refined)
         count = len(good) if good.all() else int(np.argmin(good))
@@ -185,13 +190,13 @@ def _stalled(
 ) -> SingularError:
     stack, size = mechanism.stack, mechanism.drawing.size
     residual, step = float(refined.residual[place]), float(refined.step[place])
-    limits = limits_at(mechanism, refined.world[place])
     zeros = [0.0] * len(values)
     goal, drawn = (
         mechanism.targets(each, zeros, zeros)[0, mechanism.joint_rows :]
         for each in (values, mechanism.drawn_inputs.tolist())
     )
     jacobian = stack.jacobian(stack.place(refined.rotation[place], refined.origin[place]))
+    limits = limits_at(mechanism, jacobian)
     return SingularError(
         f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
         f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "
@@ -206,7 +211,7 @@ def _stalled(
 
 
 def _overflow(mechanism: Mechanism, instant: int, rates: Array) -> InputError:
-    names = list(mechanism.model.inputs)
+    names = [drive.value or name for name, drive in mechanism.model.inputs.items()]
     speed, second = np.abs(rates)
     # The squares of speeds are accelerations.
     fastest = int(np.argmax(np.maximum(speed, np.sqrt(second))))

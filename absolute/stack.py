@@ -8,6 +8,16 @@ with w x d. With r1 and r2 the arms of both points, or nothing and the partner d
 has the rate
     offset only:  a . (o2' - o1')     both:  w1 . (a x (r1 + e)) - w2 . (a x r2).
 The arms are turned by themselves: as differences of points far out they would be rounded as those.
+
+A distance |e| is such a row with a = e / |e|, and has that rate, since a' is at a right angle to e.
+The turn t of axes x, y of the first and x2, y2 of the second body about a common third one, with
+cos t = x . x2 and sin t = y . x2, has the rate of the right angle  -(x cos t + y sin t) . y2  which is 0
+there, t held. Its value is known up to whole turns: `gap` takes the nearest.
+
+First and second rate of any row, with the rates a1 and a2 of a and e1, e2 of e:
+    a1.e + a.e1,    a2.e + 2 a1.e1 + a.e2
+    e1 = s2 + w2 x r2 - s1 - w1 x r1,  s the velocity of an origin;   a1 = w1 x a, a2 = w1 x a1, or of a
+    distance  a1 = (e1 - (a.e1) a) / |e|,  a2 = (e2 - (a.e2) a - 2 (a.e1) a1 - (a1.e1) a) / |e|.
 """
 
 from typing import NamedTuple
@@ -17,12 +27,9 @@ from numpy.typing import NDArray
 
 from absolute.features import Features
 from absolute.precision import EPS
-from absolute.rows import Angle, Offset, Rows
+from absolute.rows import Angle, Offset, Rows, Turn
 from absolute.solution import Array
-from absolute.vectors import LAST, NEXT
-
-# w @ WHEEL is the transposed matrix of "w x", row by row: features are kept as rows.
-WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
+from absolute.vectors import LAST, NEXT, cross
 
 # A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the
@@ -30,20 +37,20 @@ WHEEL = np.array([np.cross(axis, np.eye(3)).ravel() for axis in np.eye(3)])
 # sqrt(27 / 3) of eps / 2, or 1.5 eps; more than 4 eps is not rounding alone.
 ROUNDINGS = 4 * EPS
 
+WHOLE_TURN = 2.0 * np.pi
+
 
 class Placed(NamedTuple):
     """Rows evaluated at poses.
 
     Attributes:
-        turned: (..., bodies, places, 3) features of each body turned to world axes, without its origin.
         world: (..., bodies * places, 3) the features where they are.
         parts: (..., 5, rows, 3) the vectors a, f, g, r1 + e, r2 of every row.
         reach: (..., rows, 3) e = f - g.
-        values: (..., rows) a . e.
+        values: (..., rows) a . e, and turns between -pi and pi.
         origin: (..., bodies, 3) of the bodies.
     """
 
-    turned: Array
     world: Array
     parts: Array
     reach: Array
@@ -51,14 +58,39 @@ class Placed(NamedTuple):
     origin: Array
 
 
-class RowStack:
-    """Index arrays built once from the rows of a mechanism; its features are added to those given."""
+class RowMotion(NamedTuple):
+    """Vectors of every row at given rates of the bodies, each (..., rows, 3).
 
-    def __init__(self, rows: Rows, features: Features) -> None:
-        every: list[Angle | Offset] = [*rows.angles, *rows.offsets]
+    Attributes:
+        a, e, r1, r2: as above; r1 is zero and r2 the partner direction where the row is an angle.
+        w1, w2, s1, s2: rates of both bodies; s1 and s2 are zero where the row is an angle.
+        a1, a2, e1, e2: first and second rates of a and e when no body accelerates.
+    """
+
+    a: Array
+    e: Array
+    r1: Array
+    r2: Array
+    w1: Array
+    w2: Array
+    s1: Array
+    s2: Array
+    a1: Array
+    a2: Array
+    e1: Array
+    e2: Array
+
+
+class RowStack:
+    """Index arrays built once from the rows of a mechanism."""
+
+    def __init__(self, rows: Rows, bodies: int) -> None:
+        features = Features(bodies)
+        every: list[Angle | Offset | Turn] = [*rows.angles, *rows.offsets, *rows.turns]
         self.owners = tuple(row.owner for row in every)
         self.count = count = len(every)
-        bodies = features.bodies
+        # What joints hold each row to: the drawn lengths of distances.
+        self.drawn = np.zeros(count)
         nothing = features.add(0, np.zeros(3), False)
         partners = [features.add(r.second, r.partner, False) for r in rows.angles]
         picks = [
@@ -66,7 +98,7 @@ class RowStack:
             for r, partner in zip(rows.angles, partners, strict=True)
         ] + [
             (
-                features.add(r.first, r.direction, False),
+                nothing if r.direction is None else features.add(r.first, r.direction, False),
                 features.add(r.second, r.second_arm, True),
                 features.add(r.first, r.first_arm, True),
                 features.add(r.first, r.first_arm, False),
@@ -74,26 +106,52 @@ class RowStack:
             )
             for r in rows.offsets
         ]
+        for r in rows.turns:
+            partner = features.add(r.second, -r.frame[1], False)
+            picks.append((nothing, partner, nothing, nothing, partner))
+        turned = [
+            (
+                features.add(r.first, r.frame[0], False),
+                features.add(r.first, r.frame[1], False),
+                features.add(r.second, r.frame[0], False),
+            )
+            for r in rows.turns
+        ]
+        senses = [
+            (features.add(r.first, r.direction, False), features.add(r.second, r.partner, False))
+            for r in rows.senses
+        ]
         # What the terms of a row add up to at most, apart from the distances of the origins.
         arms = np.array([(r.first_arm, r.second_arm) for r in rows.offsets]).reshape(-1, 2, 3)
-        self._spans = np.append(np.ones(len(rows.angles)), np.linalg.norm(arms, axis=-1).sum(axis=1))
+        self._spans = np.ones(count)
+        self.offset_rows = slice(len(rows.angles), count - len(rows.turns))
+        self._spans[self.offset_rows] = np.linalg.norm(arms, axis=-1).sum(axis=1)
         # How often the distance of a body's origin counts in a row: not at all for angles.
         self._between = np.zeros((bodies, count))
         for row, offset in enumerate(rows.offsets, len(rows.angles)):
             self._between[[offset.first, offset.second], row] = 1.0
         self._local, self._is_point = features.tables()
         self._picks = np.array(features.flat(picks)).T.copy()
+        self._senses = np.array(features.flat(senses), dtype=np.intp).reshape(-1, 2).T.copy()
+        self._turned = np.array(features.flat(turned), dtype=np.intp).reshape(-1, 3).T.copy()
+        self.turn_rows = slice(count - len(rows.turns), count)
+        self.drawn[self.offset_rows] = [of.length for of in rows.offsets]
+        self._is_offset = np.zeros((count, 1))
+        self._is_offset[self.offset_rows] = 1.0
+        first = self.offset_rows.start
+        self.distances = np.array(
+            [row for row, of in enumerate(rows.offsets, first) if of.direction is None], dtype=np.intp
+        )
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
         angles = len(rows.angles)
-        self.offset_rows = slice(angles, count)
         self.first, self.second = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
         source = np.zeros((count, bodies, 2, 3), dtype=int)
         axis = np.arange(3)
-        pushes = 3 * (count - angles)
+        pushes = 3 * len(rows.offsets)
         for row, of in enumerate(every):
             source[row, of.first, 1] = 1 + 2 * pushes + 3 * row + axis
             source[row, of.second, 1] = 1 + 2 * pushes + 3 * (count + row) + axis
-            if row >= angles:
+            if isinstance(of, Offset):
                 source[row, of.second, 0] = 1 + 3 * (row - angles) + axis
                 source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
         self._none = np.zeros(1)
@@ -107,13 +165,36 @@ class RowStack:
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
-        turned = self._local @ rotation.swapaxes(-1, -2)
-        world = turned + self._is_point * origin[..., None, :]
+        world = self._local @ rotation.swapaxes(-1, -2) + self._is_point * origin[..., None, :]
         world = world.reshape(*world.shape[:-3], -1, 3)
         parts: Array = world.take(self._picks, -2)
         reach = parts[..., 1, :, :] - parts[..., 2, :, :]
+        if self.distances.size:
+            along = reach[..., self.distances, :]
+            parts[..., 0, self.distances, :] = along / np.sqrt(np.vecdot(along, along))[..., None]
+        if self._turned.size:
+            x, y, x2 = np.moveaxis(world.take(self._turned, -2), -3, 0)
+            cosine, sine = np.vecdot(x, x2), np.vecdot(y, x2)
+            parts[..., 0, self.turn_rows, :] = (cosine[..., None] * x + sine[..., None] * y) / np.hypot(
+                cosine, sine
+            )[..., None]
         parts[..., 3, :, :] += reach
-        return Placed(turned, world, parts, reach, np.vecdot(parts[..., 0, :, :], reach), origin)
+        values = np.vecdot(parts[..., 0, :, :], reach)
+        if self._turned.size:
+            values[..., self.turn_rows] = np.arctan2(sine, cosine)
+        return Placed(world, parts, reach, values, origin)
+
+    def gap(self, placed: Placed, target: Array) -> Array:
+        """(..., rows) target less value, of turns to the nearest of all that look alike."""
+        gap: Array = target - placed.values
+        turns = gap[..., self.turn_rows]
+        turns -= WHOLE_TURN * np.round(turns / WHOLE_TURN)
+        return gap
+
+    def kept(self, placed: Placed) -> NDArray[np.bool_]:
+        """(...) whether all joints have the sense in which they are drawn."""
+        first, second = np.moveaxis(placed.world.take(self._senses, -2), -3, 0)
+        return np.asarray((np.vecdot(first, second) > 0.0).all(-1))
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""
@@ -140,28 +221,38 @@ class RowStack:
     def closed(self, placed: Placed, target: Array) -> NDArray[np.bool_]:
         """(...) whether no row misses its target by more than rounding: ROUNDINGS times the lengths of
         the vectors that add up to it."""
+        return np.asarray((np.abs(self.gap(placed, target)) <= self.rounding(placed)).all(-1))
+
+    def rounding(self, placed: Placed) -> Array:
+        """(..., rows) what rounding alone may make of a row."""
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
-        rounding = ROUNDINGS * (self._spans + far @ self._between)
-        closed: NDArray[np.bool_] = np.asarray((np.abs(target - placed.values) <= rounding).all(-1))
-        return closed
+        return np.asarray(ROUNDINGS * (self._spans + far @ self._between))
 
-    def drift(self, placed: Placed, velocity: Array, spin: Array) -> Array:
-        """Second rate of the rows when no body accelerates: a''.e + 2 a'.e' + a.e''.
+    def motion(self, placed: Placed, rates: Array) -> RowMotion:
+        """Rows at rates [o', w] of all bodies, (..., bodies, 2, 3)."""
+        a, e, r2 = placed.parts[..., 0, :, :], placed.reach, placed.parts[..., 4, :, :]
+        r1 = placed.parts[..., 3, :, :] - e
+        first, second = rates.take(self.first, -3), rates.take(self.second, -3)
+        w1, w2 = first[..., 1, :], second[..., 1, :]
+        s1, s2 = first[..., 0, :] * self._is_offset, second[..., 0, :] * self._is_offset
+        t1, t2 = cross(w1, r1), cross(w2, r2)
+        e1, e2 = s2 + t2 - s1 - t1, cross(w2, t2) - cross(w1, t1)
+        a1 = cross(w1, a)
+        a2 = cross(w1, a1)
+        if self.distances.size:
+            b, d1, d2 = (vector[..., self.distances, :] for vector in (a, e1, e2))
+            length = placed.values[..., self.distances, None]
+            along = np.vecdot(b, d1)[..., None]
+            b1 = (d1 - along * b) / length
+            a1[..., self.distances, :] = b1
+            rest = np.vecdot(b, d2)[..., None] + np.vecdot(b1, d1)[..., None]
+            a2[..., self.distances, :] = (d2 - rest * b - 2.0 * along * b1) / length
+        return RowMotion(a, e, r1, r2, w1, w2, s1, s2, a1, a2, e1, e2)
 
-        Args:
-            velocity: (..., bodies, 3) of the body origins. spin: (..., bodies, 3) angular.
-        """
-        turning = (spin @ WHEEL).reshape(*spin.shape, 3)
-        rate = placed.turned @ turning
-        first = self._parts(rate + self._is_point * velocity[..., None, :])
-        second = self._parts(rate @ turning)
-        drift: Array = np.vecdot(second[..., 0, :, :], placed.reach)
-        drift += np.vecdot(placed.parts[..., 0, :, :], second[..., 1, :, :] - second[..., 2, :, :])
-        drift += 2.0 * np.vecdot(first[..., 0, :, :], first[..., 1, :, :] - first[..., 2, :, :])
+    def drift(self, placed: Placed, rates: Array) -> Array:
+        """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""
+        m = self.motion(placed, rates)
+        drift: Array = np.vecdot(m.a2, m.e)
+        drift += 2.0 * np.vecdot(m.a1, m.e1)
+        drift += np.vecdot(m.a, m.e2)
         return drift
-
-    def _parts(self, features: Array) -> Array:
-        flat = features.reshape(*features.shape[:-3], -1, 3)
-        # The vectors a, f and g: arms have no rates of their own in a row.
-        picked: Array = flat.take(self._picks[:3], -2)
-        return picked

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.backend import eigenpy
-from absolute.continuation import LONGEST_STEP
+from absolute.continuation import LARGEST_CORRECTION, LONGEST_STEP
 from absolute.continue_to import continue_to
 from absolute.expansion import Expansion, between, expand, line_between, products
 from absolute.initial_assembly import assemble
@@ -26,8 +26,6 @@ from absolute.stack import Placed
 # Poses nearer to a fold than this are left to the careful continuation: branches are at least
 # about this far apart elsewhere.
 SAFE_RCOND = 1e-4
-# The correction must be small against the step: a larger one means that the step bends much.
-LARGEST_CORRECTION = 0.1
 # Corrections below this are always fine: held inputs step by nothing, but the pose before was
 # left rough. A hundredth of the distance of branches.
 SMALL = 1e-6
@@ -60,7 +58,7 @@ class Rough(NamedTuple):
 
     Attributes:
         q: the configuration, the last correction made.
-        rotation, placed, factors, sign: of the bodies, rows, Jacobian and its determinant before that.
+        rotation, placed, factors, sign: of the bodies, rows, Jacobian and its whole determinant before that.
         correction: size of that correction.
     """
 
@@ -79,17 +77,17 @@ class Found(NamedTuple):
         q: (N, configuration).
         corrections: (N,) spent on the way to each.
         predicted: (N,) whether nothing was evaluated there yet, so that `refine` must tell if it is right.
-        sign: of the determinant on this branch.
+        signs: of the determinants on this branch, (groups,).
     """
 
     q: Array
     corrections: Counts
     predicted: NDArray[np.bool_]
-    sign: float
+    signs: Array
 
     def part(self, of: slice) -> "Found":
         """Some of the instants."""
-        return Found(self.q[of], self.corrections[of], self.predicted[of], self.sign)
+        return Found(self.q[of], self.corrections[of], self.predicted[of], self.signs)
 
 
 class Tracking:
@@ -165,7 +163,7 @@ class Tracking:
             np.empty((count, self.mechanism.pin_model.nq)),
             np.zeros(count, dtype=np.int64),
             np.zeros(count, dtype=np.bool_),
-            self._drawn.sign,
+            self._drawn.signs,
         )
 
     def _arrive(self, there: Rough, values: list[float], target: Array) -> None:
@@ -293,7 +291,8 @@ class Ahead(NamedTuple):
 
 def rough_of(pose: Pose) -> Rough:
     """An exact pose is also a rough one."""
-    return Rough(pose.q, pose.poses.rotation, pose.placed, pose.factors, pose.sign, 0.0)
+    sign = math.copysign(1.0, pose.factors.determinant())
+    return Rough(pose.q, pose.poses.rotation, pose.placed, pose.factors, sign, 0.0)
 
 
 def corrected(mechanism: Mechanism, q: Array, target: Array) -> Rough:
@@ -301,7 +300,7 @@ def corrected(mechanism: Mechanism, q: Array, target: Array) -> Rough:
     poses = mechanism.poses(q)
     placed = mechanism.stack.place(*poses)
     factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
-    correction = factors.solve(target - placed.values)
+    correction = factors.solve(mechanism.stack.gap(placed, target))
     sign = math.copysign(1.0, factors.determinant())
     size = math.sqrt(correction @ correction)
     return Rough(mechanism.moved(q, poses.rotation, correction), poses.rotation, placed, factors, sign, size)

@@ -24,6 +24,9 @@ from pointcoord.solve.assembly import Path, close_drawing, follow
 
 Array = NDArray[np.float64]
 
+# rad: a chord of a turn, and one so short that its end is known as well as those of other inputs.
+CHORD, LEAST = np.pi / 8, 1e-12
+
 
 @dataclass(frozen=True)
 class End:
@@ -65,26 +68,52 @@ def standing(scene: Scene) -> Standing:
     >>> standing(Scene.load("double-wishbone")).inputs["rack"]
     0.0
     """
-    require_scene(scene)
-    mechanism = scene_mechanism(scene)
-    closed = close_drawing(mechanism)
-    first = mechanism.map.unknowns
-    drawn = {name: float(value) + 0.0 for name, value in mechanism.input_values(closed.y[first:]).items()}
+    mechanism, closed = _closed(scene)
+    drawn = _drawn(mechanism, closed)
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
-        angles=_angles(mechanism, closed.y, CarAxes.of(mechanism.drawing, scene.mechanism.outboard)),
+        angles=_angles(scene, mechanism, closed.y, CarAxes.of(mechanism.drawing, scene.mechanism.outboard)),
         closing=closing(mechanism, closed.y),
     )
 
 
-def _angles(mechanism: Mechanism, y: Array, axes: CarAxes) -> dict[str, float]:
+def drawn_inputs(scene: Scene) -> dict[str, float]:
+    """The inputs' values in the closed drawing alone, rad or mm.
+
+    Raises:
+        SceneError, AssemblyError: as `standing`.
+    """
+    return _drawn(*_closed(scene))
+
+
+def reach_of(scene: Scene, name: str) -> tuple[End, End]:
+    """The lower and the upper end of one input alone, the others as drawn.
+
+    Raises:
+        SceneError, AssemblyError: as `standing`.
+    """
+    return _ends(*_closed(scene), name)
+
+
+def _closed(scene: Scene) -> tuple[Mechanism, Path]:
+    require_scene(scene)
+    mechanism = scene_mechanism(scene)
+    return mechanism, close_drawing(mechanism)
+
+
+def _drawn(mechanism: Mechanism, closed: Path) -> dict[str, float]:
+    known = closed.y[mechanism.map.unknowns :]
+    return {name: float(value) + 0.0 for name, value in mechanism.input_values(known).items()}
+
+
+def _angles(scene: Scene, mechanism: Mechanism, y: Array, axes: CarAxes) -> dict[str, float]:
     """Every number of the whole car that a pose has by itself."""
     places = {name: place * mechanism.unit for name, place in mechanism.places(y).items()}
     poses = Poses(mechanism, axes, states=(places,), added=(None,))
     found: dict[str, float] = {}
     for effect in EFFECTS.values():
-        if effect.derivative == 0:
+        if effect.derivative == 0 and not effect.refusal(mechanism.topology, scene.mechanism.points):
             for numbers in effect.evaluate(poses).values():
                 found |= {name: float(number) for name, number in numbers.items()}
     return found
@@ -93,12 +122,18 @@ def _angles(mechanism: Mechanism, y: Array, axes: CarAxes) -> dict[str, float]:
 def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
     """Both ends of one input, the lower value first."""
     first = mechanism.map.unknowns
-    (drive,) = (drive for drive in mechanism.topology.drives if drive.input == name)
+    if name in mechanism.topology.turning:
+        return _end_of_turn(mechanism, closed, name, -1.0), _end_of_turn(mechanism, closed, name, 1.0)
+    drive, *others = (drive for drive in mechanism.topology.drives if drive.input == name)
     place = mechanism.layout.scalar(drive.coordinate)
     found = []
     for farthest in drive.extremes(mechanism.drawing):
         target = closed.y[first:].copy()
         target[place - first] = farthest
+        there = drive.input_value(farthest, mechanism.drawing)[..., None]
+        for other in others:
+            own = other.series(there, mechanism.drawing)[0]
+            target[mechanism.layout.scalar(other.coordinate) - first] = own
         path = follow(mechanism.map, closed.y, target)
         value = float(drive.input_value(path.y[place], mechanism.drawing))
         stopped = float(path.done) < 1.0
@@ -107,3 +142,25 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
         found.append(End(value, limits))
     low, high = sorted(found, key=lambda end: end.value)
     return low, high
+
+
+def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
+    """The end of a turn to one side, a whole one at most.
+
+    Cosine and sine go along chords, whose ends are true poses; one that stops is drawn to just before there.
+    """
+    inputs, path, step = _drawn(mechanism, closed), closed, CHORD
+    value, farthest = inputs[name], side * 2.0 * np.pi
+    while value != farthest:
+        ahead = value + side * step if abs(farthest - value) > step else farthest
+        values = {one: np.array([own]) for one, own in {**inputs, name: ahead}.items()}
+        tried = follow(mechanism.map, path.y, mechanism.known_series(values)[0], path.factors)
+        if float(tried.done) == 1.0:
+            value, path, step = ahead, tried, min(2.0 * step, CHORD)
+            continue
+        # A chord stops where its turn does but for a share of step^2 / 8, what it lacks of the circle.
+        step *= float(tried.done) * (1.0 - max(0.25 * step * step, 1e-4))
+        if step < LEAST:
+            forces = smallest_left_singular_vector(path.factors.matrix)
+            return End(value, mechanism.topology.strongest(forces))
+    return End(value, ())

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
+from pointcoord.linkage.topology import Topology
 from pointcoord.solve.chord import solve_by_chord
 from pointcoord.solve.pointwise import (
     InstantSolver,
@@ -16,8 +17,6 @@ from pointcoord.solve.pointwise import (
     solve_instants,
     square_velocity_term,
 )
-from pointcoord.suspensions import SUSPENSIONS
-from pointcoord.suspensions.suspension import Suspension
 
 
 @dataclass(frozen=True)
@@ -31,8 +30,9 @@ class Method:
             chain is too long or no step of it follows an input.
         at_instants: how these are solved for.
         map_effort: factorisations that a map may take at most; as `patches.way_map` has it if not given.
-        suspensions: those that it can solve, by type, with the closures that it can.
-        only: why there are no others, in words.
+        linkage: what it makes of a scene's linkage, None of one that it does not solve; None if it solves
+            every one as it is.
+        only: which it solves alone, and why, in words.
         square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
             series have it in themselves.
         effects: by name, the effects that it computes in another way than others.
@@ -43,7 +43,7 @@ class Method:
     by_map: bool = False
     at_instants: InstantSolver = solve_instants
     map_effort: int | None = None
-    suspensions: Mapping[str, Suspension] = field(default_factory=lambda: SUSPENSIONS)
+    linkage: Callable[[Topology], Topology | None] | None = None
     only: str = ""
     square_velocity_term: SquareVelocityTerm = square_velocity_term
     effects: Mapping[str, Effect] = field(default_factory=dict)

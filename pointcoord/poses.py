@@ -10,19 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, PointcoordError, UnknownName
-from pointcoord.linkage.carried_points import carried_gain
+from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.vectors import lengths
+from pointcoord.patches.unrelated_poses import solve_unrelated
 from pointcoord.results.closing import closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.unrelated_poses import solve_unrelated
 
 Array = NDArray[np.float64]
-
-# Poses whose points are placed at a time: their coordinates stay in a cache.
-BLOCK = 2048
 
 
 @dataclass(frozen=True)
@@ -95,62 +93,50 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     if not (np.isfinite(wanted) and wanted > 0.0):
         raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
     found = solve_unrelated(mechanism, driving, wanted)
-    shift: Array | None = None
-    for name, along in topology.chassis_motion.items():
-        if name in flat:
-            part = flat[name][:, None] * mechanism.drawing.vectors[along]
-            shift = part if shift is None else shift + part
-    shifted = 0.0 if shift is None else 2.0 * EPS * np.abs(shift).max(axis=-1)
-    places = _positions(mechanism, found.unknowns, shift)
-    position = {name: place.reshape(*shape, 3) for name, place in places.items()}
-    gain = max(
-        (
-            carried_gain(mechanism.carrier_weights[n], mechanism.drawing, c)
-            for n, c in topology.carried.items()
-        ),
-        default=1.0,
-    )
-    # Products of the weights and of edges below the mechanism's size round some ten times.
-    carried = gain * (found.bound + 16.0 * EPS * float(mechanism.unit)) + shifted
+    unit = float(mechanism.unit)
+    local = {
+        name: found.places.get(
+            name, np.broadcast_to(mechanism.drawing.vectors[name] * unit, (len(found.bound), 3))
+        )
+        for name in topology.points
+    }
+    added, rounded, spread = _moved(mechanism, flat, local)
+    lost = ~np.isfinite(found.bound)
+    position = {}
+    for name, place in local.items():
+        there = place + added
+        there[lost] = np.nan
+        position[name] = there.reshape(*shape, 3)
     return SolvedPoses(
         MappingProxyType(position),
-        (found.bound + shifted).reshape(shape),
-        carried.reshape(shape),
-        MappingProxyType({number: _error(status.error()) for number, status in found.failures.items()}),
+        (spread * found.bound + rounded).reshape(shape),
+        (spread * found.carried_bound + rounded).reshape(shape),
+        MappingProxyType(dict(sorted(found.failures.items()))),
     )
 
 
-def _error(error: PointcoordError | None) -> PointcoordError:
-    assert error is not None  # a pose that fails says why
-    return error
+def _moved(
+    mechanism: Mechanism, inputs: Mapping[str, Array], local: dict[str, Array]
+) -> tuple[Array, Array, float]:
+    """Turn points with the chassis, in place; what is then to be added to them.
 
-
-def _positions(mechanism: Mechanism, unknowns: Array, shift: Array | None) -> dict[str, Array]:
-    """Every point from the unknowns, shape (N, unknowns), each (N, 3), mm."""
-    topology, layout, unit = mechanism.topology, mechanism.layout, float(mechanism.unit)
-    count = len(unknowns)
-    found = {name: np.empty((count, 3)) for name in topology.points}
-    places = {name: layout.vector(name)[0] for name in topology.moving}
-    for low in range(0, count, BLOCK):
-        here = slice(low, low + BLOCK)
-        block, added = unknowns[here], mechanism.origin if shift is None else mechanism.origin + shift[here]
-        lost = np.isnan(block[:, 0])
-        some = bool(lost.any())
-        rows = {name: block[:, first : first + 3] for name, first in places.items()}
-        for name, carriers in topology.carried.items():
-            rows[name] = _carried(mechanism.carrier_weights[name], *(rows[carrier].T for carrier in carriers))
-        for name in topology.points:
-            place = found[name][here]
-            np.multiply(rows[name] if name in rows else mechanism.drawing.vectors[name], unit, out=place)
-            place += added
-            if some:
-                place[lost] = np.nan
-    return found
-
-
-def _carried(weights: Array, base: Array, first: Array, second: Array) -> Array:
-    """A point that rides on three, from their coordinates, (3, N) each, in rows, (N, 3)."""
-    (x1, y1, z1), (x2, y2, z2) = e1, e2 = first - base, second - base
-    a, b, c = weights
-    normal = np.stack([y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2])
-    return np.asarray((base + a * e1 + b * e2 + c * normal).T)
+    Args:
+        inputs: values of every input, each (N,). local: points, each (N, 3), mm from the mechanism's origin.
+    Returns:
+        What is added, (N, 3) or (3,), mm; what turning and adding rounds, (N,), mm; and how many times as far
+        turning makes a coordinate be off.
+    """
+    chassis = ChassisMotion.of(mechanism, {})
+    moving = {name: value for name, value in inputs.items() if name in chassis.directions}
+    shift = sum(chassis.shifts({name: [value] for name, value in moving.items()}), np.zeros(3))
+    rounded = 2.0 * EPS * np.abs(shift).max(axis=-1)
+    centres = [chassis.centres[name] for name in moving if name in chassis.centres]
+    if not centres:
+        return mechanism.origin + shift, rounded, 1.0
+    (turned,) = chassis.turned_by({name: [value] for name, value in moving.items()}, [local])
+    local |= turned
+    farthest = np.max([lengths(place) for place in local.values()], axis=0)
+    # A turn takes some 40 roundings of an arm from its centre, which is no longer than this; what it leaves
+    # is turned on by those after it.
+    arm = farthest + 2.0 * sum(float(np.linalg.norm(centre)) for centre in centres)
+    return mechanism.origin + shift, rounded + 64.0 * EPS * len(centres) * arm, SPREAD

@@ -37,7 +37,8 @@ MARKS = {
     "suspension_scenes": (
         "(*names, hard=False, suspension=None, closure=None, near=1e-3)",
         "built-in scenes (all, without names), hard cases, paths, or scenes themselves; hard=True adds every "
-        "hard case that has an answer, as near to its singular place as `near` says, or None: at all values",
+        "hard case that has an answer, as near to its singular place as `near` says, or None: at all values; "
+        "suspension: scenes of this shipped mechanism only, such as 'five_link'",
     ),
     "impossible_scenes": (
         "(*names, suspension=None, closure=None, near=1e-3)",

@@ -31,12 +31,12 @@ from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
-from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part, stepped
 from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
+from pointcoord.wording import shown
 
 if TYPE_CHECKING:
     from pointcoord.patches.flood import Limits
@@ -215,7 +215,8 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     functions = {name: laws[name] for name in whole.topology.required_inputs}
     check_range(whole, functions, instants)
     for block in _blocks(instants if readout.chassis.functions else instants[:0]):
-        readout.chassis.states(block, readout.reported_derivative)
+        for name in readout.chassis.functions:
+            readout.chassis.law(name, block, readout.reported_derivative)
     # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
     first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
     closed = close_drawing(whole, first, tolerance)
@@ -428,17 +429,13 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
         SceneError: its hardpoints do not make one, or the method does not solve such a suspension.
     """
     part = scene.mechanism
-    source = scene.title or "scene"
-    closures = method.suspensions[part.type].closures if part.type in method.suspensions else {}
-    if part.closure not in closures:
-        why = f": {method.only}" if method.only else ""
-        raise SceneError(
-            source,
-            "mechanism.closure",
-            f"the method {method.name!r} cannot solve a {part.type} with closure = {part.closure!r}{why}",
-            ", ".join(f"{name} of a {s.type}" for s in method.suspensions.values() for name in s.closures),
-        )
-    topology = closures[part.closure]
+    source, topology = scene.title or "scene", part.topology
+    if method.linkage is not None:
+        own = method.linkage(topology)
+        if own is None:
+            problem = f"the method {method.name!r} cannot solve a {part.name} with closure = {part.closure!r}"
+            raise SceneError(source, "mechanism.closure", problem, method.only)
+        topology = own
     try:
         return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
     except MechanismError as error:

@@ -19,8 +19,9 @@ BASES = {
     "absolute.errors.AbsoluteError",
     "absolute.errors.PoseError",
 } | {"validate.relative.errors.RelativeError"}
-# Says inside the solver that members take another form; it is caught there.
-CAUGHT = {"pointcoord.solve.chains_together.NotTogether"}
+# Says inside the solver that members take another form, or what is wrong with a mechanism's tables, of which
+# the scene's error then says in which file; both are caught there.
+CAUGHT = {"pointcoord.mechanism.faults.TableFault"}
 
 
 def every_error_class() -> dict[str, type[BaseException]]:

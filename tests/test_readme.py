@@ -9,18 +9,27 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from validate.commands.topics import TOPICS
 from validate.comparison.compare import compare
-from validate.paper.scenes import DEFAULT_SCENES
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = sorted(
+    page.relative_to(ROOT).as_posix()
+    for folder in (".", "pointcoord", "validate")
+    for page in (ROOT / folder).glob("README.md" if folder == "." else "**/README.md")
+)
 
 
-def test_the_python_lines_print_what_the_readme_shows() -> None:
-    blocks = re.findall(r"```(?:python|text)\n(.*?)```", README, flags=re.S)
+@pytest.mark.parametrize("page", ["README.md", "pointcoord/README.md"])
+def test_the_python_lines_print_what_a_page_shows(page: str) -> None:
+    blocks = re.findall(
+        r"```(?:python|text)\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), flags=re.S
+    )
     printed, names = io.StringIO(), {}
     with contextlib.redirect_stdout(printed):
         for code in blocks[::2]:
-            exec(compile(code, "README.md", "exec"), names)
+            exec(compile(code, page, "exec"), names)
     lines, expected = printed.getvalue().splitlines(), "".join(blocks[1::2]).splitlines()
     assert len(lines) == len(expected)
     for line, want in zip(lines, expected, strict=True):
@@ -30,7 +39,9 @@ def test_the_python_lines_print_what_the_readme_shows() -> None:
         assert re.sub(r"[-\d. \[\]]", "", line) == re.sub(r"[-\d. \[\]]", "", want)
 
 
-@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+@pytest.mark.parametrize(
+    "scene", re.findall(r"^\| quantity \| (.*?) \| the other", README, flags=re.M)[0].split(" | ")
+)
 def test_the_agreement_table_is_what_the_comparison_finds(scene: str) -> None:
     (agreement,) = re.findall(r"^\| quantity \|.*?\n\n", README, flags=re.S | re.M)
     head, _, *body = [
@@ -49,3 +60,26 @@ def test_the_agreement_table_is_what_the_comparison_finds(scene: str) -> None:
         assert shown / 10 < found < shown * 10
         # A tolerance is known at the instant of the largest difference, which rounding may move.
         assert max(row.tolerance for row in rows) < 1.5 * float(line[-1])
+
+
+def test_the_readme_can_be_read_in_a_minute_or_two() -> None:
+    assert len(README.splitlines()) <= 150
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_between_pages_lead_somewhere(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text):
+        assert target.startswith("http") or ((ROOT / page).parent / target).exists(), target
+
+
+def test_every_page_is_reached_from_the_readme() -> None:
+    reached = {"README.md", *re.findall(r"\]\(([^)#]+\.md)", README)}
+    assert set(PAGES) <= reached
+
+
+def test_help_prints_every_page_but_the_readme() -> None:
+    shown = {
+        f"{package.__name__}/{folder}/README.md".replace("//", "/") for package, folder in TOPICS.values()
+    }
+    assert shown == set(PAGES) - {"README.md"}

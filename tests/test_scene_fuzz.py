@@ -197,7 +197,9 @@ def test_a_strut_that_lies_flat_defeats_the_printed_formulas_only(tmp_path: Path
     flat = {
         "[460, -180, 470]": "[460, 200, 20]",
         "[456, -250, 246]": "[456, -50, 20]",
-        ARM: "{ polynomial = [1.65, 0.1] }",
+        "strut_lower      = [452, -320, 20]": "strut_lower = [451, -270, 20]",
+        "[450, -330, -40]": "[450, -330, 20]",
+        ARM: "{ polynomial = [1.4, 0.1] }",
         "stop = 2.6": "stop = 0.1",
     }
     path = _bounce_with(tmp_path, flat)

@@ -26,6 +26,7 @@ COMMANDS = {
     "sweep": "sweep",
     "plan": "scenes",
     "scenes": "scenes",
+    "new": "new",
     "draw": "draw",
     "plot": "plot",
     "hard": "hard",
@@ -34,6 +35,7 @@ COMMANDS = {
     "report": "report",
     "fit": "fit",
     "study": "study",
+    "help": "topics",
 }
 """Every command, and the module of `validate.commands` that it is in."""
 

@@ -16,10 +16,10 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
 from validate.hardpoint_files.axes import UnknownAxes
 from validate.hardpoint_files.contents import HardpointFileError
-from validate.long_studies.errors import ClusterLost, NoCluster, RecordsError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 from validate.solvers.plain import NoSolver
+from validate.studies.study import ClusterLost, NoCluster, RecordsError, TaskFailed
 
 # In the order in which they are looked for: an unknown ending is an output error of its own.
 MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
@@ -31,7 +31,7 @@ MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exi
     ),
     ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
     ((RecordsError, NoCluster), ExitStatus.WRONG_INPUT),
-    (ClusterLost, ExitStatus.NOT_FINISHED),
+    ((ClusterLost, TaskFailed), ExitStatus.NOT_FINISHED),
     (FormulationError, ExitStatus.NO_VERDICT),
     (PointcoordError, ExitStatus.WRONG_INPUT),
 )

@@ -4,23 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
 
-from validate.extras import MissingPackage
-
 ROOT = Path(__file__).parent
 JOB = 'if __name__ == "__main__":'
-# Modules that need all packages of the extra, and what Python calls these.
-STUDIES = ("validate.studies.claims",)
-EXTRA = ("mpmath", "flint", "pinocchio")
-# Long studies are a command; before that they were run as modules of validate.studies.
-LONG_STUDIES = {
-    f"validate.{room}.{module}": study
-    for room in ("studies", "long_studies")
-    for module, study in (("random_runs", "random"), ("bounds", "bounds"), ("hard_runs", "hard"))
-}
 
 
 def asked_for(argv: Sequence[str], original: Sequence[str]) -> str | None:
@@ -54,7 +42,7 @@ def modules_with_a_job() -> list[str]:
 
 
 def check_what_is_run() -> None:
-    """End the program if it was to run a module of this package that has no job, or that cannot do it.
+    """End the program if it was to run a module of this package that has no job.
 
     Raises:
         SystemExit: status 2, after one line on standard error.
@@ -63,16 +51,8 @@ def check_what_is_run() -> None:
     if module is None or module.partition(".")[0] != ROOT.name:
         return
     if not has_job(module):
-        if module in LONG_STUDIES:
-            _refuse(f"{module} has nothing to run; run pointcoord study {LONG_STUDIES[module]}")
         jobs = ", ".join(modules_with_a_job())
         _refuse(f"{module} has nothing to run; run pointcoord, or python -m with one of: {jobs}")
-    if module in STUDIES:
-        for package in EXTRA:
-            try:
-                import_module(package)
-            except ImportError as error:
-                _refuse(str(MissingPackage(module, error)))
 
 
 def _refuse(message: str) -> NoReturn:

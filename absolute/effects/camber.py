@@ -6,7 +6,7 @@ camber = projected_angle(
     name="camber",
     gives="angle of the wheel's spin axis against the car's right, seen from the front",
     sign="+ where the wheel leans out at its top",
-    line=lambda corner: corner.wheel_axis,
+    role="wheel_axis",
     rise=lambda corner: corner.down,
     run=lambda corner: corner.outboard,
 )

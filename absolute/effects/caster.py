@@ -6,7 +6,7 @@ caster = projected_angle(
     name="caster",
     gives="angle of the steering axis against the car's up, seen from the side",
     sign="+ where the axis leans rearward at its top",
-    line=lambda corner: corner.steering_axis,
+    role="steering_axis",
     rise=lambda corner: corner.rearward,
     run=lambda corner: corner.up,
 )

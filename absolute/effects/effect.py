@@ -36,6 +36,7 @@ class Effect:
         unit: of the value and of its error.
         gives: what it is, in words.
         sign: what a positive value means, in words.
+        role: what the corner must have for it.
         derivative: the derivative over time of the poses that it needs; 0 where poses are enough.
         value: (N,) at the instants of a solved motion.
         error: (N,) how far each value may be off.
@@ -45,6 +46,7 @@ class Effect:
     unit: str
     gives: str
     sign: str
+    role: str
     derivative: int
     value: Callable[[Lines], Array]
     error: Callable[[Lines], Array]

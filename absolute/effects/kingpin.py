@@ -6,7 +6,7 @@ kingpin = projected_angle(
     name="kingpin",
     gives="angle of the steering axis against the car's up, seen from the front",
     sign="+ where the axis leans in at its top",
-    line=lambda corner: corner.steering_axis,
+    role="steering_axis",
     rise=lambda corner: corner.inboard,
     run=lambda corner: corner.up,
 )

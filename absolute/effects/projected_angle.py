@@ -27,23 +27,24 @@ def projected_angle(
     name: str,
     gives: str,
     sign: str,
-    line: Callable[[Corner], tuple[str, str]],
+    role: str,
     rise: Callable[[Corner], Vector],
     run: Callable[[Corner], Vector],
 ) -> Effect:
     """The effect that is the angle of a line of the corner, rad, between -pi and pi.
 
     Args:
+        role: the two points of the line, see `Corner`.
         rise, run: directions of the car; the angle is 0 along run, and grows toward rise.
     """
 
     def value(lines: Lines) -> Array:
-        along = lines.line(line(lines.corner))
+        along = lines.line(lines.corner.ends(role))
         # A product of zeros may be -0, which would turn pi into -pi.
         return np.asarray(np.arctan2(along @ rise(lines.corner) + 0.0, along @ run(lines.corner)))
 
     def error(lines: Lines) -> Array:
-        ends = line(lines.corner)
+        ends = lines.corner.ends(role)
         along = lines.line(ends)
         p, q = np.array(rise(lines.corner)), np.array(run(lines.corner))
         off = lines.error(ends) + 3.0 * EPS * np.abs(along)
@@ -55,4 +56,4 @@ def projected_angle(
         turned = np.where(left > 0.0, np.arctan2(across, left), np.pi)
         return np.asarray(turned + 2.0 * EPS * np.abs(np.arctan2(y, x)))
 
-    return Effect(name, "rad", gives, sign, 0, value, error)
+    return Effect(name, "rad", gives, sign, role, 0, value, error)

@@ -6,7 +6,7 @@ toe = projected_angle(
     name="toe",
     gives="angle of the wheel's spin axis against the car's right, seen from above",
     sign="+ where the wheel's front edge is nearer the car's middle: toe in",
-    line=lambda corner: corner.wheel_axis,
+    role="wheel_axis",
     rise=lambda corner: corner.forward,
     run=lambda corner: corner.outboard,
 )

@@ -21,6 +21,7 @@ from pointcoord.bounds.reported_bounds import (
     reported_bounds,
 )
 from pointcoord.data_classes import dataclass
+from pointcoord.linkage.chassis import SPREAD
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
@@ -45,7 +46,8 @@ class Proof:
         pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
             mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
         bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
-            what adding the user's origin and the chassis' motion rounds comes to it. See `kantorovich`
+            what adding the user's origin and the chassis' motion rounds comes to it, and of a car that turns
+            no coordinate is off by more than the length of what the pose may be. See `kantorovich`
             for what it covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
@@ -160,12 +162,31 @@ def _positions(
     unit, added = mechanism.unit, reported.added(times, mechanism.origin)
     doubt = reported.chassis.rounding(times, mechanism.origin).T / unit
     local = {name: _local(place.T, added, unit) for name, place in reported.numbers[POSITION].items()}
+    spread = 1.0
+    if reported.chassis.turns:
+        # What is reported is turned back, exactly, and compared where it was solved.
+        local, left = _turned_back(reported, times, local, float(unit))
+        doubt, spread = SPREAD * doubt.max(axis=0) + left, SPREAD
     with np.errstate(invalid="ignore", over="ignore"):
         errors = INFLATION * (np.abs(certified.step) + certified.spread + certified.tail)
         own = errors[: 3 * len(mechanism.topology.moving)].max(axis=0)
         bound = _reported_bound(mechanism, y, local, errors, doubt)
         carried, gain = carried_errors(mechanism, y, local, certified, doubt)
-    return unit * own, unit * bound, unit * carried, gain, certified.condition, certified.residual
+    far = spread * unit
+    return unit * own, far * bound, far * carried, gain, certified.condition, certified.residual
+
+
+def _turned_back(
+    reported: Reported, times: Array, local: Mapping[str, Pair], unit: float
+) -> tuple[dict[str, Pair], Array]:
+    """Reported coordinates in the chassis' frame, and how far they may be off there, (N,), in units."""
+    chassis = reported.chassis
+    with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
+        laws = {name: law.enclosed(times) for name, law in chassis.functions.items()}
+        turned = {name: Enclosed.of(high.T, low.T) for name, (high, low) in local.items()}
+        (found,) = chassis.turned_exactly({n: law[:1] for n, law in laws.items()}, [turned], unit, back=True)
+    left = np.max([place.radius[0].max(axis=-1) for place in found.values()], axis=0, initial=0.0)
+    return {name: (place.high.T, place.low.T) for name, place in found.items()}, left
 
 
 def _alone(mechanism: Mechanism, some: Instants, certain: bool) -> Proven:

@@ -94,7 +94,8 @@ class GroupProver:
         """Prove what can be proven together; also the numbers of the instants that are left."""
         found: list[ProvenGroups] = []
         left = np.arange(len(asked.times))
-        if len(left) < FEW:
+        # Poses of a car that turns do not lie on straight lines: each is proven by itself.
+        if len(left) < FEW or asked.reported.chassis.turns:
             return found, left
         anchors, conditions = [asked.times[:0]], [asked.times[:0]]
         for size in TOGETHER:

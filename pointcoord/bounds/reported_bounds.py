@@ -168,7 +168,14 @@ def _enclosed(mechanism: Mechanism, pose: Proven, reported: Reported) -> Enclose
         mechanism, pose.factors, pose.certificate, scaled, pose.data, driven, summed, unsolved, powers
     )
     added = reported.chassis.enclosed(pose.laws, mechanism.origin)
-    return EnclosedPoses(mechanism, reported.axes, enclosed_points(mechanism, coordinates), added, powers)
+    points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
+    if reported.chassis.turns:
+        laws = {
+            name: [part.scaled(power) for part, power in zip(law, powers, strict=True)]
+            for name, law in pose.laws.items()
+        }
+        points = reported.chassis.turned_exactly(laws, points, float(mechanism.unit))
+    return EnclosedPoses(mechanism, reported.axes, points, added, powers)
 
 
 def unit_of_time(states: Sequence[Array]) -> Array:

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity
+from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity, no_role
+from pointcoord.errors import UnknownName
 from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -55,11 +56,15 @@ class Angle:
 
     def ends(self, topology: Topology) -> tuple[str, str]:
         """The two points that the line runs through."""
-        ends: Mapping[str, tuple[str, str]] = {
-            "wheel_axis": topology.wheel_axis,
-            "steering_axis": topology.steering_axis,
-        }
-        return ends[self.line]
+        ends = self.axis(topology)
+        if not ends:
+            raise UnknownName("role", self.line, ())
+        start, end = ends
+        return start, end
+
+    def axis(self, topology: Topology) -> tuple[str, ...]:
+        """The same; empty where the mechanism has no such role."""
+        return topology.wheel_axis if self.line == "wheel_axis" else topology.steering_axis
 
     def value(self, start: Array, end: Array, axes: CarAxes) -> Array:
         """atan2(line . sine, line . cosine) of a line from start to end, (..., 3); shape (...,)."""
@@ -124,6 +129,8 @@ class WheelAngles(Effect):
     def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
         """A line has no direction where the point that stands in for one of its own lies on the other."""
         for angle in self.angles:
+            if not angle.axis(topology):
+                return no_role(self.name, angle.line, topology)
             start, end = angle.ends(topology)
             own = _missing(topology, start)
             if own and drawn[start] == drawn[end]:
@@ -144,6 +151,7 @@ class WheelAngles(Effect):
         return tuple(
             _steep(angle, topology, drawn, axes, told.get(angle.line, np.array(False)))
             for angle in self.angles
+            if angle.axis(topology)
         )
 
 

@@ -153,3 +153,11 @@ class Effect(ABC):
             told: by axis of the topology, the drawings in which it was already found to be misdrawn.
         """
         return ()
+
+
+def no_role(effect: str, role: str, topology: Topology) -> str:
+    """Why a mechanism without a role has not an effect that asks for it."""
+    return (
+        f"{effect!r} needs the role {role}, which the mechanism {topology.name!r} does not have; name it "
+        f"under [roles] of the mechanism, or leave {effect!r} out"
+    )

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.effects import rigid
-from pointcoord.effects.effect import Effect, Poses, Quantity
+from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, both, cross, dot, quotient
 from pointcoord.numerics.rounding import EPS
@@ -101,6 +101,10 @@ class BodyRates(Effect):
     def needs(self, topology: Topology) -> Collection[str]:
         """The points of the bodies."""
         return {point for points in topology.bodies.values() for point in points}
+
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+        """There is a body whose rates they are."""
+        return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Rates of each body in the user's axes, each (..., N, 3); the chassis' motion turns nothing."""

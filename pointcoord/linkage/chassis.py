@@ -1,79 +1,153 @@
-r"""The chassis moves: a displacement of the whole car, added to what is reported.
+r"""The chassis moves: turns of the whole car about lines through drawn points, then a displacement.
 
-    p(t) = p_drawn chassis(t) + sum_i e_i h_i(t),      inputs h_i along directions e_i
+    x -> P + R(x - P),   R v = v + sin(a) k x v + (1 - cos(a)) (k (k . v) - v)      inputs a about P along k
+    p(t) = x(t) + sum_i e_i h_i(t)                                        inputs h_i along directions e_i
 
-Every constraint is made of differences of points, so a displacement of all of them changes none. The
-mechanism is solved in the chassis' own frame, where neither the distance that the chassis goes nor its
-speed costs a digit.
+The turns follow each other in the order of the mechanism's file. Every constraint is made of differences of
+points, and no turn changes the length of one, so that neither changes a constraint. The mechanism is solved
+in the chassis' own frame, where neither the distance that the chassis goes nor its speed costs a digit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
+from pointcoord.linkage.drives import within_a_turn
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics import enclosure
+from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
+V = TypeVar("V", Array, Enclosed)
 
 LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
+FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite
 FACTORIALS = np.array([1.0, 1.0, 2.0])
+# Which derivatives of a factor the product rule takes: (u v)'' = u v'' + u' v' + u' v' + u'' v.
+LEIBNIZ = ((0,), (0, 1), (0, 1, 1, 2))
+# A turn leaves no component of a vector larger than its length, which is this many times its largest one.
+SPREAD = 3.0**0.5
 
 
 @dataclass(frozen=True)
 class ChassisMotion:
-    """Inputs that move the chassis, each along a unit vector of shape (..., 3)."""
+    """Inputs that move the chassis, each along a unit vector of shape (..., 3).
+
+    Attributes:
+        functions: of those that a scene drives.
+        lacks: what a direction that is a product of the user's lacks by rounding.
+        centres: of those that turn the car, in order, the place about which they do, (..., 3), mm from the
+            mechanism's origin.
+    """
 
     functions: Mapping[str, TimeFunction]
     directions: Mapping[str, Array]
+    lacks: Mapping[str, Array] = field(default_factory=dict)
+    centres: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, mechanism: Mechanism, functions: Mapping[str, TimeFunction]) -> ChassisMotion:
         """Those of a mechanism's inputs that move its chassis."""
-        along = mechanism.topology.chassis_motion
-        moving = {name: f for name, f in functions.items() if name in along}
-        return cls(moving, {name: mechanism.drawing.vectors[along[name]] for name in moving})
+        topology, drawing = mechanism.topology, mechanism.drawing
+        turns = topology.chassis_turns
+        along = {**topology.chassis_motion, **{name: line[0] for name, line in turns.items()}}
+        unit = mechanism.unit[..., None]
+        return cls(
+            {name: function for name, function in functions.items() if name in along},
+            {name: drawing.vectors[way] for name, way in along.items()},
+            {name: drawing.lacks[way] for name, way in along.items() if way in drawing.lacks},
+            {name: drawing.vectors[about] * unit for name, (_, about) in turns.items()},
+        )
+
+    @property
+    def turns(self) -> bool:
+        """Whether one of the inputs turns the car."""
+        return not self.functions.keys().isdisjoint(self.centres)
 
     def states(self, instants: Array, derivatives: int) -> list[Array]:
-        """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing moves the chassis.
+        """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing displaces the car.
 
         Raises:
             InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
         """
+        names = [name for name in self.functions if name not in self.centres]
+        return self.shifts({name: list(self.law(name, instants, derivatives)) for name in names})
+
+    def shifts(self, laws: Mapping[str, Sequence[Array]]) -> list[Array]:
+        """The same of inputs whose values and time derivatives are given, each (N,), mm; not of turns."""
         sums: list[Array] = []
-        for name in self.functions:
+        for name, rates in ((name, rates) for name, rates in laws.items() if name not in self.centres):
             # The instants lie side by side in memory, as in a table of results.
             along = self.directions[name][..., None]
-            rates = self.law(name, instants, derivatives)
             parts = [(along * rate[..., None, :]).swapaxes(-1, -2) for rate in rates]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
         return sums
 
     def law(self, name: str, instants: Array, derivatives: int) -> Array:
-        """The value of an input and its time derivatives, shape (derivatives + 1, N), mm.
+        """The value of an input and its time derivatives, shape (derivatives + 1, N), mm or rad.
 
         Raises:
             InputOutOfRange: as `states`.
         """
+        largest, unit = (FASTEST, "rad") if name in self.centres else (LARGEST, "mm")
         with np.errstate(over="ignore", invalid="ignore"):
             series = self.functions[name].series(instants, derivatives) * FACTORIALS[: derivatives + 1]
-        if not (np.abs(series) < LARGEST).all():
-            place, order = np.argwhere(~(np.abs(series) < LARGEST))[0]
+        if not (np.abs(series) < largest).all():
+            place, order = np.argwhere(~(np.abs(series) < largest))[0]
             what = ("values", "rates", "accelerations")[order]
             raise InputOutOfRange(
                 name,
                 float(series[place, order]),
-                f"{what} below {LARGEST:g} mm{('', '/s', '/s^2')[order]} in size",
+                f"{what} below {largest:g} {unit}{('', '/s', '/s^2')[order]} in size",
                 float(instants[place]),
             )
         return np.moveaxis(series, -1, 0)
+
+    def turned(self, instants: Array, states: Sequence[Mapping[str, Array]]) -> Sequence[Mapping[str, Array]]:
+        """States of points after the turns of the car.
+
+        Args:
+            states: by time derivative, of points in the chassis' frame, each (..., N, 3), mm from the
+                mechanism's origin; those of a point up to its highest.
+        Raises:
+            InputOutOfRange: as `states`.
+        """
+        names = [name for name in self.centres if name in self.functions]
+        return self.turned_by({n: list(self.law(n, instants, len(states) - 1)) for n in names}, states)
+
+    def turned_by(
+        self, laws: Mapping[str, Sequence[Array]], states: Sequence[Mapping[str, Array]]
+    ) -> Sequence[Mapping[str, Array]]:
+        """The same by inputs whose values and time derivatives are given, each (N,), rad; in their order."""
+        for name in (name for name in self.centres if name in laws):
+            vectors = self.directions[name], self.centres[name]
+            k, about = (v if v.ndim == 1 else v[..., None, :] for v in vectors)
+            slopes = [(one[..., None], other[..., None]) for one, other in _slopes(laws[name])]
+            jets = {p: [state[p] for state in states if p in state] for p in states[0]}
+            found = {p: _turned(jet, about, _across(k), _inward(k), slopes) for p, jet in jets.items()}
+            states = [{p: jet[d] for p, jet in found.items() if d < len(jet)} for d in range(len(states))]
+        return states
+
+    def taken_back(self, instants: Array, places: Array) -> Array:
+        """Where places of a moved car, (N, 3), mm from the mechanism's origin, are in the chassis' frame."""
+        for shift in self.states(instants, 0):
+            places = places - shift
+        for name in reversed(list(self.centres)):
+            if name in self.functions:
+                law = {name: list(-self.law(name, instants, 0))}
+                places = self.turned_by(law, [{"": places}])[0][""]
+        return places
 
     def enclosed(self, laws: Mapping[str, Sequence[Enclosed]], origin: Array) -> list[Enclosed]:
         """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s.
@@ -83,10 +157,46 @@ class ChassisMotion:
         """
         still = np.zeros(3)
         sums = [Enclosed.of(origin), Enclosed.of(still), Enclosed.of(still)]
-        for name in self.functions:
-            along = Enclosed.of(self.directions[name])
-            sums = [total + along * law.spread_out for total, law in zip(sums, laws[name], strict=True)]
+        for name, law in laws.items():
+            if name in self.directions and name not in self.centres:
+                along = self._along(name)
+                sums = [total + along * rate.spread_out for total, rate in zip(sums, law, strict=False)]
         return sums
+
+    def turned_exactly(
+        self,
+        laws: Mapping[str, Sequence[Enclosed]],
+        points: Sequence[Mapping[str, Enclosed]],
+        unit: float,
+        *,
+        back: bool = False,
+    ) -> Sequence[Mapping[str, Enclosed]]:
+        """Where points and their rates exactly are after the turns of the car.
+
+        Args:
+            laws: by input, where its value and its time derivatives exactly are, each (N,), in the unit of
+                time of the points.
+            points: by time derivative, every point in the chassis' frame, (N, 3), in units.
+            unit: their unit, a power of two, mm.
+            back: from after the turns to the chassis' frame.
+        """
+        names = [name for name in self.centres if name in laws]
+        for name in reversed(names) if back else names:
+            k, about = self._along(name), Enclosed.of(self.centres[name] / unit)
+            rates = [-rate for rate in laws[name]] if back else laws[name]
+            slopes = [(one.spread_out, other.spread_out) for one, other in _enclosed_slopes(rates)]
+            # Every point has all derivatives here.
+            jets = {p: [state[p] for state in points] for p in points[0]}
+            across, inward = _across_exactly(k), _inward_exactly(k)
+            found = {p: _turned(jet, about, across, inward, slopes) for p, jet in jets.items()}
+            points = [{p: jet[d] for p, jet in found.items()} for d in range(len(points))]
+        return points
+
+    def _along(self, name: str) -> Enclosed:
+        """A direction, which is what is written or the product of two such."""
+        if name in self.lacks:
+            return Enclosed.of(self.directions[name], self.lacks[name], PAIRS, PAIRS)
+        return Enclosed.of(self.directions[name])
 
     def rounding(self, instants: Array, origin: Array) -> Array:
         """Rounding of the displacement and of its sum with an origin, (..., N, 3), mm.
@@ -97,9 +207,79 @@ class ChassisMotion:
         """
         magnitude, laws = np.zeros((*np.shape(instants), 3)), np.zeros((*np.shape(instants), 3))
         for name, function in self.functions.items():
+            if name in self.centres:
+                continue
             along = np.abs(self.directions[name][..., None, :])
-            magnitude = magnitude + np.abs(function.series(instants, 0)) * along
+            # A direction that is rounded is so by u of itself, as a product is.
+            rounded = 2.0 if name in self.lacks else 1.0
+            magnitude = magnitude + rounded * np.abs(function.series(instants, 0)) * along
             laws = laws + function.rounding(instants)[:, None] * along
         count = 2.0 * len(self.functions)
         total = UNIT_ROUNDOFF * (count * magnitude + np.abs(origin[..., None, :]) + magnitude)
         return np.where(magnitude + laws > 0.0, 1.01 * (total + laws), 0.0)
+
+
+def _turned(
+    jet: Sequence[V],
+    about: V,
+    across: Callable[[V], V],
+    inward: Callable[[V], V],
+    slopes: Sequence[tuple[V, V]],
+) -> list[V]:
+    """A point and its time derivatives after a turn.
+
+    Args:
+        across, inward: k x v and k (k . v) - v of a vector v.
+        slopes: by derivative, those of the angle's sine and versine.
+    """
+    arm: list[V] = list(jet)
+    arm[0] = jet[0] - about
+    parts: list[tuple[V, V]] = [(across(v), inward(v)) for v in arm]
+    found: list[V] = []
+    for state, orders in zip(jet, LEIBNIZ, strict=False):
+        total = state
+        for order in orders:
+            (sine, versine), (one, other) = slopes[order], parts[len(found) - order]
+            total = total + one * sine + other * versine
+        found.append(total)
+    return found
+
+
+def _slopes(angle: Sequence[Array]) -> list[tuple[Array, Array]]:
+    """Sine and versine 2 sin(a/2)^2 of an angle, and their time derivatives."""
+    sine, cosine = np.sin(angle[0]), np.cos(angle[0])
+    found = [(sine, 2.0 * np.sin(0.5 * angle[0]) ** 2)]
+    if len(angle) > 1:
+        found.append((cosine * angle[1], sine * angle[1]))
+    if len(angle) > 2:
+        square = angle[1] ** 2
+        found.append((cosine * angle[2] - sine * square, sine * angle[2] + cosine * square))
+    return found
+
+
+def _enclosed_slopes(angle: Sequence[Enclosed]) -> list[tuple[Enclosed, Enclosed]]:
+    """The same, exactly."""
+    cosine, sine = within_a_turn(angle[0]).cosine_sine()
+    found = [(sine, Enclosed.of(1.0) - cosine)]
+    if len(angle) > 1:
+        found.append((cosine * angle[1], sine * angle[1]))
+    if len(angle) > 2:
+        square = angle[1] * angle[1]
+        found.append((cosine * angle[2] - sine * square, sine * angle[2] + cosine * square))
+    return found
+
+
+def _across(k: Array) -> Callable[[Array], Array]:
+    return lambda v: cross(k, v)
+
+
+def _inward(k: Array) -> Callable[[Array], Array]:
+    return lambda v: k * np.sum(k * v, axis=-1, keepdims=True) - v
+
+
+def _across_exactly(k: Enclosed) -> Callable[[Enclosed], Enclosed]:
+    return lambda v: enclosure.cross(k, v)
+
+
+def _inward_exactly(k: Enclosed) -> Callable[[Enclosed], Enclosed]:
+    return lambda v: k * enclosure.dot(k, v).spread_out - v

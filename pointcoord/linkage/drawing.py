@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.numerics.double_double import Pair
 from pointcoord.numerics.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -16,10 +18,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Drawing:
-    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3)."""
+    """The drawn points and directions, in the mechanism's own units, each of shape (..., 3).
+
+    Attributes:
+        vectors: points, and the car's directions.
+        unit: the length that is 1, mm.
+        lacks: what the directions that are products of the user's lack by rounding.
+    """
 
     vectors: dict[str, Array]
     unit: Array
+    lacks: dict[str, Array] = field(default_factory=dict)
+
+    def pair(self, name: str) -> Pair:
+        """A point or a direction as high and low."""
+        high = self.vectors[name]
+        return high, self.lacks.get(name, np.zeros_like(high))
 
     def distance(self, start: str, end: str) -> Array:
         """Drawn distance between two points, shape (...,)."""

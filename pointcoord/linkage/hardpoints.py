@@ -9,13 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import MechanismError, UnknownName
 from pointcoord.linkage.carried_points import carrier_weights
+from pointcoord.linkage.directions import car_directions
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.linear import factorise, null_directions
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
+AXES = ("up", "right")
 
 
 def build_mechanism(
@@ -24,19 +27,28 @@ def build_mechanism(
     """Hardpoints put on a topology, checked.
 
     Args:
-        points: every point of the topology, shape (..., 3), mm; where one is left out that may be, the point
-            that stands in for it is taken.
-        directions: every direction of the topology, unit vectors, shape (..., 3).
+        points: every point of the topology, shape (..., 3), mm; where one of the chassis is left out that may
+            be, the point that stands in for it is taken.
+        directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
         MechanismError: a coordinate is not finite, a link has no length, or the mechanism is under- or
             over-determined; the message names the free direction or the redundant rows.
     """
+    mechanism = drawn_mechanism(topology, points, directions)
+    _check_determined(mechanism)
+    return mechanism
+
+
+def drawn_mechanism(
+    topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
+) -> Mechanism:
+    """The same without a check that its equations have one solution."""
     _check_names(points, topology.points, "point")
-    _check_names(directions, topology.directions, "direction")
-    topology = topology.given(points)
+    _check_names(directions, AXES, "direction")
     located = _checked(topology.with_defaults(points), topology.points, "point")
-    turned = _checked(directions, topology.directions, "direction")
+    named = car_directions(**_checked(directions, AXES, "direction"))
+    turned = {name: named[name][0] for name in dict.fromkeys((*AXES, *topology.directions))}
     batched = any(place.ndim > 1 for place in located.values())
     stack = np.stack(np.broadcast_arrays(*located.values()), -2) if batched else np.array([*located.values()])
     with np.errstate(over="ignore", invalid="ignore"):
@@ -54,9 +66,10 @@ def build_mechanism(
         vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
     else:
         vectors = dict(zip(located, (stack - origin) / unit, strict=True)) | turned
-    drawing = Drawing(vectors, unit)
+    lows = {name: named[name][1] for name in turned if named[name][1].any()}
+    drawing = Drawing(vectors, unit, lows)
     drawn, lacks, doubt = _drawn(topology, drawing)
-    mechanism = Mechanism(
+    return Mechanism(
         topology=topology,
         origin=origin,
         unit=unit,
@@ -68,8 +81,6 @@ def build_mechanism(
             name: carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
         },
     )
-    _check_determined(mechanism)
-    return mechanism
 
 
 def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
@@ -117,6 +128,10 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     y[..., layout.one] = 1.0
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., layout.span(name)] = drawing.vectors[name]
+        if name in drawing.lacks:
+            # Two products and their difference, taken twice as exactly.
+            lacks[..., layout.span(name)] = drawing.lacks[name]
+            doubt[..., layout.span(name)] = PAIRS
     for kind in topology.kinds:
         for own in type(kind[0]).placed_together(kind, layout, drawing):
             places = list(own.places)
@@ -148,12 +163,20 @@ def _check_determined(mechanism: Mechanism) -> None:
     problems = []
     names: list[str] = []
     if len(free):
-        names = [layout.describe(i) for i in _dominant(free)]
+        names = [layout.describe(i) for i in dominant(free)]
         problems.append(f"free at the drawing: {', '.join(names)}")
     if len(redundant):
-        rows = [topology.labels[i] for i in _dominant(redundant)]
+        rows = [topology.labels[i] for i in dominant(redundant)]
         names += rows
         problems.append(f"redundant or contradictory at the drawing: {', '.join(rows)}")
+    lost = dominant(redundant) if len(redundant) else []
+    inputs = [
+        drive.input
+        for drive in topology.drives
+        if any(layout.scalar(drive.coordinate) in system.reads[row] for row in lost)
+    ]
+    if len(set(inputs)) > 1:
+        problems.append(f"these inputs may fight: {', '.join(dict.fromkeys(inputs))}")
     advice = "; draw the points named here apart, and off one line or plane" if equations == unknowns else ""
     state = "over" if equations > unknowns else "under" if equations < unknowns else "not"
     raise MechanismError(
@@ -185,7 +208,7 @@ def _regular_like_the_first(matrices: Array) -> bool:
     return bool(away <= 0.5 and n * EPS * 8.0 * spread * scaled < 1.0)
 
 
-def _dominant(directions: Array) -> list[int]:
+def dominant(directions: Array) -> list[int]:
     """Indices of the components that take part in null directions, at least a tenth of the largest."""
     weight = np.abs(directions).max(axis=0)
     return [int(i) for i in np.flatnonzero(weight > 0.1 * weight.max())]

@@ -86,7 +86,7 @@ class Mechanism:
             self,
             origin=self.origin[members],
             unit=self.unit[members],
-            drawing=Drawing(vectors, self.unit[members]),
+            drawing=Drawing(vectors, self.unit[members], self.drawing.lacks),
             drawn=self.drawn[members],
             drawn_lacks=self.drawn_lacks[members],
             drawn_doubt=self.drawn_doubt[members],
@@ -143,12 +143,13 @@ class Mechanism:
     def input_values(self, known: Array) -> dict[str, Array]:
         """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""
         first = self.layout.unknowns
-        return {
-            drive.input: drive.input_value(
-                known[..., self.layout.scalar(drive.coordinate) - first], self.drawing
-            )
-            for drive in self.topology.drives
-        }
+        found: dict[str, Array] = {}
+        for drive in self.topology.drives:
+            value = drive.input_value(known[..., self.layout.scalar(drive.coordinate) - first], self.drawing)
+            turned = drive.input in found and drive.unit == "rad"
+            # Of a turn the cosine gives the size and then the sine the sign.
+            found[drive.input] = np.copysign(found[drive.input], value) if turned else value
+        return found
 
     def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.

@@ -21,7 +21,7 @@ from pointcoord.linkage.topology import Topology
 def needed_topology(topology: Topology, points: Collection[str]) -> Topology:
     """The part of a topology that some of its points hang on; all of it if no input moves them."""
     wanted = frozenset(points)
-    if wanted.issuperset(topology.points):
+    if wanted.issuperset(topology.points) or topology.left_out:
         return topology
     carriers = {name for point in wanted & topology.carried.keys() for name in topology.carried[point]}
     moving = (wanted | carriers).intersection(topology.moving)

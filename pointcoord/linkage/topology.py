@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import field, replace
+from collections.abc import Mapping
+from dataclasses import field
 from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import TypeVar
@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.drives import Drive
+from pointcoord.linkage.drives import Drive, TurnedBy
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
+from pointcoord.numerics.structure import rows_too_many
 
 Array = NDArray[np.float64]
 Place = TypeVar("Place")
@@ -34,14 +35,15 @@ class Topology:
         directions: unit vectors that the chassis carries.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
-        knuckle: the body that carries the wheel.
+        knuckle: the body that carries the wheel. What follows is empty where a mechanism has no such part.
         steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
         wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
-        wheel_centre: a point of the knuckle.
         front_and_rear: two points of the chassis, of which the first lies ahead of the second.
         inboard: a point of the chassis that lies nearer the car's middle than the wheel centre.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
-        chassis_motion: inputs that move the whole chassis, each along a direction, zero if not given.
+        chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
+        chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
+        left_out: rows that follow from the constraints, and are looked at again at every answer.
         puts_in_place: whether closing the drawing moves points on purpose, however far that is.
     """
 
@@ -53,15 +55,16 @@ class Topology:
     directions: tuple[str, ...]
     constraints: tuple[Constraint, ...]
     drives: tuple[Drive, ...]
-    knuckle: str
-    steering_axis: tuple[str, str]
-    wheel_axis: tuple[str, str]
-    wheel_centre: str
-    inboard: str
-    front_and_rear: tuple[str, str]
+    knuckle: str = ""
+    steering_axis: tuple[str, ...] = ()
+    wheel_axis: tuple[str, ...] = ()
+    inboard: str = ""
+    front_and_rear: tuple[str, ...] = ()
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
+    chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     puts_in_place: bool = False
+    left_out: tuple[Constraint, ...] = ()
 
     @cached_property
     def points(self) -> tuple[str, ...]:
@@ -82,29 +85,20 @@ class Topology:
         }
         return taken | dict(points)
 
-    def given(self, points: Collection[str]) -> Topology:
-        """The topology of a car that gives these points: what only rides on a body may be left out."""
-        left_out = frozenset(name for name in self.carried if name in self.stand_ins and name not in points)
-        if not left_out:
-            return self
-        # Kept, because the order of the coordinates and the map are made once for each.
-        if left_out not in self._without:
-            self._without[left_out] = self._with_carried(left_out)
-        return self._without[left_out]
-
-    @cached_property
-    def _without(self) -> dict[frozenset[str], Topology]:
-        return {}
-
-    def _with_carried(self, left_out: frozenset[str]) -> Topology:
-        inner, outer = (self.stand_ins[name] if name in left_out else name for name in self.wheel_axis)
-        riding = {name: carriers for name, carriers in self.carried.items() if name not in left_out}
-        return replace(self, carried=riding, wheel_axis=(inner, outer))
+    @property
+    def wheel_centre(self) -> str:
+        """The outer point of the wheel's axis; empty without one."""
+        return self.wheel_axis[1] if self.wheel_axis else ""
 
     @cached_property
     def required_inputs(self) -> tuple[str, ...]:
         """Inputs that must be given."""
-        return tuple(drive.input for drive in self.drives)
+        return tuple(dict.fromkeys(drive.input for drive in self.drives))
+
+    @cached_property
+    def turning(self) -> tuple[str, ...]:
+        """The inputs that are turns of any size from the drawing on, each with two coordinates."""
+        return tuple(dict.fromkeys(drive.input for drive in self.drives if isinstance(drive, TurnedBy)))
 
     @cached_property
     def required_input_names(self) -> frozenset[str]:
@@ -119,13 +113,18 @@ class Topology:
     @property
     def inputs(self) -> tuple[str, ...]:
         """Every input that may be given."""
-        return (*self.required_inputs, *self.chassis_motion)
+        return (*self.required_inputs, *self.chassis_inputs)
+
+    @property
+    def chassis_inputs(self) -> tuple[str, ...]:
+        """Those that move the whole car."""
+        return (*self.chassis_motion, *self.chassis_turns)
 
     @property
     def input_units(self) -> dict[str, str]:
         """The unit of every input, rad or mm."""
         driven = {drive.input: drive.unit for drive in self.drives}
-        return driven | dict.fromkeys(self.chassis_motion, "mm")
+        return driven | dict.fromkeys(self.chassis_motion, "mm") | dict.fromkeys(self.chassis_turns, "rad")
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -147,7 +146,7 @@ class Topology:
         for constraint in self.constraints:
             last = first + len(constraint.labels)
             name = constraint.name
-            sizes[name] = float(np.abs(forces[first:last]).max())
+            sizes[name] = float(np.abs(forces[first:last]).max(initial=0.0))
             ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
             first = last
         acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
@@ -161,7 +160,7 @@ class Topology:
             ratios=tuple(name for c in self.constraints for name in c.slides),
             chassis=self.chassis,
             directions=self.directions,
-            driven=tuple(drive.coordinate for drive in self.drives),
+            driven=tuple(dict.fromkeys(drive.coordinate for drive in self.drives)),
             squared_lengths=tuple(ends for c in self.constraints for ends in c.squared_lengths),
             vectors=tuple(name for c in self.constraints for name in c.vectors),
             constants=tuple(name for c in self.constraints for name in c.constants),
@@ -201,6 +200,19 @@ class Topology:
     def map(self) -> QuadraticMap:
         """All constraints as one quadratic map; the same for every car of this topology."""
         return _map(self.constraints, self.layout)
+
+    @cached_property
+    def fighting(self) -> tuple[str, ...]:
+        """Inputs of rows that are more than the coordinates that they hold, however the car is drawn."""
+        rows = rows_too_many(self.map)
+        read = {coordinate for row in rows for coordinate in self.map.reads[row]}
+        named = (drive.input for drive in self.drives if self.layout.scalar(drive.coordinate) in read)
+        return tuple(dict.fromkeys(named))
+
+    @cached_property
+    def left_map(self) -> QuadraticMap:
+        """The rows that are left out, as a map of the same coordinates."""
+        return _map(self.left_out, self.layout)
 
 
 @lru_cache(maxsize=64)

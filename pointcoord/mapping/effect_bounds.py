@@ -21,6 +21,7 @@ from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
@@ -44,7 +45,8 @@ class Evaluated:
         inputs: rates and accelerations of the map's inputs as far as they were given, each (N, p).
         moving: by derivative the states of the points that move, in the order of `off`, (N, points, 3), mm
             per s^d, in the chassis' frame and from the mechanism's origin.
-        chassis: what moves the chassis as far as it was given, by derivative and by input, each (N,).
+        chassis: how it moves. laws: what moves it as far as it was given, by input and by
+            derivative, each (N,).
         numbers: what was reported, by quantity and name, each (N, 3) or (N,).
     """
 
@@ -56,7 +58,8 @@ class Evaluated:
     patch: Whole
     inputs: Sequence[Array]
     moving: Array
-    chassis: Sequence[Mapping[str, Array]]
+    chassis: ChassisMotion
+    laws: Mapping[str, Sequence[Array]]
     numbers: Numbers
 
     def bounds(self, effects: Sequence[Effect]) -> dict[str, dict[str, Array]]:
@@ -91,8 +94,10 @@ class Evaluated:
             for i, name in enumerate(self.points):
                 points[name] = Enclosed(state.high[:, i], state.low[:, i], state.radius[:, :, i])
             found.append(points)
-        ones = np.ones(count)
-        return EnclosedPoses(mechanism, self.axes, found, self._added(here, count), [ones] * len(found))
+        laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
+        turned = self.chassis.turned_exactly(laws, found, float(mechanism.unit))
+        added = self.chassis.enclosed(laws, mechanism.origin)
+        return EnclosedPoses(mechanism, self.axes, turned, added, [np.ones(count)] * len(found))
 
     def _radii(self, here: slice) -> list[Array]:
         """How far the states of the points that move are off, by derivative, each (N, points, 3)."""
@@ -107,18 +112,4 @@ class Evaluated:
             bent = np.einsum("ni,nj,nijm->nm", rates[0], rates[0], self.off.second[patch])
             bent += np.einsum("ni,nim->nm", rates[1], self.off.first[patch])
             found.append(bent.reshape(shape))
-        return found
-
-    def _added(self, here: slice, count: int) -> list[Enclosed]:
-        """What reporting adds to every point, by derivative, each (N, 3), mm."""
-        topology, vectors = self.mechanism.topology, self.mechanism.drawing.vectors
-        found = []
-        for d, given in enumerate(self.chassis):
-            origin = self.mechanism.origin if d == 0 else np.zeros(3)
-            total = Enclosed.of(np.broadcast_to(origin, (count, 3)))
-            for name, direction in topology.chassis_motion.items():
-                if name in given:
-                    along = Enclosed.of(vectors[direction])
-                    total = total + along * Enclosed.of(given[name][here]).spread_out
-            found.append(total)
         return found

@@ -8,7 +8,7 @@ series in the inputs, in patches, each with a proven bound; any laws are then co
 
     v = Y_a a' + Y_b b',    acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb b'^2.
 
-What moves the chassis (heave) is added to it, outside. The branch is the drawing's: patches are proven
+What moves the chassis (heave, roll) is done to it, outside. The branch is the drawing's: patches are proven
 outwards from the closed drawing (see `flood`).
 """
 
@@ -35,13 +35,15 @@ from pointcoord.errors import (
     UnknownName,
 )
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import Stored, read, write
+from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import OnePatch, sum_series
-from pointcoord.patches.flood import Limits, flood
+from pointcoord.patches.flood import Limits, Patches, flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
 from pointcoord.patches.reported_points import moving_points
@@ -74,7 +76,7 @@ class Bound:
 
     Attributes:
         position: of every coordinate of a point, mm; what adding the user's origin rounds is in it, and what
-            adding a chassis' motion rounds, once u of the sum, is not.
+            a chassis' motion rounds is not, nor that a turn of the car mixes the coordinates.
         velocity: by input, mm per its unit (rad or mm).
         acceleration: by two inputs, mm per the product of their units.
     """
@@ -269,16 +271,16 @@ class KinematicMap:
             if rates is None:
                 raise _needs_rates()
             given.append(accelerations)
-        states, lifts, shape = self._split(given)
+        states, laws, shape = self._split(given)
         found = self.evaluate(*states)
         places = [
             self._chassis(d, shape) | {name: state[..., i, :] for i, name in enumerate(self.points)}
             for d, state in enumerate(found)
         ]
-        numbers = self._read(places, lifts)
+        numbers = self._read(places, laws)
         if not bounds:
             return MappedPoses(numbers)
-        return MappedPoses(numbers, self._bounds(states, found, self._chassis_inputs(given, shape), numbers))
+        return MappedPoses(numbers, self._bounds(states, found, laws, numbers))
 
     def evaluate(
         self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
@@ -441,9 +443,11 @@ class KinematicMap:
 
     def _split(
         self, given: Sequence[Mapping[str, ArrayLike]]
-    ) -> tuple[list[Array], list[Array | None], tuple[int, ...]]:
-        """The map's inputs as columns, (..., p), what the chassis does, (..., 3), and the poses' shape."""
-        topology, vectors = self.mechanism.topology, self.mechanism.drawing.vectors
+    ) -> tuple[list[Array], dict[str, list[Array]], tuple[int, ...]]:
+        """The map's inputs as columns, (..., p); what moves the chassis by input and derivative, each of the
+        poses' shape, (...); and this shape.
+        """
+        topology = self.mechanism.topology
         held = {name: low for name, (low, high) in self.stored.ranges.items() if low == high}
         for d, state in enumerate(given):
             if not isinstance(state, Mapping):
@@ -466,33 +470,27 @@ class KinematicMap:
             np.stack([np.broadcast_to(state[name], shape) for name in self.inputs], axis=-1)
             for state in arrays
         ]
-        lifts: list[Array | None] = []
-        for state in self._chassis_inputs(given, shape):
-            total: Array | None = None
-            for name, value in state.items():
-                wrong = value[~np.isfinite(value)]
-                if wrong.size:
-                    raise InputOutOfRange(name, float(wrong.ravel()[0]), "finite values")
-                part = value[..., None] * vectors[topology.chassis_motion[name]]
-                total = part if total is None else total + part
-            lifts.append(total)
-        return columns, lifts, shape
+        named = (name for name in self._motion.directions if any(name in state for state in arrays))
+        laws = {
+            name: [np.broadcast_to(state.get(name, np.zeros(())), shape) for state in arrays]
+            for name in named
+        }
+        for name, law in laws.items():
+            for value in law:
+                if not np.isfinite(value).all():
+                    raise InputOutOfRange(name, float(value[~np.isfinite(value)][0]), "finite values")
+        return columns, laws, shape
 
-    def _chassis_inputs(
-        self, given: Sequence[Mapping[str, ArrayLike]], shape: tuple[int, ...]
-    ) -> list[dict[str, Array]]:
-        """What moves the chassis as far as it is given, by derivative, each of the poses' shape."""
-        names = self.mechanism.topology.chassis_motion
-        return [
-            {n: np.broadcast_to(np.asarray(state[n], dtype=float), shape) for n in names if n in state}
-            for state in given
-        ]
+    @cached_property
+    def _motion(self) -> ChassisMotion:
+        """How the chassis moves by what is given."""
+        return ChassisMotion.of(self.mechanism, {})
 
     def _bounds(
         self,
         states: Sequence[Array],
         found: Array,
-        chassis: Sequence[Mapping[str, Array]],
+        laws: Mapping[str, Sequence[Array]],
         numbers: Mapping[str, Channel],
     ) -> dict[str, dict[str, Array]]:
         """Proven errors of all numbers, of their shapes."""
@@ -512,7 +510,8 @@ class KinematicMap:
             self._patches_of(flat[0]),
             flat[1:],
             found.reshape(len(flat), count, len(self.points), 3),
-            [{name: value.reshape(count) for name, value in state.items()} for state in chassis],
+            self._motion,
+            {name: [value.reshape(count) for value in law] for name, law in laws.items()},
             {
                 quantity: {name: one_by_one(array, channel.quantity.of) for name, array in channel.items()}
                 for quantity, channel in numbers.items()
@@ -536,14 +535,20 @@ class KinematicMap:
             found.append(tuple(e for e in states if e.derivative <= derivative))
         return found[0], found[1], found[2]
 
-    def _read(self, places: list[dict[str, Array]], lifts: list[Array | None]) -> dict[str, Channel]:
-        """Effects of states in the chassis' frame."""
+    def _read(
+        self, places: Sequence[Mapping[str, Array]], laws: Mapping[str, Sequence[Array]]
+    ) -> dict[str, Channel]:
+        """Effects of states in the chassis' frame, which moves."""
         mechanism = self.mechanism
+        places = self._motion.turned_by(laws, places)
+        flat = {name: [value.ravel() for value in law] for name, law in laws.items()}
+        shape = next((law[0].shape for law in laws.values()), ())
+        lifts: list[Array | None] = [s.reshape(*shape, 3) for s in self._motion.shifts(flat)]
         axes = CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard)
         origin = mechanism.origin if mechanism.origin.any() else None
-        added = list(lifts)
+        added = lifts or [None] * len(places)
         if origin is not None:
-            added[0] = origin if lifts[0] is None else origin + lifts[0]
+            added[0] = origin if added[0] is None else origin + added[0]
         poses = Poses(mechanism, axes, states=places, added=added)
         found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
         computed = self._effects[len(places) - 1]
@@ -575,7 +580,7 @@ def kinematic_map(
     Args:
         scene: whose suspension; the laws of its inputs and its instants are not looked at.
         ranges: the lower and the upper end of each input that drives it, rad or mm; one whose ends are the
-            same is held there. What moves the chassis has none: it is added, whatever it is.
+            same is held there. What moves the chassis has none: it may be anything.
         tolerance: largest proven bound of a position, mm, on every patch, in the chassis' frame and near the
             mechanism: what a far origin rounds comes to it.
         halvings: how often the range of an input is halved at most, towards places where assemblies end.
@@ -588,6 +593,7 @@ def kinematic_map(
         SceneError: the hardpoints do not make a mechanism, or closing them makes another car.
         AssemblyError: the range cannot be reached from the drawing.
         NotCovered: nothing of it can be proven.
+        MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
 
     >>> map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)})
     >>> map({"arm_angle": 1.0, "rack": [0.0, 5.0]}).position["wheel_centre"].shape
@@ -607,7 +613,7 @@ def kinematic_map(
     closed = close_drawing(mechanism)
     moved = closing(mechanism, closed.y)
     require_the_drawn_car(scene, moved)
-    twice = _nearest(domain, mechanism.input_values(closed.y[mechanism.map.unknowns :]))
+    twice = domain.nearest_place(mechanism.input_values(closed.y[mechanism.map.unknowns :]))
     values = domain.inputs_at(twice)
     held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
     start = assemble(mechanism, held | dict(zip(domain.free, values, strict=True)), None, closed)
@@ -617,7 +623,31 @@ def kinematic_map(
     if cover.patches is None:
         inputs = {name: float(value) for name, value in zip(domain.free, values, strict=True)}
         raise NotCovered(inputs, reasons[0], 1, 1)
+    if mechanism.topology.left_out:
+        _hold_rows(domain, order, cover.patches)
     return KinematicMap(scene, tolerance, Stored.of(domain, order, cover, reasons))
+
+
+def _hold_rows(domain: Domain, order: int, patches: Patches) -> None:
+    """Look at the rows that were left out, all over some patches.
+
+    A row has products of two coordinates, each a series of the map's order; so of each input it is a
+    polynomial of twice that, which between Chebyshev's nodes is nowhere larger than some four times its
+    largest value at them (Lebesgue's constant).
+
+    Raises:
+        MechanismError: one is violated.
+    """
+    count = 2 * order + 1
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    places = np.stack(np.meshgrid(*[nodes] * len(domain.free), indexing="ij"), -1)
+    middle, half = domain.middle_and_half(patches.low, patches.high)
+    for number, (centre, width) in enumerate(zip(middle, half, strict=True)):
+        values = (centre + width * places).reshape(-1, len(centre))
+        patch = np.full(len(values), number)
+        unknown = sum_series(patches.series, middle, half, order, patch, [values])[0]
+        y = np.concatenate([unknown, domain.known_at(values)], axis=-1)
+        held_rows(domain.mechanism, y, np.full(len(values), patches.error[number].max()))
 
 
 def _checked_halvings(halvings: int) -> int:
@@ -654,11 +684,11 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
     if not isinstance(ranges, Mapping):
         raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
-        if name in topology.chassis_motion:
+        if name in topology.chassis_inputs:
             raise MapError(
                 f"ranges[{name!r}]",
                 "is given",
-                "no range: it moves the whole chassis and is added, whatever it is",
+                "no range: it moves the whole chassis, whatever it is",
             )
         if name not in topology.required_inputs:
             raise UnknownName("driving input", name, topology.required_inputs)
@@ -684,10 +714,3 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
             )
         found[name] = (low + 0.0, high + 0.0)
     return found
-
-
-def _nearest(domain: Domain, drawn: Mapping[str, Array]) -> Whole:
-    """The place in the range that is nearest to the drawing, in halves of the smallest box."""
-    low, high = domain.ends
-    share = (np.array([float(drawn[name]) for name in domain.free]) - low) / (high - low)
-    return np.clip(np.round(share * 2 * domain.parts), 0, 2 * domain.parts).astype(np.int64)

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import MapError, PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import Cover
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import scene_mechanism

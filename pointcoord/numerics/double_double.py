@@ -82,6 +82,28 @@ def minus_pair(a: Pair) -> Pair:
     return -a[0], -a[1]
 
 
+def pair_dot(a: Pair, b: Pair) -> Pair:
+    """a . b of vectors given as pairs, shape (..., 3) to (...,)."""
+    products = [pair_product((a[0][..., i], a[1][..., i]), (b[0][..., i], b[1][..., i])) for i in range(3)]
+    return two_sum(*pair_sum(pair_sum(products[0], products[1]), products[2]))
+
+
+def pair_quotient(a: Pair, b: Pair) -> Pair:
+    """a / b, to the working precision of the low part."""
+    high = a[0] / b[0]
+    held, rest = two_product(*np.broadcast_arrays(high, b[0]))
+    return two_sum(high, ((a[0] - held) - rest + (a[1] - high * b[1])) / b[0])
+
+
+def pair_root(a: Pair) -> Pair:
+    """The root of a positive pair, to the working precision of the low part."""
+    high = np.sqrt(a[0])
+    held, rest = two_product(high, high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low = np.where(high > 0.0, ((a[0] - held) - rest + a[1]) / (2.0 * high), 0.0)
+    return two_sum(high, low)
+
+
 def pair_cross(a: Pair, b: Pair) -> Pair:
     """a x b of vectors given as pairs, shape (..., 3)."""
     (ax, ay, az), (bx, by, bz) = ([(high[..., i], low[..., i]) for i in range(3)] for high, low in (a, b))

@@ -64,6 +64,16 @@ class Factors:
         x += self.inverse @ (scaled - self.matrix @ x)
         return np.asarray(x[..., 0])
 
+    def solve_many(self, rights: Array) -> Array:
+        """The same of several right-hand sides for each matrix, (m, ..., n)."""
+        if len(rights) == 1:
+            return self.solve(rights[0])[None]
+        inverse, matrix = (np.swapaxes(part, -1, -2) for part in (self.inverse, self.matrix))
+        rows = np.moveaxis(rights * self.row_scale, 0, -2)
+        found = rows @ inverse
+        found += (rows - found @ matrix) @ inverse
+        return np.moveaxis(found, -2, 0)
+
     def moved(self, matrix: Array) -> Factors:
         """The same inverse for a matrix of shape (..., n, n) nearby, |I - inverse matrix| = z well below 1.
 

@@ -14,7 +14,7 @@ taken first loses nothing when the points are close together and far from the or
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,8 @@ class Product:
 
 
 Row = tuple[Product, ...]
+# Of a derivative's entries; see `_pattern`.
+Pattern = tuple[Indices, Array, Indices, Indices]
 
 # Terms times coordinates up to which full matrices of zeros and ones cost less than picking elements.
 DENSE = 2**14
@@ -174,27 +176,7 @@ class QuadraticMap:
 
     @cached_property
     def _jacobian_pattern(self) -> tuple[Indices, Array, Indices, Indices]:
-        """Where each term's derivative goes: factor index, signed coefficient, run starts, flat position.
-
-        d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term; factors are
-        numbered left ones first, then right ones.
-        """
-        count = sum(len(row) for row in self.rows)
-        entries: list[tuple[int, int, float]] = []
-        number = 0
-        for index, row in enumerate(self.rows):
-            for product in row:
-                for ends, other in ((product.left, number + count), (product.right, number)):
-                    for coordinate, sign in ((ends[0], 1.0), (ends[1], -1.0)):
-                        if coordinate < self.unknowns:
-                            position = index * self.unknowns + coordinate
-                            entries.append((position, other, sign * product.coefficient))
-                number += 1
-        entries.sort(key=lambda entry: entry[0])
-        flat = np.array([entry[0] for entry in entries], dtype=np.intp)
-        first = np.flatnonzero(np.diff(flat, prepend=-1)).astype(np.intp)
-        factors = np.array([entry[1] for entry in entries], dtype=np.intp)
-        return factors, np.array([entry[2] for entry in entries]), first, flat[first]
+        return _pattern(self, tuple(range(self.unknowns)))
 
     @cached_property
     def curvature(self) -> tuple[Array, Indices, Indices]:
@@ -288,6 +270,13 @@ class QuadraticMap:
         coefficients, *_, starts = self._terms
         return np.add.reduceat(products * coefficients, starts, axis=-1)
 
+    def moving_products(self, moving: tuple[int, ...]) -> MovingProducts:
+        """The products of two differences that both move, where all unknowns and some known coordinates do.
+
+        Differences from any coordinates that stand still move as one, so many rows share a product.
+        """
+        return _moving_products(self, moving)
+
     def residual(self, y: Array) -> Array:
         """C(y) = B(y, y), shape (..., rows)."""
         left, right = self.factors(y)
@@ -301,15 +290,22 @@ class QuadraticMap:
 
     def jacobian(self, y: Array) -> Array:
         """C_u(y), the derivative by the unknowns, shape (..., rows, unknowns); linear in y."""
-        factors, coefficients, first, flat = self._jacobian_pattern
+        return self._derivative(y, self._jacobian_pattern, self.unknowns)
+
+    def derivative_by(self, y: Array, coordinates: tuple[int, ...]) -> Array:
+        """The derivative of C by some coordinates, shape (..., rows, coordinates)."""
+        return self._derivative(y, _pattern(self, coordinates), len(coordinates))
+
+    def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
+        factors, coefficients, first, flat = pattern
         if y.ndim == 1 and self.dense is not None:
             both = self.dense[0].dot(y)
         else:
             both = np.concatenate(self.factors(y), axis=-1)
-        entries = np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
-        matrix = np.zeros((*y.shape[:-1], len(self.rows) * self.unknowns))
-        matrix[..., flat] = entries
-        return matrix.reshape(*y.shape[:-1], len(self.rows), self.unknowns)
+        matrix = np.zeros((*y.shape[:-1], len(self.rows) * columns))
+        if len(flat):
+            matrix[..., flat] = np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
+        return matrix.reshape(*y.shape[:-1], len(self.rows), columns)
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
@@ -352,6 +348,102 @@ class QuadraticMap:
         if weights is None:
             return np.asarray(self._bends.bent(preconditioner, None).max(axis=-1))
         return np.asarray((self._bends.bent(preconditioner, weights) / weights).max(axis=-1))
+
+
+@lru_cache(maxsize=256)
+def _pattern(system: QuadraticMap, coordinates: tuple[int, ...]) -> Pattern:
+    """Where each term's derivative goes: factor index, signed coefficient, run starts, flat position.
+
+    d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term; factors are
+    numbered left ones first, then right ones.
+    """
+    count = sum(len(row) for row in system.rows)
+    column = {coordinate: place for place, coordinate in enumerate(coordinates)}
+    entries: list[tuple[int, int, float]] = []
+    number = 0
+    for index, row in enumerate(system.rows):
+        for product in row:
+            for ends, other in ((product.left, number + count), (product.right, number)):
+                for coordinate, sign in ((ends[0], 1.0), (ends[1], -1.0)):
+                    if coordinate in column:
+                        position = index * len(column) + column[coordinate]
+                        entries.append((position, other, sign * product.coefficient))
+            number += 1
+    entries.sort(key=lambda entry: entry[0])
+    flat = np.array([entry[0] for entry in entries], dtype=np.intp)
+    first = np.flatnonzero(np.diff(flat, prepend=-1)).astype(np.intp)
+    factors = np.array([entry[1] for entry in entries], dtype=np.intp)
+    return factors, np.array([entry[2] for entry in entries]), first, flat[first]
+
+
+@dataclass(frozen=True)
+class MovingProducts:
+    """Products of differences of what moves, each once: the unknowns, known coordinates, and a last 0.
+
+    Attributes:
+        left, right: ends of both differences of each product. squares: whether they are the same of all.
+        count: of the rows.
+        taken, coefficients, starts, rows: which products a row sums, for the rows that have any.
+    """
+
+    left: tuple[Indices, Indices]
+    right: tuple[Indices, Indices]
+    squares: bool
+    count: int
+    taken: Indices
+    coefficients: Array
+    starts: Indices
+    rows: Indices
+
+    def factors(self, moving: Array) -> tuple[Array, Array]:
+        """Both differences of every product, of coordinates that move and a last 0, (..., products)."""
+        (a, b), (c, d) = self.left, self.right
+        left = moving.take(a, axis=-1) - moving.take(b, axis=-1)
+        return (left, left) if self.squares else (left, moving.take(c, axis=-1) - moving.take(d, axis=-1))
+
+    def gather(self, products: Array) -> Array:
+        """Sum products, shape (..., products), into rows, shape (..., rows)."""
+        if not len(self.rows):
+            return np.zeros((*products.shape[:-1], self.count))
+        each = products.take(self.taken, axis=-1)
+        each *= self.coefficients
+        sums = np.add.reduceat(each, self.starts, axis=-1)
+        if len(self.rows) == self.count:
+            return np.asarray(sums)
+        found = np.zeros((*products.shape[:-1], self.count))
+        found[..., self.rows] = sums
+        return found
+
+
+@lru_cache(maxsize=256)
+def _moving_products(system: QuadraticMap, moving: tuple[int, ...]) -> MovingProducts:
+    place = {number: i for i, number in enumerate((*range(system.unknowns), *moving))}
+    zero = len(place)
+    numbers: dict[tuple[int, int, int, int], int] = {}
+    found: list[tuple[int, int, float]] = []
+    for number, row in enumerate(system.rows):
+        for p in row:
+            coefficient, factors = p.coefficient, []
+            for ends in (p.left, p.right):
+                first, second = (place.get(end, zero) for end in ends)
+                coefficient = coefficient if first <= second else -coefficient
+                factors.append((min(first, second), max(first, second)))
+            if all(first != second for first, second in factors):
+                (a, b), (c, d) = sorted(factors)
+                found.append((number, numbers.setdefault((a, b, c, d), len(numbers)), coefficient))
+    places = np.array(list(numbers), dtype=np.intp).reshape(-1, 4)
+    rows = np.array([number for number, _, _ in found], dtype=np.intp)
+    starts = np.flatnonzero(np.diff(rows, prepend=-1)).astype(np.intp)
+    return MovingProducts(
+        (places[:, 0].copy(), places[:, 1].copy()),
+        (places[:, 2].copy(), places[:, 3].copy()),
+        bool((places[:, :2] == places[:, 2:]).all()),
+        len(system.rows),
+        np.array([product for _, product, _ in found], dtype=np.intp),
+        np.array([coefficient for _, _, coefficient in found]),
+        starts,
+        rows[starts],
+    )
 
 
 def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap:

@@ -14,11 +14,16 @@ pass over the entries; so does the matching of a linkage, where few rows have to
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from functools import cached_property
 from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 
 FREE = -1
+Indices = NDArray[np.intp]
 
 
 class System(Protocol):
@@ -49,10 +54,34 @@ class Block:
 
 
 @dataclass(frozen=True)
+class DiagonalBlocks:
+    """Diagonal blocks of one size: their numbers, (count,), and their rows and unknowns, (count, size)."""
+
+    numbers: Indices
+    rows: Indices
+    unknowns: Indices
+
+
+@dataclass(frozen=True)
 class Structure:
     """The blocks of a system, in an order in which they can be solved."""
 
     blocks: tuple[Block, ...]
+
+    @cached_property
+    def diagonal(self) -> tuple[DiagonalBlocks, ...]:
+        """The diagonal blocks of a matrix, those of one size together."""
+        sizes: dict[int, list[int]] = {}
+        for number, block in enumerate(self.blocks):
+            sizes.setdefault(len(block.rows), []).append(number)
+        return tuple(
+            DiagonalBlocks(
+                np.array(numbers),
+                np.array([self.blocks[number].rows for number in numbers]),
+                np.array([self.blocks[number].unknowns for number in numbers]),
+            )
+            for numbers in sizes.values()
+        )
 
     def needed(self, unknowns: Collection[int]) -> tuple[int, ...]:
         """Numbers of the blocks that these unknowns hang on, their own among them, in order."""
@@ -81,8 +110,8 @@ def structure_of(system: System) -> Structure:
     """
     patterns = [sorted(coordinates) for coordinates in system.reads]
     entries = [[i for i in pattern if i < system.unknowns] for pattern in patterns]
-    row_of = _matching(entries, system.unknowns)
-    if row_of is None:
+    row_of, spare = _matching(entries, system.unknowns)
+    if spare or len(entries) != system.unknowns:
         return Structure((_block(patterns, range(len(patterns)), range(system.unknowns)),))
     unknown_of = [FREE] * len(entries)
     for unknown, row in enumerate(row_of):
@@ -93,22 +122,29 @@ def structure_of(system: System) -> Structure:
     )
 
 
+def rows_too_many(system: System) -> tuple[int, ...]:
+    """Rows that read fewer unknowns than they are, whatever the numbers in them; empty if there are none."""
+    _, spare = _matching([[i for i in row if i < system.unknowns] for row in system.reads], system.unknowns)
+    return spare
+
+
 def _block(patterns: Sequence[Collection[int]], rows: Collection[int], unknowns: Collection[int]) -> Block:
     read = {coordinate for row in rows for coordinate in patterns[row]}
     return Block(tuple(rows), tuple(unknowns), tuple(sorted(read.difference(unknowns))))
 
 
-def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> list[int] | None:
-    """The row of each unknown, each row once; None if rows and unknowns cannot be paired.
+def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], tuple[int, ...]]:
+    """The row of each unknown, each row once, and rows that cannot all have one.
 
-    A row takes a free unknown if it reads one; else it looks for a row that may give way, and so on.
+    A row takes a free unknown if it reads one; else it looks for a row that may give way, and so on. Where
+    none may, the rows that were looked at have all the unknowns that they read, and are one more (Hall).
     """
-    if len(entries) != unknowns:
-        return None
     row_of = [FREE] * unknowns
-    looked = [0] * unknowns  # how far each row has looked for a free unknown; a taken one is never free again
+    looked = [0] * len(
+        entries
+    )  # how far each row has looked for a free unknown; a taken one is never free again
     visited = [FREE] * unknowns  # by the search of which row
-    for start in range(unknowns):
+    for start in range(len(entries)):
         path, wanted, places = [start], [FREE], [0]
         while path:
             row = path[-1]
@@ -131,8 +167,9 @@ def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> list[int] | No
             for stack, first in ((path, row_of[unknown]), (wanted, FREE), (places, 0)):
                 stack.append(first)
         if not path:
-            return None
-    return row_of
+            asked = {row_of[unknown] for unknown in range(unknowns) if visited[unknown] == start}
+            return row_of, tuple(sorted({start, *asked}))
+    return row_of, ()
 
 
 def _strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -75,6 +75,12 @@ class Domain:
         }
         series |= {name: values[..., i, None] for i, name in enumerate(self.free)}
         return self.mechanism.known_series(series)[..., 0, :]
+
+    def nearest_place(self, values: Mapping[str, Array]) -> Whole:
+        """The place that is nearest to values of the inputs, in halves of the smallest box, (p,)."""
+        low, high = self.ends
+        share = (np.array([float(values[name]) for name in self.free]) - low) / (high - low)
+        return np.clip(np.round(share * 2 * self.parts), 0, 2 * self.parts).astype(np.int64)
 
     def known_over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Jet]:
         """Series of the known coordinates over boxes, shapes (P, p).

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.monomials import monomials
-from pointcoord.patches.multi_index import powers
+from pointcoord.numerics.multi_index import powers
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

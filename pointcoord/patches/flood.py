@@ -25,11 +25,11 @@ from pointcoord.data_classes import dataclass
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.monomials import monomials
+from pointcoord.numerics.multi_index import powers
+from pointcoord.numerics.power_series import expand
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.expansion import expand_in_inputs
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
-from pointcoord.patches.multi_index import powers
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.patches.reported_points import reported_points
 from pointcoord.solve.assembly import follow
@@ -218,7 +218,7 @@ class _Flood:
         y[:, system.unknowns :] = known[arrived, 0]
         factors = factorise(system.jacobian(y))
         count = len(domain.free)
-        series = expand_in_inputs(system, factors, y, known[arrived], count, self.order)
+        series = expand(system, factors, y, known[arrived], inputs=count)
         solves = len(arrived) * (powers(count, self.order).count - 1)
         self.work += Work(
             factorisations=len(arrived), rate_solves=solves, unknowns_solved=solves * system.unknowns

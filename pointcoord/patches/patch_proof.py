@@ -40,11 +40,11 @@ from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.kantorovich import INFLATION, ball
 from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.multi_index import powers, products
+from pointcoord.numerics.power_series import multiplied
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
-from pointcoord.patches.expansion import multiplied
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers, products
 
 Array = NDArray[np.float64]
 
@@ -125,7 +125,8 @@ def _remaining(
     pairs = products(inputs, order, (2, 2 * order), 1)
     own = powers(inputs, order)
     rest = np.zeros((len(series), powers(inputs, 2 * order).count, left.shape[-1]))
-    rest[:, pairs.targets] = multiplied(left, right, pairs)
+    by_power = multiplied(np.moveaxis(left, 1, 0), np.moveaxis(right, 1, 0), pairs)
+    rest[:, pairs.targets] = np.moveaxis(by_power, 0, 1)
     rest[:, 1 : own.count] += left[:, :1] * right[:, 1:] + left[:, 1:] * right[:, :1]
     rows = system.gather(rest)
     nothing = np.zeros_like(low)

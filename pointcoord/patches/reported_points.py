@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.kantorovich import INFLATION
+from pointcoord.numerics.multi_index import powers
+from pointcoord.numerics.power_series import cross_series
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.patches.expansion import multiplied
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers, products
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def _carried(
     a, b, c = (float(weight) for weight in mechanism.carrier_weights[name])
     e1, e2 = first - base, second - base
     off1, off2 = first_error + base_error, second_error + base_error
-    normal = _cross_series(e1, e2, inputs, order)
+    normal = cross_series(e1, e2, inputs, doubled=True)
     own, doubled = powers(inputs, order), powers(inputs, 2 * order)
     beyond = Jet.of(normal[:, own.count :], doubled.exponents[own.count :])
     kept = normal[:, : own.count]
@@ -91,17 +91,6 @@ def _carried(
         error = error + size.scaled(float(doubt) + 8.0 * UNIT_ROUNDOFF * abs(weight))
     error = error + Jet.of(base, own.exponents).scaled(4.0 * UNIT_ROUNDOFF)
     return base + a * e1 + b * e2 + c * kept, error
-
-
-def _cross_series(e1: Array, e2: Array, inputs: int, order: int) -> Array:
-    """e1 x e2 to twice the order, shape (P, powers, 3)."""
-    pairs = products(inputs, order, (0, 2 * order), 0)
-    left = np.concatenate([e1[..., CYCLE], e1[..., BACK]], axis=-1)
-    right = np.concatenate([e2[..., BACK], e2[..., CYCLE]], axis=-1)
-    found = multiplied(left, right, pairs)
-    result = np.empty((len(e1), powers(inputs, 2 * order).count, 3))
-    result[:, pairs.targets] = found[..., :3] - found[..., 3:]
-    return result
 
 
 def _cross_sizes(a: Jet, b: Jet) -> Jet:

@@ -109,11 +109,11 @@ def map_way(
         low, high = float(spans.low[:, i].min()), float(spans.high[:, i].max())
         # At a single instant an input has one value, and may have rates.
         still = low == high and not law.series(spans.first, 2)[..., 1:].any()
-        ranges[name] = (low, high) if still else _widened(low, high)
+        ranges[name] = (low, high) if still else widened(low, high)
     if all(low == high for low, high in ranges.values()):
         # A map has an input.
         name = next(iter(ranges))
-        ranges[name] = _widened(*ranges[name])
+        ranges[name] = widened(*ranges[name])
     moving = [name for name, (low, high) in ranges.items() if low < high]
     order = order_for(limits.tolerance, float(mechanism.unit), limits.derivative, len(moving))
     domain = Domain(mechanism, ranges, HALVINGS.get(len(moving), 0))
@@ -176,7 +176,7 @@ def order_for(tolerance: float, size: float, derivative: int = 0, inputs: int = 
     return min(digits + 2 * derivative, MOST_ORDER.get(inputs, LEAST_ORDER))
 
 
-def _widened(low: float, high: float) -> tuple[float, float]:
+def widened(low: float, high: float) -> tuple[float, float]:
     """A range that is no narrower than can be divided."""
     room = NARROWEST * max(abs(low), abs(high), 1.0) - (high - low)
     return (low - 0.5 * room, high + 0.5 * room) if room > 0.0 else (low, high)

@@ -84,6 +84,10 @@ class Readout:
         Args:
             rows: a table or some columns of one, shape (..., height, N), with the states in their places.
         """
+        if self.chassis.turns:
+            states = self.chassis.turned(times, states)
+            for first, (derivative, point) in self.table.states:
+                vectors(rows, first)[...] = states[derivative][point]
         added = self.added(times)
         self.compute(states, added, rows)
         for derivative in self.table.reported:

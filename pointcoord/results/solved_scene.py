@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.results.cells import CloseInstants
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
@@ -48,6 +49,7 @@ class SolvedScene:
             out: where the numbers go, shape (rows, N); a new array if not given.
         Raises:
             OutsideMotion: an instant that was not solved for, or not a number.
+            MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
         """
         readout = self.readout
         rows = (
@@ -57,7 +59,11 @@ class SolvedScene:
         )
         for low in range(0, len(times), SORTED):
             self._fill(times[low : low + SORTED], rows[..., low : low + SORTED])
-        return readout.named(times, rows)
+        samples = readout.named(times, rows)
+        if readout.mechanism.topology.left_out:
+            off = self.proof(samples).pose_bound / readout.mechanism.unit
+            held_rows(readout.mechanism, self.states.coordinates(samples.times, 0)[0], off)
+        return samples
 
     def _fill(self, times: Array, rows: Array) -> None:
         if (times[1:] >= times[:-1]).all():
@@ -80,8 +86,11 @@ class SolvedScene:
 
     @cached_property
     def _close(self) -> CloseInstants | None:
-        """What fills a table where instants lie close together; none of a batch, or of single poses."""
-        if isinstance(self.states, StatesOfChain) and self.readout.mechanism.drawn.ndim == 1:
+        """What fills a table where instants lie close together; none of a batch, or of single poses, or of a
+        car that turns, whose states are no sums of series and laws.
+        """
+        single = self.readout.mechanism.drawn.ndim == 1 and not self.readout.chassis.turns
+        if isinstance(self.states, StatesOfChain) and single:
             return CloseInstants(self.readout, self.states)
         return None
 

@@ -1,8 +1,8 @@
 """States of the points of many designs, at few instants each.
 
 The series of many designs lie with the designs side by side, so that one matrix product for each coordinate
-sums it for all designs, where it belongs in their tables. Powers of time differ by derivative, and the
-coefficients do not:
+sums it for all designs, where it belongs in their tables. Powers of time, or of the inputs (see `solve.box`),
+differ by derivative, and the coefficients do not:
 
     d^n/dt^n sum_k c_k s^k = sum_k c_k k! / (k - n)! s^(k-n) / scale^n,      s = (t - start) / scale.
 
@@ -57,15 +57,12 @@ class StatesOfDesigns(StatesOfChain):
 
     def _sum(self, instants: Array, wanted: Mapping[State, Array]) -> None:
         """Sum the series of states of points that are solved for, each into (designs, 3, N), mm."""
-        segments, mechanism = self.chain.segments, self.readout.mechanism
+        mechanism = self.readout.mechanism
         orders = range(max((order for order, _ in wanted), default=-1) + 1)
-        starts = [segment.start for segment in segments[1:]]
-        edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
-        for segment, low, high in zip(segments, edges[:-1], edges[1:], strict=True):
-            if low == high:
+        for segment, part in self.chain.parts(instants):
+            if part.start == part.stop:
                 continue
-            s = (instants[low:high] - segment.start) / segment.scale
-            powers = _powers(s, segment.scale, segment.order + 1, len(orders))
+            powers = segment.powers(instants[part], len(orders))
             series: dict[str, Array] = {}
             for (order, name), place in wanted.items():
                 if name not in series:
@@ -73,18 +70,4 @@ class StatesOfDesigns(StatesOfChain):
                     own = segment.coefficients[..., first : first + 3].transpose(1, 2, 0)
                     # Axis, designs, orders; the designs side by side in memory.
                     series[name] = np.multiply(own, mechanism.unit, order="C").transpose(1, 2, 0)
-                np.matmul(series[name], powers[order], out=place[..., low:high].swapaxes(0, 1))
-
-
-def _powers(s: Array, scale: float, terms: int, derivatives: int) -> list[Array]:
-    """Powers of s, shape (N,), and what becomes of them in each time derivative, each (terms, N)."""
-    powers = np.ones((terms, len(s)))
-    for k in range(1, terms):
-        np.multiply(powers[k - 1], s, out=powers[k])
-    found = [powers]
-    factors = np.arange(1.0, terms)[:, None] / scale
-    for _ in range(derivatives - 1):
-        lower = np.zeros_like(powers)
-        np.multiply(found[-1][:-1], factors, out=lower[1:])
-        found.append(lower)
-    return found
+                np.matmul(series[name], powers[order], out=place[..., part].swapaxes(0, 1))

@@ -13,10 +13,10 @@ from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.evaluation import sum_rows, sum_series
 from pointcoord.patches.flood import Patches
 from pointcoord.patches.lookup import Lookup
-from pointcoord.patches.multi_index import powers
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import WayMap
 from pointcoord.results.readout import Readout

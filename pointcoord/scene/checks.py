@@ -145,6 +145,19 @@ def table_of(check: Check) -> Check:
     return checked
 
 
+def plain_table(value: object, place: Place, faults: Faults) -> object:
+    """A table of plain data, with tuples for its lists."""
+    if not isinstance(value, Mapping):
+        return faults.note(place, "Input should be a table", value)
+    return {name: _plain(each) for name, each in value.items()}
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+
+
 def part(kind: type[Part]) -> Check:
     """A part of the scene."""
     return kind.read_from

@@ -41,8 +41,6 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
     """
     every = np.stack(list(points.values()), axis=-2)
     size = np.ptp(every, axis=-2).max(axis=-1)
-    inner, centre = topology.wheel_axis
-    inboard = axes.component(points[centre] - points[inner], "outboard") <= 0.0
     doubts = [
         Doubt(
             ~((size >= SMALLEST) & (size <= LARGEST)),
@@ -50,18 +48,25 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
                 f"the car is {float(size[one]):.3g} mm long: points are in mm; are these in another unit?"
             ),
         ),
-        _front_behind_rear(topology, points, axes),
+        *_front_behind_rear(topology, points, axes),
         *_racks_outboard(topology, points, axes),
         _alone_across(topology, points, axes),
-        Doubt(inboard, lambda one: f"{inner} lies outboard of {centre}, so the spin axis points inboard"),
     ]
+    found: dict[str, NDArray[np.bool_]] = {}
+    if topology.wheel_axis:
+        inner, centre = topology.wheel_axis
+        found["wheel_axis"] = axes.component(points[centre] - points[inner], "outboard") <= 0.0
+        words = f"{inner} lies outboard of {centre}, so the spin axis points inboard"
+        doubts.append(Doubt(found["wheel_axis"], lambda one: words))
     for effect in EFFECTS.values():
-        doubts += effect.doubts(topology, points, axes, {"wheel_axis": inboard})
+        doubts += effect.doubts(topology, points, axes, found)
     return tuple(doubts)
 
 
-def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Doubt:
+def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
     """A front that lies behind a rear: axes that are not right-handed, or names mistaken."""
+    if not topology.front_and_rear:
+        return
     front, rear = topology.front_and_rear
     ahead = axes.component(points[front] - points[rear], "forward")
 
@@ -74,7 +79,7 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
             f"turned round, or are your axes left-handed? {' and '.join(lengthwise)} may have the wrong sign"
         )
 
-    return Doubt(ahead < 0.0, words)
+    yield Doubt(ahead < 0.0, words)
 
 
 def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:

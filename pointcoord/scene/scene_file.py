@@ -6,7 +6,8 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -15,9 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.errors import SceneError
+from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism.faults import TableFault
+from pointcoord.mechanism.file import (
+    MechanismFile,
+    is_path,
+    mechanism_file,
+    read_tables,
+    shipped,
+    whole_tables,
+)
+from pointcoord.mechanism.freedoms import free_directions
+from pointcoord.mechanism.structure import CHASSIS, Structure
+from pointcoord.mechanism.tables import TABLES
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.checks import (
     list_of,
@@ -25,6 +38,7 @@ from pointcoord.scene.checks import (
     one_of,
     optional,
     part,
+    plain_table,
     positive,
     table_of,
     text,
@@ -32,11 +46,10 @@ from pointcoord.scene.checks import (
     whole_number,
 )
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.messages import meant, shown
-from pointcoord.scene.scene_part import Part, key
-from pointcoord.scene.scene_text import parsed, read_file, read_stream
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.scene.scene_part import Faults, Part, Place, key
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+from pointcoord.toml_text import parsed, read_file, read_stream
+from pointcoord.wording import meant, shown
 
 Vector = tuple[float, float, float]
 Others = Mapping[str, Any]
@@ -45,6 +58,9 @@ Others = Mapping[str, Any]
 # The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
 SCENES = Path(__file__).parents[1] / "scenes"
 
+LAWS = ("constant", "polynomial", "sine", "table")
+"""The kinds of an input over time."""
+
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
@@ -52,45 +68,121 @@ FARTHEST = 1e15
 MOST_SAMPLES = 10_000_000
 
 
-def _known_type(type: str, others: Others) -> str:
-    if type not in SUSPENSIONS:
-        hint = meant(type, SUSPENSIONS)
-        raise ValueError(f"no suspension is called {shown(type)}{hint}; allowed: {', '.join(SUSPENSIONS)}")
+def _known_type(type: str | None, others: Others) -> str | None:
+    if type is not None and type not in shipped():
+        hint = meant(type, shipped())
+        raise ValueError(
+            f"no mechanism is called {shown(type)}{hint}; allowed: {', '.join(shipped())}, or a path to a "
+            "mechanism file that ends in .toml"
+        )
     return type
 
 
 def _known_closure(closure: str, others: Others) -> str:
-    if "type" in others:  # or else that is the fault
-        closures = SUSPENSIONS[others["type"]].closures
-        if closure not in closures:
-            raise ValueError(
-                f"a {others['type']} has no closure called {shown(closure)}; allowed: {', '.join(closures)}"
-            )
+    file = _file_of(others)
+    if file is not None and closure not in file.closures:
+        raise ValueError(
+            f"a {file.name} has no closure called {shown(closure)}; allowed: {', '.join(file.closures)}"
+        )
     return closure
 
 
 def _known_points(points: dict[str, Vector], others: Others) -> dict[str, Vector]:
-    if not {"type", "closure"} <= others.keys():
+    file = _file_of(others)
+    if file is None or not {"closure", "right"} <= others.keys():
         return points
-    type = others["type"]
-    topology = SUSPENSIONS[type].closures[others["closure"]]
-    extra = [name for name in points if name not in topology.points]
-    missing = [name for name in topology.required_points if name not in points]
+    structure = file.structures[others["closure"]]
+    points = _of_every_part(points, file, structure, others["right"])
+    extra = [name for name in points if name not in structure.points]
+    missing = [name for name in structure.required_points if name not in points]
     if extra:
-        elsewhere = [one for one, kind in SUSPENSIONS.items() if extra[0] in kind.points]
-        hint = f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], topology.points)
+        elsewhere = [one for one in shipped() if extra[0] in mechanism_file(one).points]
+        hint = f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], structure.points)
         raise ValueError(
-            f"no point of a {type} is called {shown(extra[0])}{hint}; allowed: {', '.join(topology.points)}"
+            f"no point of a {file.name} is called {shown(extra[0])}{hint}; "
+            f"allowed: {', '.join(structure.points)}"
         )
     if missing:
-        raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(topology.required_points)}")
-    return topology.with_defaults(points)
+        raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(structure.required_points)}")
+    standing = {
+        name: points[other]
+        for name, other in structure.stand_ins.items()
+        if name in structure.bodies[CHASSIS] and other in points
+    }
+    return standing | points
+
+
+def _of_every_part(
+    points: dict[str, Vector], file: MechanismFile, structure: Structure, right: Vector
+) -> dict[str, Vector]:
+    """Points with a name for every part in place of those that are given without a prefix."""
+    found: dict[str, Vector] = {}
+    for name, place in points.items():
+        of_parts = {
+            f"{prefix}{name}": _mirrored(place, right) if mirrored else place
+            for prefix, mirrored in file.mirrored.items()
+            if name not in structure.points and f"{prefix}{name}" in structure.points
+        }
+        for own, where in (of_parts or {name: place}).items():
+            if own not in points or own == name:
+                found[own] = where
+    return found
+
+
+def _mirrored(place: Vector, right: Vector) -> Vector:
+    """At the other side of the car's middle plane."""
+    out = 2.0 * sum(p * r for p, r in zip(place, right, strict=True))
+    x, y, z = (p - out * r for p, r in zip(place, right, strict=True))
+    return x, y, z
+
+
+def _file_of(others: Others) -> MechanismFile | None:
+    """The mechanism of a part as far as its keys are right."""
+    if "type" not in others or any(name not in others for name in TABLES):
+        return None
+    if others["type"] is not None:
+        return mechanism_file(others["type"])
+    tables = {name: others[name] for name in TABLES if others[name] is not None}
+    return _inline(_hashable({"title": others["title"], **tables})) if tables else None
+
+
+@lru_cache(maxsize=64)
+def _inline(tables: tuple[tuple[str, Any], ...]) -> MechanismFile:
+    return MechanismFile.of(_tables(tables), "mechanism")
+
+
+def _hashable(value: Any) -> Any:
+    """Tables and lists as tuples, a table as one of a mark and its entries."""
+    if isinstance(value, Mapping):
+        return (Mapping, *((name, _hashable(each)) for name, each in value.items()))
+    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
+
+
+def _tables(value: Any) -> Any:
+    """What `_hashable` made so."""
+    if isinstance(value, tuple) and value and value[0] is Mapping:
+        return {name: _tables(each) for name, each in value[1:]}
+    return tuple(map(_tables, value)) if isinstance(value, tuple) else value
+
+
+def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:
+    """A table whose names of parts are tables, as TOML reads left.wheel_centre, with dots in its names."""
+    if not isinstance(table, Mapping):
+        return table
+    found: dict[Any, Any] = {}
+    for name, value in table.items():
+        inner = _by_dotted_name(value, whole) if isinstance(value, Mapping) and not whole(value) else None
+        if isinstance(name, str) and isinstance(inner, Mapping) and inner:
+            found |= {f"{name}.{own}": each for own, each in inner.items()}
+        else:
+            found[name] = value
+    return found
 
 
 def _points_of_the_car(points: tuple[str, ...] | None, others: Others) -> tuple[str, ...] | None:
     if points is None or "mechanism" not in others:
         return points
-    there = others["mechanism"].topology.points
+    there = others["mechanism"].structure.points
     if not points:
         raise ValueError(
             f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
@@ -116,22 +208,67 @@ def _known_effects(effects: tuple[str, ...], others: Others) -> tuple[str, ...]:
 
 
 class MechanismPart(Part):
-    """The type of suspension, its side of the car, its hardpoints in mm and the car's axes.
+    """The mechanism, its side of the car, its drawn points in mm and the car's axes.
 
-    `closure` says what becomes of a drawing that does not close: `drawn` takes it as it stands, others put
-    points in place (see the type's file in `suspensions`). `points` has an entry also for those points of the
-    chassis that the file leaves to others that stand in for them.
+    The mechanism is a shipped one by its `type`, or given by its tables; a `type` that is the path of a
+    mechanism file is replaced by that file's tables, so that a scene does not depend on the file. `closure`
+    says what becomes of a drawing that does not close: `drawn` takes it as it stands, others put points in
+    place. `points` has an entry also for those points of the chassis that the file leaves to others that
+    stand in for them.
+
+    Attributes:
+        driven: the inputs that its scene drives; None for a part that belongs to no scene.
     """
 
-    type: str = key(text, agrees=_known_type)
+    type: str | None = key(optional(text), default=None, agrees=_known_type)
+    title: str = key(text, default="")
+    bodies: dict[str, Any] | None = key(optional(plain_table), default=None)
+    rods: dict[str, Any] | None = key(optional(plain_table), default=None)
+    slides: dict[str, Any] | None = key(optional(plain_table), default=None)
+    inputs: dict[str, Any] | None = key(optional(plain_table), default=None)
+    roles: dict[str, Any] | None = key(optional(plain_table), default=None)
+    stand_ins: dict[str, Any] | None = key(optional(plain_table), default=None)
+    closures: dict[str, Any] | None = key(optional(plain_table), default=None)
+    parts: dict[str, Any] | None = key(optional(plain_table), default=None)
     closure: str = key(text, default="drawn", agrees=_known_closure)
     side: Literal["left", "right"] = key(one_of("left", "right"), default="left")
     up: Vector = key(vector, default=(0.0, 0.0, 1.0))
     right: Vector = key(vector, default=(0.0, 1.0, 0.0))
+    wheel_radius: float | None = key(optional(positive), default=None)
     points: dict[str, Vector] = key(table_of(vector), agrees=_known_points)
+    driven: tuple[str, ...] | None = None
+
+    @classmethod
+    def read_from(cls, content: object, place: Place, faults: Faults) -> Any:
+        """The part, or `WRONG` with its faults noted; a mechanism file is read.
+
+        Raises:
+            SceneError: a mechanism file cannot be read, or something in it is wrong.
+        """
+        if isinstance(content, Mapping):
+            own = dict(content)
+            given = [name for name in TABLES if own.get(name) is not None]
+            if own.get("type") is not None and given:
+                problem = f"there are {given[0]} beside type = {shown(own['type'])}"
+                allowed = "a type, or the mechanism's tables and then no type"
+                return faults.note((*place, given[0]), problem, allowed=allowed)
+            if is_path(own.get("type")):
+                own |= read_tables(Path(own.pop("type")))
+            elif given:
+                own |= whole_tables({name: own[name] for name in given}, Path())
+                try:
+                    MechanismFile.of({name: own[name] for name in given}, "mechanism")
+                except TableFault as fault:
+                    return faults.note((*place, *fault.place), fault.problem, allowed=fault.allowed)
+            if "points" in own:
+                own["points"] = _by_dotted_name(own["points"], lambda table: False)
+            content = own
+        return super().read_from(content, place, faults)
 
     def agree(self) -> None:
-        """Its axes, its side and its spin axis have a meaning."""
+        """It is of a mechanism, and its axes, its side and its spin axis have a meaning."""
+        if _file_of(self.__dict__) is None:
+            raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
         self._orthonormal()
         self._wheel_outboard()
         self._spin_axis()
@@ -145,7 +282,10 @@ class MechanismPart(Part):
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
 
     def _wheel_outboard(self) -> None:
-        inner, wheel = self.topology.inboard, self.topology.wheel_centre
+        inner, axis = self.structure.roles.get("inboard"), self.structure.roles.get("wheel_axis")
+        if not isinstance(inner, str) or axis is None:
+            return
+        wheel = axis[1]
         with np.errstate(over="ignore", invalid="ignore"):
             inboard = float((np.array(self.points[inner]) - np.array(self.points[wheel])) @ self.outboard)
         if inboard >= 0.0:
@@ -158,35 +298,84 @@ class MechanismPart(Part):
             )
 
     def _spin_axis(self) -> None:
-        inner, outer = self._whole.wheel_axis
-        if self.points.get(inner) == self.points[outer]:
+        axis = self._whole.roles.get("wheel_axis")
+        if axis is not None and self.points.get(axis[0]) == self.points[axis[1]]:
             raise ValueError(
-                f"{inner} and {outer} are at the same place, so that the wheel's spin axis has "
+                f"{axis[0]} and {axis[1]} are at the same place, so that the wheel's spin axis has "
                 "no direction; allowed: two points of the axis apart from each other"
             )
 
     @property
-    def topology(self) -> Topology:
-        """The linkage that its points are put on."""
-        return self._whole.given(self.points)
+    def name(self) -> str:
+        """What messages call the mechanism: its type, or the title of its tables."""
+        return self.file.name
 
     @property
-    def _whole(self) -> Topology:
-        """The linkage with every point that a car may give."""
-        return SUSPENSIONS[self.type].closures[self.closure]
+    def file(self) -> MechanismFile:
+        """The mechanism's file."""
+        found = _file_of(self.__dict__)
+        assert found is not None  # a part without one is not made
+        return found
+
+    @property
+    def structure(self) -> Structure:
+        """What its bodies, rods, slides and inputs are, of a car that gives these points."""
+        return self._whole.drawn_with(self.points)
+
+    @property
+    def _whole(self) -> Structure:
+        """The same with every point that a car may give."""
+        return self.file.structures[self.closure]
+
+    def plain(self, driven: Collection[str]) -> dict[str, Any]:
+        """The mechanism as plain data, for models that compile it on their own.
+
+        Args:
+            driven: names of the inputs that are driven, chassis motions among them; only these are given.
+        Returns:
+            Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
+            side and the wheel's radius (mm, or None).
+        """
+        structure = self.structure
+        return {
+            **structure.plain(driven),
+            "name": self.name,
+            "points": {name: list(self.points[name]) for name in structure.points},
+            "up": list(self.up),
+            "right": list(self.right),
+            "side": self.side,
+            "wheel_radius": self.wheel_radius,
+        }
+
+    @cached_property
+    def topology(self) -> Topology:
+        """The linkage that its points are put on."""
+        return self.file.topology(
+            self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self.wheel_radius
+        )
+
+    @cached_property
+    def freedoms(self) -> int:
+        """How many inputs hold the mechanism.
+
+        Raises:
+            MechanismError: it has more equations than coordinates, and the drawing does not close.
+        """
+        return self.file.freedoms(self.closure, self.points, {"up": self.up, "right": self.right})
 
     @property
     def axis_point(self) -> str:
-        """The point by which a car can give its spin axis an inner end of its own."""
-        return self._whole.wheel_axis[0]
+        """The point by which a car can give its spin axis an inner end of its own; empty without an axis."""
+        axis = self._whole.roles.get("wheel_axis")
+        return axis[0] if axis else ""
 
     @property
     def defaults_taken(self) -> tuple[str, ...]:
         """What the scene leaves to us and what is seen in the results, in words."""
-        taken = self.topology.wheel_axis[0]
-        if taken == self.axis_point:
+        axis = self.structure.roles.get("wheel_axis")
+        if not axis or axis[0] == self.axis_point:
             return ()
-        return (f"{self.axis_point} is not given: the wheel's spin axis starts at {taken}",)
+        return (f"{self.axis_point} is not given: the wheel's spin axis starts at {axis[0]}",)
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -238,9 +427,7 @@ class InputPart(Part):
 
     def agree(self) -> None:
         """It is of one kind."""
-        given = [
-            name for name in ("constant", "polynomial", "sine", "table") if getattr(self, name) is not None
-        ]
+        given = [name for name in LAWS if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
                 f"{' and '.join(given) or 'nothing'} given; "
@@ -295,10 +482,17 @@ class Scene(Part):
     time: TimePart = key(part(TimePart))
     points: tuple[str, ...] | None = key(optional(list_of(text)), default=None, agrees=_points_of_the_car)
 
+    @classmethod
+    def read_from(cls, content: object, place: Place, faults: Faults) -> Any:
+        """The scene, or `WRONG` with its faults noted; inputs of a part may be in a table of its own."""
+        if isinstance(content, Mapping) and "inputs" in content:
+            content = {**content, "inputs": _by_dotted_name(content["inputs"], _is_no_part)}
+        return super().read_from(content, place, faults)
+
     def agree(self) -> None:
         """Its effects and its inputs belong to its mechanism."""
-        self._effects_have_a_meaning()
         self._inputs_fit()
+        self._effects_have_a_meaning()
 
     def _effects_have_a_meaning(self) -> None:
         topology, points = self.mechanism.topology, self.mechanism.points
@@ -308,16 +502,18 @@ class Scene(Part):
                 raise ValueError(problem)
 
     def _inputs_fit(self) -> None:
-        topology = self.mechanism.topology
+        known = self.mechanism.structure.inputs
         for name in self.inputs:
-            if name not in topology.inputs:
-                hint = meant(name, topology.inputs)
+            if name not in known:
+                hint = meant(name, known)
+                raise ValueError(f"no input is called {shown(name)}{hint}; allowed: {', '.join(known)}")
+            if known[name].kind == "contact" and self.mechanism.wheel_radius is None:
                 raise ValueError(
-                    f"no input is called {shown(name)}{hint}; allowed: {', '.join(topology.inputs)}"
+                    f"input {name!r} is the height of the wheel's contact point, and the mechanism has no "
+                    "wheel_radius; allowed: wheel_radius in mm, such as wheel_radius = 300.0"
                 )
-        for name in topology.required_inputs:
-            if name not in self.inputs:
-                raise ValueError(f"input {name!r} is missing; needed: {', '.join(topology.required_inputs)}")
+        self.mechanism.__dict__["driven"] = tuple(name for name in known if name in self.inputs)
+        self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
             table = law.table
             if table is not None and not (
@@ -328,6 +524,60 @@ class Scene(Part):
                     f"allowed: all of time, {self.time.start} to {self.time.stop} s"
                 )
 
+    def _inputs_hold_the_mechanism(self) -> None:
+        """As many inputs are driven as there are freedoms; whether they hold these is seen when it is built.
+
+        Raises:
+            ValueError: there are too few or too many.
+        """
+        part = self.mechanism
+        try:
+            topology = part.topology
+        except MechanismError as error:
+            raise ValueError(error.problem) from None
+        missing = topology.layout.unknowns - len(topology.labels)
+        if not missing and topology.fighting:
+            self._name_what_fights(topology)
+        if not missing and topology.required_inputs:
+            return
+        if not missing:
+            raise ValueError(
+                f"a {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
+                "allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
+            )
+        inputs = {name: one for name, one in part.structure.inputs.items() if not one.moves_the_chassis}
+        others = ", ".join(name for name in inputs if name not in self.inputs) or "none"
+        told = [name for name in inputs if name in self.inputs]
+        words = (
+            f"{len(told)} {'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
+        )
+        count = part.freedoms
+        free = f"{count} freedom{'' if count == 1 else 's'}"
+        if count < len(told):
+            exact = "" if count else "; parallel hinges let it move only if they are drawn exactly so"
+            raise ValueError(
+                f"a {part.name} has {free}, and {words}; allowed: {count} inputs, so leave "
+                f"{len(told) - count} out{exact}"
+            )
+        named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
+        raise ValueError(
+            f"a {part.name} has {free}, and {words}; free are {', '.join(named)}; allowed: {count} inputs, "
+            f"so drive {count - len(told)} more of {others}"
+        )
+
+    def _name_what_fights(self, topology: Topology) -> None:
+        part, inputs = self.mechanism, ", ".join(topology.fighting)
+        named = free_directions(topology, part.points, {"up": part.up, "right": part.right})
+        others = (
+            name
+            for name, one in part.structure.inputs.items()
+            if not (one.moves_the_chassis or name in topology.required_inputs)
+        )
+        raise ValueError(
+            f"the inputs {inputs} drive more of a {part.name} than it lets them, and leave free "
+            f"{', '.join(named)}; allowed: one of them less, and instead one of {', '.join(others) or 'none'}"
+        )
+
     @property
     def reported_points(self) -> tuple[str, ...]:
         """The points that are reported, in the order of the mechanism's."""
@@ -337,7 +587,8 @@ class Scene(Part):
     @property
     def unreported_points(self) -> tuple[str, ...]:
         """The others."""
-        return tuple(name for name in self.mechanism.topology.points if name not in self.reported_points)
+        reported = self.reported_points
+        return tuple(name for name in self.mechanism.topology.points if name not in reported)
 
     @property
     def instants(self) -> NDArray[np.float64]:
@@ -373,7 +624,7 @@ class Scene(Part):
             written = (SCENES / f"{name}.toml").read_bytes()
         else:
             written = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
-        return cls.from_mapping(parsed(written, str(name)), str(name))
+        return cls.from_mapping(_found_beside(parsed(written, str(name)), Path(name).parent), str(name))
 
     @classmethod
     def read(cls, stream: IO[bytes], source: str = "standard input") -> Scene:
@@ -383,6 +634,21 @@ class Scene(Part):
             SceneError: it is not written as it must be, or has no end within 64 MB.
         """
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
+
+
+def _is_no_part(table: Mapping[str, Any]) -> bool:
+    """Whether a table of inputs is no table of a part's: one of its entries is no input."""
+    return not all(isinstance(law, Mapping) and not law.keys().isdisjoint(LAWS) for law in table.values())
+
+
+def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """A scene's content with the paths of its mechanism files counted from a folder."""
+    mechanism = content.get("mechanism")
+    if not isinstance(mechanism, dict):
+        return content
+    if is_path(mechanism.get("type")):
+        return {**content, "mechanism": {**mechanism, "type": str(folder / mechanism["type"])}}
+    return {**content, "mechanism": whole_tables(mechanism, folder)}
 
 
 def built_in_scenes() -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Any, NoReturn, Self, dataclass_transform
 
 from pointcoord.errors import SceneError
-from pointcoord.scene.messages import meant, nearest, shown, shown_key
+from pointcoord.wording import meant, nearest, shown, shown_key
 
 Place = tuple[int | str, ...]
 
@@ -52,7 +52,7 @@ class Key:
             try:
                 return self.agrees(kept, others)
             except ValueError as error:
-                return faults.note(place, str(error))
+                return _noted(error, place, faults)
         return kept
 
 
@@ -136,7 +136,7 @@ class Part:
         try:
             part.agree()
         except ValueError as error:
-            return faults.note(place, str(error))
+            return _noted(error, place, faults)
         return part
 
     @property
@@ -226,6 +226,12 @@ class Part:
 
     def __delattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} does not change; make another one with model_copy")
+
+
+def _noted(error: ValueError, place: Place, faults: Faults) -> Wrong:
+    """What does not agree, at the place that the error says, if it says one."""
+    inner, allowed = getattr(error, "place", ()), getattr(error, "allowed", "")
+    return faults.note((*place, *inner), str(error), allowed=allowed)
 
 
 def _dotted(place: Place) -> str:

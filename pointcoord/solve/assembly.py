@@ -19,7 +19,8 @@ along y + e + s y1 is
 
     (1 - omega |e| - s z)^2 >= 2 omega |X B(e + s y1, e + s y1)|,
 
-which solves in closed form as well. Only the end is corrected to the tolerance.
+which solves in closed form as well. Only the end is corrected to the tolerance. Rounding is not counted
+here: within the root of EPS of a pose where two branches cross, it may hide that they do.
 
 One pose on its way from the drawing takes longer steps, along a power series of the path (see `proven_path`);
 tangents lead where no few of these are proven to reach the end, and tell where a path stops.
@@ -57,6 +58,8 @@ SAFETY = 0.8
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
 STEPS = 2000
+# Of a turn of thousands of radians each stop is a solved pose; beyond, the way is refused as too long.
+MOST_STOPS = 10_000
 # How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
 # proportion to the step: an end so near the tangent is far from where the step would double back.
 BESIDE = 0.25
@@ -82,6 +85,17 @@ class Pose:
     iterations: NDArray[np.int64]
     left: Array
     work: Work
+
+    def taken(self, members: NDArray[np.intp]) -> Pose:
+        """Some members of a batch of one dimension; what it cost is no part of them."""
+        return Pose(
+            self.mechanism.taken(members),
+            self.y[members],
+            self.factors.taken(members),
+            self.iterations[members],
+            self.left[members],
+            Work(),
+        )
 
     @cached_property
     def residual(self) -> Array:
@@ -145,7 +159,8 @@ def proven_step(
     if correction is not None:
         own, both = bent(system.residual(correction)), bent(2.0 * system.polar(correction, tangent))
     tried = np.stack([np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest])
-    for weights, omega in zip(tried, system.lipschitz(inverse, tried), strict=True):
+    omegas = system.lipschitz(inverse, tried)
+    for weights, omega in zip(tried, omegas, strict=True):
         q = (bend / weights).max(axis=-1)
         z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
         if correction is None:
@@ -228,7 +243,7 @@ def _follow_one(
     remaining, rest, iterations, work = 1.0, 0.0, 0, Work(residuals=1)
     if factors is None:
         factors, work = factorise(system.jacobian(y)), work + Work(factorisations=1)
-    side = float(orientation(factors))
+    side = float(orientation(system, factors))
     with np.errstate(all="ignore"):
         while remaining > 0.0 and steps > 0 and not factors.singular:
             steps -= 1
@@ -250,7 +265,7 @@ def _follow_one(
             reached = newton_refine(system, guess, offset * left, tolerance if left == 0.0 else np.inf)
             there = factorise(system.jacobian(reached.y))
             work += reached.work + Work(factorisations=1)
-            if not (bool(reached.converged) and float(orientation(there)) == side):
+            if not (bool(reached.converged) and float(orientation(system, there)) == side):
                 break
             y, factors, remaining = reached.y, there, left
             iterations, rest = int(reached.iterations), float(reached.left)
@@ -262,7 +277,7 @@ def _follow_one(
             end = newton_refine(system, y, offset * remaining)
             there = factorise(system.jacobian(end.y))
             work += end.work + Work(factorisations=1)
-            if bool(end.converged) and float(orientation(there)) == side:
+            if bool(end.converged) and float(orientation(system, there)) == side:
                 y, factors, rest = end.y, there, 0.0
     left_over, done = np.asarray(rest), np.asarray(1.0 - remaining)
     return Path(y.copy(), factors, np.asarray(iterations), left_over, done, work)
@@ -290,7 +305,7 @@ def follow_plainly(
         factors = factorise(system.jacobian(y))
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
-    side = orientation(factors)
+    side = orientation(system, factors)
     active = np.flatnonzero(~factors.singular)
     for _ in range(steps):
         if not active.size:
@@ -321,7 +336,7 @@ def follow_plainly(
         # factors at hand are of the place before the last step, which may lie on the other side.
         there = factorise(system.jacobian(reached.y))
         work += Work(factorisations=len(active))
-        good = reached.converged & (orientation(there) == side[active])
+        good = reached.converged & (orientation(system, there) == side[active])
         active, left = active[good], left[good]
         y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
         rest[active] = reached.left[good]
@@ -333,7 +348,7 @@ def follow_plainly(
         ends = newton_refine(system, y[stopped], offset[stopped] * remaining[stopped][:, None])
         there = factorise(system.jacobian(ends.y))
         work += ends.work + Work(factorisations=len(stopped))
-        good = ends.converged & (orientation(there) == side[stopped])
+        good = ends.converged & (orientation(system, there) == side[stopped])
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
@@ -383,8 +398,8 @@ def stepped(system: QuadraticMap, y: Array, target: Array) -> Array | None:
         reached = newton_refine(system, guess)
         there = factorise(system.jacobian(reached.y))
         beside = np.abs(reached.y - guess).max() <= BESIDE * np.abs(tangent).max()
-    found = bool(beside and reached.converged) and float(orientation(there)) == float(orientation(factors))
-    return reached.y if found else None
+    kept = float(orientation(system, there)) == float(orientation(system, factors))
+    return reached.y if bool(beside and reached.converged) and kept else None
 
 
 def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array) -> Array:
@@ -416,12 +431,26 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
     Raises:
         AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
     """
+    path, stopped = closed_drawings(mechanism, instant, tolerance)
+    for status in stopped.values():
+        raise status.error()
+    return path
+
+
+def closed_drawings(
+    mechanism: Mechanism, instant: float | None = None, tolerance: float = 0.0
+) -> tuple[Path, dict[int, Blocked]]:
+    """The drawings of a batch assembled at their own inputs, and what stops those that are not, by number."""
     own = mechanism.drawn[..., mechanism.map.unknowns :]
     factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
     path = led(mechanism.map, mechanism.drawn, own, factors, tolerance)
-    _require(mechanism, path, own, "the drawing cannot be assembled", instant)
-    _require_sense(mechanism, path, instant)
-    return path
+    stopped = _stopped(mechanism, path, own, path.done < 1.0, "the drawing cannot be assembled", instant)
+    turned, pair = turned_over(mechanism, path.y)
+    if pair is not None:
+        one, other = (" - ".join(piece) for piece in pair)
+        problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"
+        stopped = _stopped(mechanism, path, own, turned & (path.done == 1.0), problem, instant) | stopped
+    return path, dict(sorted(stopped.items()))
 
 
 def assemble(
@@ -444,12 +473,56 @@ def assemble(
     Raises:
         AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
     """
-    target = mechanism.known_series({k: np.asarray(v, dtype=float)[..., None] for k, v in inputs.items()})
-    target = target[..., 0, :]
     drawing = close_drawing(mechanism, instant) if closed is None else closed
-    path = led(mechanism.map, drawing.y, target, drawing.factors, tolerance)
-    _require(mechanism, path, target, "the mechanism cannot be assembled", instant)
-    return Pose(mechanism, path.y, path.factors, path.iterations, path.left, drawing.work + path.work)
+    pose, stopped = assembled(mechanism, inputs, drawing, instant, tolerance)
+    for status in stopped.values():
+        raise status.error()
+    return pose
+
+
+def assembled(
+    mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, instant: float | None, tolerance: float
+) -> tuple[Pose, dict[int, Blocked]]:
+    """The poses of a batch for given inputs, and what stops those that have none, by number."""
+    path, work = drawing, drawing.work
+    stopped: dict[int, Blocked] = {}
+    for stop, allowed in _stops(mechanism, drawing, inputs, tolerance):
+        target = mechanism.known_series({name: value[..., None] for name, value in stop.items()})[..., 0, :]
+        path = led(mechanism.map, path.y, target, path.factors, allowed)
+        work += path.work
+        problem = "the mechanism cannot be assembled"
+        stopped = _stopped(mechanism, path, target, path.done < 1.0, problem, instant) | stopped
+        if np.ndim(path.done) == 0 and stopped:
+            break
+    pose = Pose(mechanism, path.y, path.factors, path.iterations, path.left, work)
+    return pose, dict(sorted(stopped.items()))
+
+
+def _stops(
+    mechanism: Mechanism, drawing: Path, inputs: Mapping[str, Array], tolerance: float
+) -> list[tuple[dict[str, Array], float]]:
+    """Inputs on the way from the drawing to the wanted ones, and how far each pose may be off.
+
+    A turn is driven by its cosine and its sine, and a straight line between two of these takes the shorter
+    way round: so a turn by more than one radian goes by stops.
+    """
+    wanted = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
+    turns = [wanted[name] for name in mechanism.topology.turning]
+    largest = max((float(np.abs(turn).max()) for turn in turns), default=0.0)
+    if not largest > 1.0 or not np.isfinite(largest):
+        return [(wanted, tolerance)]
+    begun = mechanism.input_values(drawing.y[..., mechanism.map.unknowns :])
+    count = min(int(np.ceil(largest)), MOST_STOPS)
+    return [
+        (
+            {
+                n: begun[n] + (value - begun[n]) * (k / count) if k < count else value
+                for n, value in wanted.items()
+            },
+            tolerance if k == count else 0.0,
+        )
+        for k in range(1, count + 1)
+    ]
 
 
 def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
@@ -461,20 +534,20 @@ def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
     return Path(y, factorise(part.map.jacobian(y)), path.iterations, path.left, path.done, work)
 
 
-def _require(mechanism: Mechanism, path: Path, target: Array, problem: str, instant: float | None) -> None:
-    unfinished = path.done < 1.0
-    if unfinished.any():
-        raise blocked(mechanism, problem, path, target, unfinished, instant).error()
-
-
-def _require_sense(mechanism: Mechanism, drawing: Path, instant: float | None) -> None:
-    bad, pair = turned_over(mechanism, drawing.y)
-    if pair is None:
-        return
-    one, other = (" - ".join(piece) for piece in pair)
-    problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"
-    known = mechanism.drawn[..., mechanism.map.unknowns :]
-    raise blocked(mechanism, problem, drawing, known, bad, instant).error()
+def _stopped(
+    mechanism: Mechanism,
+    path: Path,
+    target: Array,
+    which: NDArray[np.bool_],
+    problem: str,
+    instant: float | None,
+) -> dict[int, Blocked]:
+    """What stops members of a batch, by number."""
+    found: dict[int, Blocked] = {}
+    for number in np.flatnonzero(which).tolist():
+        one = (np.arange(which.size) == number).reshape(which.shape)
+        found[number] = blocked(mechanism, problem, path, target, one, instant)
+    return found
 
 
 class Place(Protocol):
@@ -543,11 +616,11 @@ def _pushes(mechanism: Mechanism, y: Array, forces: Array, left: Array) -> dict[
     Args:
         forces: the balance, one per unscaled row. left: of every known coordinate, with its sign.
     """
-    work = {}
+    work = dict.fromkeys(mechanism.topology.required_inputs, 0.0)
     for drive in mechanism.topology.drives:
         place = mechanism.layout.scalar(drive.coordinate)
         along = np.zeros_like(y)
         along[place] = left[place - mechanism.map.unknowns]
-        work[drive.input] = float(forces @ (2.0 * mechanism.map.polar(y, along)))
+        work[drive.input] += float(forces @ (2.0 * mechanism.map.polar(y, along)))
     total = sum(work.values())
     return {name: part * (1.0 if total >= 0.0 else -1.0) for name, part in work.items()}

@@ -1,41 +1,47 @@
 """Many designs of one suspension solved together: those that can be, and why the others cannot.
 
-A batch of cars shares the segments of one chain of series. A design that cannot be closed, assembled or moved
-drops out with its status, and the others go on as if it had not been there.
-
-Many designs are solved as columns, with one operation for all of them: as functions of their inputs where
-these are one or two (see `designs_by_inputs`), and the others as functions of time (see `paths_together` and
-`chains_together`). What does not go well there is solved again by itself in the plain form, which decides,
-and words the reason. Few designs, and whatever the columns cannot do at all, are solved in the plain form
-from the start.
+Drawings are closed and poses assembled at once, each along its own proven steps. Then designs share one
+series in the inputs, where these come back often enough (see `box`), or the segments of a chain of series in
+time; one that asks for much shorter ones goes on without the others (see `build_chains`). A design that
+cannot be closed, assembled or moved drops out with its status, and the others go on as if it had not been
+there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.errors import AssemblyError
-from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.solve.assembly import Path, Pose, assemble, close_drawing
-from pointcoord.solve.chains_together import Course, NotTogether
-from pointcoord.solve.designs_by_inputs import Boxes, Way, boxes_of
-from pointcoord.solve.paths_together import Columns, columns_of, follow_together
-from pointcoord.solve.status import COMPLETE, Status, TooLong, blocked_by
-from pointcoord.solve.taylor import Chain, Settings, build_chain
+from pointcoord.solve.assembly import Path, assembled, closed_drawings
+from pointcoord.solve.box import follow_by_inputs
+from pointcoord.solve.status import Status
+from pointcoord.solve.taylor import Chain, Settings, build_chains
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# Fewer designs are solved in the plain form: the operations on columns cost as much for one as for some
-# dozens.
-FEW = 8
+
+@dataclass(frozen=True)
+class Followed:
+    """Designs that share the segments of one chain.
+
+    Attributes:
+        numbers: of the designs, in increasing order, (A,).
+        chain: its coefficients of shape (A, order + 1, size), or of a `Box` (A, powers, size).
+    """
+
+    numbers: Numbers
+    chain: Chain
+
+    @property
+    def bytes_of_a_design(self) -> int:
+        """What the series of one design take."""
+        return sum(8 * segment.coefficients[0].size for segment in self.chain.segments)
 
 
 @dataclass(frozen=True)
@@ -43,34 +49,26 @@ class SolvedDesigns:
     """What became of a batch of designs.
 
     Attributes:
-        alive: numbers of the designs that were followed in time to the end, in increasing order, (A,).
-        chain: of those, its coefficients of shape (A, order + 1, size); without segments if there are none.
-        start: coordinates of those at the first instant, (A, size); None if there are none.
+        followed: those that were followed to the end, each design in one of these.
         closed: coordinates of the closed drawings, (D, size); NaN where there is none.
         failures: by number, what stopped each of those that were not solved.
-        mapped: numbers of the designs that were solved as functions of their inputs, in increasing order.
-        boxes: of those; None if there are none.
     """
 
-    alive: Numbers
-    chain: Chain | None
-    start: Array | None
+    followed: tuple[Followed, ...]
     closed: Array
     failures: Mapping[int, Status]
-    mapped: Numbers = field(default_factory=lambda: np.empty(0, dtype=np.intp))
-    boxes: Boxes | None = None
 
     @property
     def solved(self) -> Numbers:
         """The numbers of all that were solved, in increasing order."""
-        return np.union1d(self.alive, self.mapped)
+        return np.sort(
+            np.concatenate([np.empty(0, dtype=np.intp), *(each.numbers for each in self.followed)])
+        )
 
     @property
     def bytes_of_a_design(self) -> int:
         """What the series of one design take, of those that take most."""
-        chain = sum(8 * s.coefficients[0].size for s in self.chain.segments) if self.chain else 0
-        boxes = self.boxes.boxes if self.boxes else ()
-        return max(chain, sum(8 * group.series[..., 0].size for box in boxes for group in box.groups))
+        return max((each.bytes_of_a_design for each in self.followed), default=0)
 
 
 def solve_designs(
@@ -80,8 +78,6 @@ def solve_designs(
     stop: float,
     settings: Settings,
     tolerance: float,
-    way: Way | None = None,
-    like: Array | None = None,
 ) -> SolvedDesigns:
     """Close, assemble and move a batch of designs.
 
@@ -89,193 +85,49 @@ def solve_designs(
         mechanism: of all designs, with one batch dimension, (D,).
         functions: the laws of the inputs that drive the linkage, which all designs share.
         start, stop: of the motion, s; they may be the same.
-        settings: how the chain is cut, as finely as the design that needs it finest.
+        settings: how chains are cut, as finely as the design that needs it finest.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
-        way: where the inputs go; without it all are followed in time.
-        like: coordinates of a drawing that all are like, by which the order of elimination is chosen; those
-            of the first design unless given.
     Raises:
         InputOutOfRange: a law has no meaning at an instant, whatever the design.
     """
-    plain = Follow(functions, start, stop, settings, tolerance)
-    if len(mechanism.drawn) >= FEW and tolerance > 0.0:
-        solved = _Together(mechanism, plain, way if start < stop else None).solve(like)
-        if solved is not None:
-            return solved
-    return solve_plainly(mechanism, plain)
-
-
-def solve_plainly(mechanism: Mechanism, follow: Follow) -> SolvedDesigns:
-    """The same in the plain form: all together, and in halves where one of them cannot be followed."""
-    closed = np.full(mechanism.drawn.shape, np.nan)
     failures: dict[int, Status] = {}
-    alive: list[Numbers] = []
-    waiting = [np.arange(len(closed))] if len(closed) else []
-    ended = _Ended(None, None, None, COMPLETE)
-    while waiting:
-        members = waiting.pop()
-        ended = follow.together(mechanism.taken(members))
-        if ended.drawing is not None:
-            closed[members] = ended.drawing.y
-        if ended.status.complete:
-            alive.append(members)
-        elif len(members) == 1 or isinstance(ended.status, TooLong):
-            # How long a motion is hangs on its laws, which all of them share.
-            failures |= dict.fromkeys(members.tolist(), ended.status)
+    alive = np.arange(len(mechanism.drawn))
+    closed = np.full(mechanism.drawn.shape, np.nan)
+    if not len(alive):
+        return SolvedDesigns((), closed, failures)
+
+    def left(stopped: Mapping[int, Status]) -> Numbers:
+        """Places of those that go on."""
+        failures.update({int(alive[place]): status for place, status in stopped.items()})
+        return np.array([place for place in range(len(alive)) if place not in stopped], dtype=np.intp)
+
+    drawing, stopped = closed_drawings(mechanism, start, tolerance)
+    places = left(stopped)
+    alive, drawing, mechanism = alive[places], _taken(drawing, places), mechanism.taken(places)
+    closed[alive] = drawing.y
+    if not len(alive):
+        return SolvedDesigns((), closed, failures)
+    inputs = {name: law.series(start, 0)[..., 0] for name, law in functions.items()}
+    pose, stopped = assembled(mechanism, inputs, drawing, start, tolerance)
+    places = left(stopped)
+    alive, pose = alive[places], pose.taken(places)
+    followed = []
+    mapped, box, work = follow_by_inputs(pose.mechanism, functions, pose, start, stop, settings)
+    if box is not None and len(mapped):
+        followed.append(Followed(alive[mapped], Chain((box,), work)))
+        rest = np.delete(np.arange(len(alive)), mapped)
+        alive, pose = alive[rest], pose.taken(rest)
+    for numbers, chain in build_chains(pose.mechanism, functions, pose, start, stop, settings):
+        if chain.status.complete:
+            followed.append(Followed(alive[numbers], chain))
         else:
-            # Which of them it was shows in halves.
-            middle = len(members) // 2
-            waiting += [members[middle:], members[:middle]]
-    numbers = np.concatenate([np.empty(0, dtype=np.intp), *alive])
-    if failures or len(alive) > 1:
-        ended = _Ended(None, None, None, COMPLETE)
-        if len(numbers):
-            ended = follow.together(mechanism.taken(numbers))
-        if not ended.status.complete:
-            # Each can be followed, but all together take too many segments.
-            failures |= dict.fromkeys(numbers.tolist(), ended.status)
-            return SolvedDesigns(numbers[:0], None, None, closed, failures)
-    return SolvedDesigns(numbers, ended.chain, None if ended.pose is None else ended.pose.y, closed, failures)
+            failures |= dict.fromkeys(alive[numbers].tolist(), chain.status)
+    return SolvedDesigns(tuple(followed), closed, dict(sorted(failures.items())))
 
 
-@dataclass(frozen=True)
-class _Ended:
-    """How far a batch came as a whole."""
-
-    drawing: Path | None
-    pose: Pose | None
-    chain: Chain | None
-    status: Status
-
-
-@dataclass(frozen=True)
-class Follow:
-    """What a batch is to follow, and how finely."""
-
-    functions: Mapping[str, TimeFunction]
-    start: float
-    stop: float
-    settings: Settings
-    tolerance: float
-
-    def together(self, mechanism: Mechanism) -> _Ended:
-        """Solve a batch; the status is that of the first member that stops it."""
-        drawing, pose = self.begun(mechanism)
-        if not isinstance(pose, Pose):
-            return _Ended(drawing, None, None, pose)
-        chain = build_chain(mechanism, self.functions, pose, self.start, self.stop, self.settings)
-        return _Ended(drawing, pose, chain, chain.status)
-
-    def begun(self, mechanism: Mechanism) -> tuple[Path | None, Pose | Status]:
-        """The closed drawings of a batch, and its poses at the start, or what stops the first without one."""
-        drawing, start = None, self.start
-        try:
-            drawing = close_drawing(mechanism, start, self.tolerance)
-            inputs = {name: law.series(start, 0)[..., 0] for name, law in self.functions.items()}
-            return drawing, assemble(mechanism, inputs, start, drawing, self.tolerance)
-        except AssemblyError as error:
-            return drawing, blocked_by(error)
-
-
-@dataclass(frozen=True)
-class _Together:
-    """Designs as columns."""
-
-    mechanism: Mechanism
-    plain: Follow
-    way: Way | None
-
-    def solve(self, like: Array | None) -> SolvedDesigns | None:
-        """What became of them; None where it takes the plain form."""
-        mechanism, system, topology = self.mechanism, self.mechanism.map, self.mechanism.topology
-        driven = [mechanism.layout.scalar(drive.coordinate) for drive in topology.drives]
-        constants = ((mechanism.layout.zero, 0.0), (mechanism.layout.one, 1.0))
-        columns = None if like is None else columns_of(system, constants, driven, like)
-        if columns is None:
-            columns = columns_of(system, constants, driven, mechanism.drawn[0])
-        if columns is None:
-            return None
-        failures: dict[int, Status] = {}
-        closed, pose, left = self._start(columns, failures)
-        begun = np.flatnonzero(np.isfinite(left))
-        if not len(begun):
-            return SolvedDesigns(begun, None, None, closed, failures)
-        mapped, boxes = begun[:0], None
-        if self.way is not None:
-            course, begin = self.plain, np.ascontiguousarray(pose[:, begun])
-            taken, kept = mechanism.taken(begun), course.settings.kept
-            there, boxes = boxes_of(columns, taken, course.functions, self.way, begin, course.start, kept)
-            mapped, begun = begun[there], begun[~there]
-        if len(begun):
-            solved = self._in_time(columns, begun, pose, left, closed, failures)
-        else:
-            solved = SolvedDesigns(begun, None, None, closed, failures)
-        return replace(solved, mapped=mapped, boxes=boxes)
-
-    def _in_time(
-        self,
-        columns: Columns,
-        begun: Numbers,
-        pose: Array,
-        left: Array,
-        closed: Array,
-        failures: dict[int, Status],
-    ) -> SolvedDesigns:
-        """The motion of designs that have a start, followed in time.
-
-        Args:
-            pose, left: as of `_start`.
-        """
-        mechanism, plain = self.mechanism, self.plain
-        if len(begun) < FEW:
-            return self._plainly(begun, closed, failures)
-        taken = mechanism.taken(begun)
-
-        def goes_on(place: int) -> bool:
-            number = int(begun[place])
-            ended = plain.together(mechanism.taken(np.array([number])))
-            if not ended.status.complete:
-                failures[number] = ended.status
-            return ended.status.complete
-
-        course = Course(columns, plain.functions, plain.start, plain.stop, plain.settings.kept, goes_on)
-        y = np.ascontiguousarray(pose[:, begun])
-        try:
-            places, segments, work = course.build(taken, y, left[begun])
-        except NotTogether:
-            return self._plainly(begun, closed, failures)
-        alive = begun[places]
-        return SolvedDesigns(alive, Chain(segments, work), pose.T[alive], closed, failures)
-
-    def _plainly(self, begun: Numbers, closed: Array, failures: dict[int, Status]) -> SolvedDesigns:
-        """The motion of designs that have a start, in the plain form."""
-        begun = np.array([number for number in begun.tolist() if number not in failures], dtype=np.intp)
-        solved = solve_plainly(self.mechanism.taken(begun), self.plain)
-        failures |= {int(begun[place]): status for place, status in solved.failures.items()}
-        return SolvedDesigns(begun[solved.alive], solved.chain, solved.start, closed, failures)
-
-    def _start(self, columns: Columns, failures: dict[int, Status]) -> tuple[Array, Array, Array]:
-        """Closed drawings, (D, size), poses at the start, (size, D), and what is left of them, (D,).
-
-        NaN, and infinite, where there is none.
-        """
-        mechanism, n = self.mechanism, self.mechanism.map.unknowns
-        drawn = np.ascontiguousarray(mechanism.drawn.T)
-        drawing = follow_together(columns, drawn, drawn[n:], self.plain.tolerance, closing=True)
-        series = {name: law.series(self.plain.start, 0) for name, law in self.plain.functions.items()}
-        target = np.array(drawn[n:])
-        for drive, place in zip(mechanism.topology.drives, columns.driven, strict=True):
-            target[place - n] = drive.series(series[drive.input], mechanism.drawing)[..., 0]
-        reached = follow_together(columns, drawing.y, target, self.plain.tolerance, closing=False)
-        sound = drawing.done & reached.done
-        sound &= ~turned_over(mechanism, np.ascontiguousarray(drawing.y.T))[0]
-        closed, pose = np.ascontiguousarray(drawing.y.T), reached.y
-        left = np.where(sound, reached.left, np.inf)
-        for number in np.flatnonzero(~sound).tolist():
-            one, end = self.plain.begun(mechanism.taken(np.array([number])))
-            closed[number] = np.nan if one is None else one.y[0]
-            if isinstance(end, Pose):
-                pose[:, number], left[number] = end.y[0], end.left[0]
-            else:
-                failures[number] = end
-        return closed, pose, left
+def _taken(path: Path, members: Numbers) -> Path:
+    """The paths of some members."""
+    factors = path.factors.taken(members)
+    return Path(
+        path.y[members], factors, path.iterations[members], path.left[members], path.done[members], path.work
+    )

@@ -82,7 +82,7 @@ def proven_end(
     """
     if factors.singular or system.dense is None:
         return None
-    n, left, side = system.unknowns, 1.0, float(orientation(factors))
+    n, left, side = system.unknowns, 1.0, float(orientation(system, factors))
     here, local, work = y, factors, Work()
     begun = _begun(system, y, factors, target - y[n:], offset)
     if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
@@ -119,7 +119,7 @@ def _end(
     reached = newton_refine(system, guess, offset, tolerance)
     there = factorise(system.jacobian(reached.y))
     # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
-    if not (bool(reached.converged) and float(orientation(there)) == side):
+    if not (bool(reached.converged) and float(orientation(system, there)) == side):
         return None
     work += reached.work + Work(factorisations=1)
     return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)

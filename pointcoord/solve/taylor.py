@@ -24,10 +24,11 @@ every series (see `partial_map`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field, replace
-from functools import cache, cached_property, lru_cache
-from math import isfinite, perm
+from functools import cache, cached_property, lru_cache, partial
+from math import perm
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, newton_refine, rounding_of
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
+from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
 from pointcoord.solve.standing_still import starting_place, whole_place
@@ -48,6 +50,7 @@ from pointcoord.solve.status import COMPLETE, Status, TooLong, TooRough
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
 
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
@@ -85,6 +88,9 @@ WINDOW = 5
 SHORT = 6
 # Segments up to which a motion is divided evenly; of more the last one hardly counts.
 FEW = 8
+# A member of many whose terms allow less than this share of what the middle one's do goes on without them: it
+# would take twice as long to follow all of them by its segments as to follow it once more.
+STANDS_OUT = 0.5
 # Share of the tolerance up to which Newton's method may stop short of a pose.
 SOLVED = 0.1
 
@@ -110,6 +116,25 @@ class Segment:
         """Of the series."""
         return int(self.coefficients.shape[-2]) - 1
 
+    def powers(self, instants: Array, derivatives: int) -> list[Array]:
+        """Powers of s at instants, (N,), and their rates, so many derivatives in all, each (terms, N)."""
+        s, terms = (instants - self.start) / self.scale, self.order + 1
+        powers = np.ones((terms, len(s)))
+        for k in range(1, terms):
+            np.multiply(powers[k - 1], s, out=powers[k])
+        found = [powers]
+        factors = np.arange(1.0, terms)[:, None] / self.scale
+        for _ in range(derivatives - 1):
+            lower = np.zeros_like(powers)
+            np.multiply(found[-1][:-1], factors, out=lower[1:])
+            found.append(lower)
+        return found
+
+    def taken(self, members: Numbers) -> Self:
+        """Of some members; one batch dimension."""
+        left = np.broadcast_to(self.left, self.coefficients.shape[:1])[members]
+        return replace(self, coefficients=self.coefficients[members], left=left)
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -126,6 +151,20 @@ class Chain:
     def stop(self) -> float:
         """The last instant, s."""
         return self.segments[-1].stop
+
+    def parts(self, instants: Array) -> Iterator[tuple[Segment, slice]]:
+        """Each segment with which of some instants, in increasing order, lie on it."""
+        starts = [segment.start for segment in self.segments[1:]]
+        edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
+        yield from zip(self.segments, map(slice, edges[:-1], edges[1:]), strict=True)
+
+    def summed(self, instants: Array, count: int, derivative: int = 0) -> Array:
+        """The first coordinates, or a rate of them, at instants in increasing order, (..., N, count)."""
+        parts = (
+            segment.powers(instants[part], derivative + 1)[derivative].T @ segment.coefficients[..., :count]
+            for segment, part in self.parts(instants)
+        )
+        return np.concatenate(list(parts), axis=-2)
 
 
 @dataclass(frozen=True)
@@ -167,48 +206,36 @@ def build_chain(
         The chain up to `stop`, or up to a pose that the motion cannot pass, to the most segments, or to where
         no step follows an input though the mechanism could; its status says which.
     """
-    settings = settings.kept
-    part = mechanism.moving_part(functions)
-    course = _Course(mechanism, functions, start, stop, settings, part)
-    here = starting_place(part, pose)
-    joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
-    side, members = orientation(joint.factors), joint.members
-    work = here.work
-    segments: list[Segment] = []
+    return _Course.of(mechanism, functions, start, stop, settings).build(pose, leaving=False)[0]
 
-    def chain(status: Status) -> Chain:
-        return Chain(tuple(segments), work, status)
 
-    while joint.instant < stop or not segments:
-        if len(segments) == MOST_SEGMENTS:
-            return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
-        if len(segments) == TELLING and not settings.hopeful:
-            # Later ones would have to be four times as long on average to be enough.
-            likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
-            if stop - start > 4.0 * (likely - start):
-                return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
-        segment = course.segment_from(joint)
-        orders = segment.order
-        solves = orders * members
-        work += Work(
-            segments=1,
-            series_orders=orders,
-            rate_solves=solves,
-            unknowns_solved=solves * part.system.unknowns,
-        )
-        finite = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
-        if not finite.all():
-            return chain(course.stops_at(joint, ~finite, coarsest=False))
-        if start == stop:
-            segments.append(course.whole(segment))
-            break
-        step = course.step_along(segment, joint, side)
-        work += step.work
-        if step.end is None:
-            return chain(course.stops_at(joint, ~step.good, coarsest=settings.tolerance >= COARSEST))
-        segments.append(course.whole(replace(segment, stop=step.end.instant)))
-        joint = step.end
-    return chain(COMPLETE)
+def build_chains(
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    start: float,
+    stop: float,
+    settings: Settings,
+) -> list[tuple[Numbers, Chain]]:
+    """The same of many members, one batch dimension, with the numbers of those that share each chain.
+
+    A member that asks for much shorter segments than the others, or that its segment's end is not confirmed
+    of, leaves; all that have left are followed together again, as long as any are left.
+    """
+    found: list[tuple[Numbers, Chain]] = []
+    waiting = [np.arange(len(pose.y))] if len(pose.y) else []
+    while waiting:
+        members = waiting.pop()
+        course = _Course.of(mechanism.taken(members), functions, start, stop, settings)
+        chain, kept = course.build(pose.taken(members), leaving=len(members) > 1)
+        if len(kept) > 1 and not (chain.status.complete or isinstance(chain.status, TooLong)):
+            # Which of them it was shows one by one.
+            waiting += [members[[place]] for place in kept.tolist()]
+        else:
+            found.append((members[kept], chain))
+        if len(kept) < len(members):
+            waiting.append(np.delete(members, kept))
+    return found
 
 
 @dataclass(frozen=True)
@@ -275,6 +302,10 @@ class _Joint:
         """How many poses it is."""
         return int(np.prod(self.y.shape[:-1]))
 
+    def taken(self, members: Numbers) -> _Joint:
+        """Some of them."""
+        return replace(self, y=self.y[members], factors=self.factors.taken(members), left=self.left[members])
+
 
 @dataclass(frozen=True)
 class _Step:
@@ -291,7 +322,7 @@ class _Course:
 
     Attributes:
         part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
-        measured: the segment that was last measured, and its length.
+        measured: the segment that was last measured, the lengths that its members allow, and how it decays.
     """
 
     mechanism: Mechanism
@@ -300,7 +331,82 @@ class _Course:
     stop: float
     settings: Settings
     part: PartialMap
-    measured: list[tuple[Segment, tuple[float, Decay | None]]] = field(default_factory=list)
+    measured: list[tuple[Segment, Array, Decay | None]] = field(default_factory=list)
+
+    @classmethod
+    def of(
+        cls,
+        mechanism: Mechanism,
+        functions: Mapping[str, TimeFunction],
+        start: float,
+        stop: float,
+        settings: Settings,
+    ) -> _Course:
+        """With a tolerance that can be kept."""
+        return cls(mechanism, functions, start, stop, settings.kept, mechanism.moving_part(functions))
+
+    def build(self, pose: Pose, leaving: bool) -> tuple[Chain, Numbers]:
+        """The chain, and the numbers of the members that it is of.
+
+        Args:
+            leaving: whether members may leave; then there is one batch dimension.
+        """
+        course, start, stop, settings = self, self.start, self.stop, self.settings
+        here = starting_place(self.part, pose)
+        joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
+        side, work = orientation(self.part.system, joint.factors), here.work
+        segments: list[Segment] = []
+        kept = np.arange(joint.members)
+
+        def chain(status: Status) -> tuple[Chain, Numbers]:
+            return Chain(tuple(segments), work, status), kept
+
+        while joint.instant < stop or not segments:
+            if len(segments) == MOST_SEGMENTS:
+                return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+            if len(segments) == TELLING and not settings.hopeful:
+                # Later ones would have to be four times as long on average to be enough.
+                likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
+                if stop - start > 4.0 * (likely - start):
+                    return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
+            segment = course.segment_from(joint)
+            solves = segment.order * joint.members
+            work += Work(
+                segments=1,
+                series_orders=segment.order,
+                rate_solves=solves,
+                unknowns_solved=solves * self.part.system.unknowns,
+            )
+            staying = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
+            step = None
+            if not leaving and not staying.all():
+                return chain(course.stops_at(joint, ~staying, coarsest=False))
+            if leaving:
+                staying &= course.keeps_up(segment)
+            if start == stop and staying.all():
+                segments.append(course.whole(segment))
+                break
+            if staying.all():
+                step = course.step_along(segment, joint, side, leaving)
+                work += step.work
+                staying = step.good
+            if step is not None and step.end is not None:
+                segments.append(course.whole(replace(segment, stop=step.end.instant)))
+                joint = step.end
+            elif leaving and staying.any():
+                numbers = np.flatnonzero(staying)
+                kept, side, joint = kept[numbers], side[numbers], joint.taken(numbers)
+                segments = [each.taken(numbers) for each in segments]
+                course = replace(course, mechanism=course.mechanism.taken(numbers), measured=[])
+            else:
+                return chain(course.stops_at(joint, ~staying, coarsest=settings.tolerance >= COARSEST))
+        return chain(COMPLETE)
+
+    def keeps_up(self, segment: Segment) -> NDArray[np.bool_]:
+        """Members whose terms allow no less than a share of the middle one's length, shape (members,)."""
+        with np.errstate(all="ignore"):
+            lengths, _ = self.measure(segment)
+            return np.asarray(~(lengths < STANDS_OUT * np.median(lengths)))
 
     def whole(self, segment: Segment) -> Segment:
         """A segment with its coordinates in the mechanism's order."""
@@ -400,25 +506,28 @@ class _Course:
 
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
+        lengths, decay = self.measure(segment)
+        return float(np.min(lengths)), decay
+
+    def measure(self, segment: Segment) -> tuple[Array, Decay | None]:
+        """The same for each member, (members,), with what the one of the shortest length tells."""
         # Asked for twice of most segments: when it is made and when it is cut.
-        if self.measured and self.measured[0][0] is segment:
-            return self.measured[0][1]
-        self.measured[:] = [(segment, self._length_of(segment))]
-        return self.measured[0][1]
+        if not (self.measured and self.measured[0][0] is segment):
+            logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+            lengths, decay = lengths_by_sizes(logs, self.settings), None
+            length = float(np.min(lengths))
+            if np.isfinite(length):
+                found = decay_by_sizes(logs, length)
+                decay = Decay(found.radius * segment.scale, found.spread)
+            self.measured[:] = [(segment, lengths * segment.scale, decay)]
+        return self.measured[0][1:]
 
-    def _length_of(self, segment: Segment) -> tuple[float, Decay | None]:
-        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
-        length = length_by_sizes(logs, self.settings)
-        if not np.isfinite(length):
-            return length, None
-        decay = decay_by_sizes(logs, length)
-        return length * segment.scale, Decay(decay.radius * segment.scale, decay.spread)
-
-    def step_along(self, segment: Segment, joint: _Joint, side: Array) -> _Step:
+    def step_along(self, segment: Segment, joint: _Joint, side: Array, leaving: bool) -> _Step:
         """Cut a segment where its last terms say, or shorter: until Newton's method confirms its end.
 
         Args:
             side: orientation of the branch, which the end must have.
+            leaving: whether it is enough that some members are confirmed.
         """
         system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
         length, decay = self.length_of(segment)
@@ -427,19 +536,24 @@ class _Course:
             end = limit if joint.instant + length >= limit else joint.instant + length
             reached = self.solved_end(segment, end)
             work += reached.work
-            # What rounding alone makes of a step is no truncation, however small the tolerance.
-            good = reached.converged & (reached.first_step <= tolerance)
-            if not good.all() and reached.converged.all():
-                noise = rounding_of(system, reached) + self.law_noise(reached, end)
-                good = reached.first_step <= tolerance + 2.0 * noise
-            if good.all():
-                ahead, spent = self.factors_at(reached)
-                work += spent
-                s = (end - segment.start) / segment.scale
-                good = on_branch(system, side, segment.coefficients, s, reached, ahead)
-            if good.all():
+            s = (end - segment.start) / segment.scale
+            found = confirmed(
+                system,
+                reached,
+                side,
+                segment.coefficients,
+                s,
+                tolerance,
+                partial(self.law_noise, reached, end),
+                leaving,
+            )
+            good, ahead = found.good, found.factors
+            work += found.work
+            if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
+            if leaving and good.any():
+                break
             length = 0.5 * (end - joint.instant)
         return _Step(None, good, work)
 
@@ -449,19 +563,6 @@ class _Course:
         guess = s ** np.arange(series.shape[-2]) @ series
         guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
         return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
-
-    def factors_at(self, reached: Converged) -> tuple[Factors, Work]:
-        """Factors of C_u at a solved end; Newton's own, of the place before its last step, where these do.
-
-        With z = omega |last step| their solutions are off by z^2 of themselves.
-        """
-        system = self.part.system
-        matrix = system.jacobian(reached.y)
-        z = reached.lipschitz_with(system, reached.factors) * reached.last_step
-        if (z * z <= max(EPS, SOLVED * self.settings.tolerance)).all():
-            return reached.factors.moved(matrix), Work()
-        members = int(np.prod(reached.y.shape[:-1]))
-        return factorise(matrix), Work(factorisations=members)
 
     def law_noise(self, reached: Converged, end: float) -> Array:
         """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
@@ -496,8 +597,58 @@ class _Course:
         return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
 
 
-def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = None) -> float:
-    r"""Length of a segment in its own time unit, from the logarithms of its coefficients, (members, orders).
+@dataclass(frozen=True)
+class Confirmed:
+    """Which ends are confirmed, the factors of C_u there unless none is, and what that cost."""
+
+    good: NDArray[np.bool_]
+    factors: Factors | None
+    work: Work
+
+
+def confirmed(
+    system: QuadraticMap,
+    reached: Converged,
+    side: Array,
+    series: Array,
+    s: float,
+    tolerance: float,
+    law_noise: Callable[[], Array] | None = None,
+    leaving: bool = True,
+) -> Confirmed:
+    """Whether solved ends are what a series leads to, up to a tolerance, and on its branch.
+
+    Args:
+        side, series, s: as of `on_branch`.
+        law_noise: what the rounding of the inputs' laws may move any coordinate by, shape (...,).
+        leaving: whether it is enough that some members are confirmed.
+    """
+    # What rounding alone makes of a step is no truncation, however small the tolerance.
+    good = reached.converged & (reached.first_step <= tolerance)
+    if not good.all() and (leaving or reached.converged.all()):
+        noise = rounding_of(system, reached) + (law_noise() if law_noise is not None else 0.0)
+        good = reached.converged & (reached.first_step <= tolerance + 2.0 * noise)
+    if not good.any():
+        return Confirmed(good, None, Work())
+    ahead, work = _factors_at(system, reached, tolerance)
+    return Confirmed(good & on_branch(system, side, series, s, reached, ahead), ahead, work)
+
+
+def _factors_at(system: QuadraticMap, reached: Converged, tolerance: float) -> tuple[Factors, Work]:
+    """Factors of C_u at a solved end; Newton's own, of the place before its last step, where these do.
+
+    With z = omega |last step| their solutions are off by z^2 of themselves.
+    """
+    matrix = system.jacobian(reached.y)
+    z = reached.lipschitz_with(system, reached.factors) * reached.last_step
+    if (z * z <= max(EPS, SOLVED * tolerance)).all():
+        return reached.factors.moved(matrix), Work()
+    members = int(np.prod(reached.y.shape[:-1]))
+    return factorise(matrix), Work(factorisations=members)
+
+
+def lengths_by_sizes(logs: Array, settings: Settings) -> Array:
+    r"""Lengths of segments in their own time unit, (members,).
 
     With c_k the largest k-th coefficient, the d-th derivative of either of the last two terms at s is
     k!/(k-d)! c_k s^(k-d); it must not exceed half the tolerance times the size of the d-th derivative,
@@ -507,22 +658,17 @@ def length_by_sizes(logs: Array, settings: Settings, smallest: Array | None = No
     (see `gone_on`).
 
     Args:
-        smallest: of a row that stands for many members, the smallest coefficients of any of them: then no
-            member's derivative is taken for larger than it is. The same unless given.
+        logs: logarithms of the coefficients, (members, orders).
     """
     logs = logs.copy()
     logs[:, 0] = 0.0
     logs[:, -2:] = gone_on(logs)
     room, exponents = _room(logs.shape[-1], settings.derivative, settings.tolerance)
-    whole = logs
-    if smallest is not None:
-        whole = smallest.copy()
-        whole[:, 0] = 0.0
     # Of two terms that are missing both there is nothing to compare, and without last terms there is no end.
     with np.errstate(invalid="ignore", over="ignore"):
-        ends = (whole[:, None, None, :] - logs[:, None, -2:, None] + room) * exponents
-        longest = float(np.fmin.reduce(np.fmax.reduce(ends, axis=-1), axis=None))
-        return np.inf if np.isnan(longest) else float(np.exp(longest))
+        ends = (logs[:, None, None, :] - logs[:, None, -2:, None] + room) * exponents
+        longest = np.fmin.reduce(np.fmax.reduce(ends, axis=-1), axis=(1, 2))
+        return np.where(np.isnan(longest), np.inf, np.exp(longest))
 
 
 @lru_cache(maxsize=256)
@@ -551,45 +697,11 @@ def gone_on(logs: Array) -> Array:
     """
     if logs.shape[-1] < SHORT:
         return logs[:, -2:]
-    if len(logs) == 1:
-        return np.array([_gone_on_of_one(logs[0].tolist())])
     window, fall = _fall(logs)
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
     last = (later - fall * ahead).max(axis=-1)
     before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
     return np.stack([before, last], axis=-1)
-
-
-def last_and_fall(sizes: Array) -> tuple[Array, Array]:
-    """The last term of each member, at least what the ones before it come to, and how terms fall, (members,).
-
-    The fall is the part that is left from one term to the next, at most 1 (see `gone_on`).
-
-    Args:
-        sizes: of the terms, at least SHORT, (orders, members).
-    """
-    with np.errstate(divide="ignore"):
-        window, fall = _fall(np.log(sizes.T))
-    part = np.exp(-fall[:, 0])
-    later = sizes[-window:] * part ** np.arange(window - 1.0, -1.0, -1.0)[:, None]
-    return np.asarray(later.max(axis=0)), part
-
-
-def _gone_on_of_one(logs: list[float]) -> tuple[float, float]:
-    """The same of one member, in Python's own numbers."""
-    count, window, latest = len(logs), WINDOW, 0
-    for k in range(1, count):
-        if isfinite(logs[k]):
-            window, latest = max(window, k - latest), k
-    window = min(window, count - 2)
-    middle = count - window
-    first = max(1, middle - window)
-    a = max(range(first, middle), key=logs.__getitem__)
-    b = max(range(middle, count), key=logs.__getitem__)
-    fall = (logs[a] - logs[b]) / (b - a)
-    fall = max(fall, 0.0) if isfinite(fall) else 0.0
-    later = [logs[k] - fall * (count - 1 - k) for k in range(middle, count)]
-    return max(later[:-1]) + fall, max(later)
 
 
 def _fall(logs: Array) -> tuple[int, Array]:

@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import SceneError, SweepError, UnknownName
 from pointcoord.linkage.topology import Topology
-from pointcoord.scene.messages import shown
 from pointcoord.scene.scene_file import Scene
+from pointcoord.wording import shown
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
@@ -192,6 +192,9 @@ def designs_of_scenes(scenes: Sequence[Scene]) -> Designs:
     first = scenes[0]
     shared = _shared(first)
     for number, scene in enumerate(scenes):
+        if scene.mechanism.file != first.mechanism.file:
+            said = f"{scene.mechanism.name} where the first scene has {first.mechanism.name} of other tables"
+            raise SweepError(f"design {number}: mechanism", f"is {said}", "one for all designs of a sweep")
         for key, value in _shared(scene).items():
             if value != shared[key]:
                 said = f"{shown(value)} where the first scene has {shown(shared[key])}"
@@ -212,7 +215,6 @@ def _shared(scene: Scene) -> dict[str, object]:
     """What scenes of one sweep have in common."""
     part = scene.mechanism
     return {
-        "mechanism.type": part.type,
         "mechanism.closure": part.closure,
         "mechanism.side": part.side,
         "mechanism.up": part.up,

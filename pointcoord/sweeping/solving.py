@@ -31,11 +31,10 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
-from pointcoord.patches.path import way_of
 from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
+from pointcoord.results.motion import Motion
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
-from pointcoord.results.states_of_boxes import StatesOfBoxes
 from pointcoord.results.states_of_designs import StatesOfDesigns
 from pointcoord.results.table import Table
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
@@ -49,8 +48,8 @@ from pointcoord.simulation import (
     simulate,
     tolerance_notes,
 )
+from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.designs import SolvedDesigns, solve_designs
-from pointcoord.solve.designs_by_inputs import Way
 from pointcoord.solve.status import Status, TooLong, TooRough
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
@@ -187,24 +186,6 @@ class Course:
         for one in np.unique(which).tolist():
             yield one, numbers[which == one]
 
-    @cached_property
-    def drawn(self) -> Array | None:
-        """Coordinates of the scene's own drawing; None if it makes no mechanism."""
-        try:
-            return scene_mechanism(self.scene).drawn
-        except SceneError:
-            return None
-
-    def way(self, law: int, functions: Mapping[str, TimeFunction]) -> Way | None:
-        """Where the inputs go by some laws; None where all stand still."""
-        if law not in self._ways:
-            self._ways[law] = way_of_inputs(self.laws[law], functions)
-        return self._ways[law]
-
-    @cached_property
-    def _ways(self) -> dict[int, Way | None]:
-        return {}
-
 
 @dataclass(frozen=True)
 class _Block:
@@ -281,6 +262,11 @@ class _Block:
             except SceneError as error:
                 sound[place] = False
                 self.fail([members[place]], error)
+        if course.scene.mechanism.topology.left_out:
+            # Which rows follow from others hangs on each drawing.
+            for number in members[sound].tolist():
+                self._alone_from_its_drawing(number)
+            return 0
         for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
             places = np.searchsorted(members, own)
             self._look_at(own, {name: place[places] for name, place in points.items()})
@@ -333,10 +319,7 @@ class _Block:
         check_range(mechanism.taken(0), functions, scene.instants)
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
-
-        way = course.way(law, functions)
-        like = course.drawn
-        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed, way, like)
+        solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
         for place, status in solved.failures.items():
@@ -377,7 +360,7 @@ class _Block:
         )
 
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
-        unit = mechanism.unit[:, None]
+        unit = mechanism.unit[..., None]
         states = {name: place * unit for name, place in mechanism.places(closed).items()}
         poses = Poses(mechanism, self.course.axes, (states,), (None,))
         found: dict[str, Array] = {}
@@ -396,16 +379,10 @@ class _Block:
         solved: SolvedDesigns,
     ) -> None:
         """Put the numbers of designs that were solved into their tables."""
-        if solved.chain is not None and len(solved.alive):
-            readout = _readout(self.course, scene, mechanism.taken(solved.alive))
-            states = StatesOfDesigns(readout, functions, solved.chain, scene.time.start)
-            self._fill(readout, states, scene.instants, members[solved.alive])
-        if solved.boxes is not None and len(solved.mapped):
-            all_of_them = len(solved.mapped) == len(members)
-            part = mechanism if all_of_them else mechanism.taken(solved.mapped)
-            readout = _readout(self.course, scene, part)
-            boxes = StatesOfBoxes(readout, functions, solved.boxes)
-            self._fill(readout, boxes, scene.instants, members[solved.mapped])
+        for each in solved.followed:
+            readout = _readout(self.course, scene, mechanism.taken(each.numbers))
+            states = StatesOfDesigns(readout, functions, each.chain, scene.time.start)
+            self._fill(readout, states, scene.instants, members[each.numbers])
         alive = members[solved.solved]
         if not len(alive):
             return
@@ -415,9 +392,7 @@ class _Block:
         self._require_known(scene, alive[kept], functions)
         self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
 
-    def _fill(
-        self, readout: Readout, states: StatesOfDesigns | StatesOfBoxes, instants: Array, members: Numbers
-    ) -> None:
+    def _fill(self, readout: Readout, states: StatesOfDesigns, instants: Array, members: Numbers) -> None:
         """Put the numbers of designs into their tables."""
         self.readouts[:] = [readout]
         places = members - self.first
@@ -434,13 +409,25 @@ class _Block:
             self.rows[places[kept]] = rows[kept]
         self.filled[places[kept]] = True
 
-    def _alone(self, number: int) -> None:
-        """Solve one design as a scene of its own, by whatever follows its laws."""
+    def _alone_from_its_drawing(self, number: int) -> None:
+        """Solve one design as a scene of its own, whose drawing nothing else has looked at."""
+        motion = self._alone(number)
+        if motion is None:
+            return
+        mechanism, place = motion.solved.readout.mechanism, number - self.first
+        self.closing[place] = motion.closing.largest
+        for name, angle in self._angles(mechanism, close_drawing(mechanism).y).items():
+            self.drawn[name][place] = angle
+        noticed, far = np.array([motion.closing.noticeable]), np.array([motion.closing.largest])
+        self._note("closing", np.array([number]), noticed, _the_same(motion.closing.words), far)
+
+    def _alone(self, number: int) -> Motion | None:
+        """Solve one design as a scene of its own, by whatever follows its laws; None if that fails."""
         try:
             motion = simulate(self.course.designs.design(number))
         except PointcoordError as error:
             self.fail([number], error)
-            return
+            return None
         place = number - self.first
         for quantity, names in self.course.table.places.items():
             for name in names:
@@ -448,6 +435,7 @@ class _Block:
         self.filled[place] = True
         words = f"solved by itself, by the method {motion.method!r}"
         self._note("alone", np.array([number]), np.array([True]), _the_same(words), warns=False)
+        return motion
 
     def _require_known(self, scene: Scene, members: Numbers, functions: Mapping[str, TimeFunction]) -> None:
         """Where a law is less certain than the tolerance, hold each design to what it would be alone."""
@@ -491,22 +479,6 @@ def _the_same(words: str) -> Callable[[int], str]:
     return lambda place: words
 
 
-def way_of_inputs(scene: Scene, functions: Mapping[str, TimeFunction]) -> Way | None:
-    """Where the inputs of a scene go that move; None where all stand still."""
-    moving = {name: law for name, law in functions.items() if not law.still}
-    if not moving:
-        return None
-    spans = way_of(moving, scene.time.start, scene.time.stop)
-    rates = [np.abs(law.series(scene.instants, 2)[:, 1:]).max(axis=0) for law in moving.values()]
-    speeds, accelerations = np.array([[1.0], [2.0]]) * np.array(rates).T
-    middle = 0.5 * (spans.low + spans.high)
-    travels = np.abs(np.diff(middle, axis=0)).sum(axis=0)
-    ranges = spans.high.max(axis=0) - spans.low.min(axis=0)
-    with np.errstate(invalid="ignore"):
-        passes = np.where(ranges > 0.0, travels / ranges, 1.0)
-    return Way(tuple(moving), spans.low, spans.high, speeds, accelerations, float(passes.max(initial=1.0)))
-
-
 def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:
     chassis = ChassisMotion.of(mechanism, scene.functions)
     return Readout(mechanism=mechanism, plan=course.plan, chassis=chassis, axes=course.axes)
@@ -519,10 +491,12 @@ def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
     one place that the scene itself draws apart.
     """
     part = designs.scene.mechanism
-    inner, wheel = points[part.topology.inboard], points[part.topology.wheel_centre]
-    with np.errstate(invalid="ignore", over="ignore"):
-        slack = SLACK * (np.abs(inner).max(axis=-1) + np.abs(wheel).max(axis=-1))
-        found = np.asarray(~((inner - wheel) @ part.outboard < -slack))
+    found = np.zeros(len(next(iter(points.values()))), dtype=bool)
+    if part.topology.inboard and part.topology.wheel_centre:
+        inner, wheel = points[part.topology.inboard], points[part.topology.wheel_centre]
+        with np.errstate(invalid="ignore", over="ignore"):
+            slack = SLACK * (np.abs(inner).max(axis=-1) + np.abs(wheel).max(axis=-1))
+            found |= ~((inner - wheel) @ part.outboard < -slack)
     for place in points.values():
         found |= ~np.isfinite(place).all(axis=-1)
     for one, other in combinations(points, 2):
@@ -541,6 +515,7 @@ REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
     (MotionTooLong, "the motion takes too many series"),
     (MotionTooRough, "no series follows an input"),
     (SceneError, "the drawing is refused"),
+    (MechanismError, "the mechanism locks"),
 )
 
 

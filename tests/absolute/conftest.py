@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import struts
+from flat import built_in
 from kinds import KINDS, Kind
 from numpy.typing import NDArray
 
@@ -34,7 +35,7 @@ def table() -> dict[str, tuple[float, float, float]]:
 
 @pytest.fixture(scope="session")
 def strut(table: dict[str, tuple[float, float, float]]) -> absolute.Model:
-    return absolute.macpherson(table, closure="collinear")
+    return built_in("macpherson", table, closure="collinear")
 
 
 @pytest.fixture(scope="session")

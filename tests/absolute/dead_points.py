@@ -14,7 +14,7 @@ class End(NamedTuple):
 
     kind: Kind
     car: Car
-    links: tuple[str, ...]
+    links: str
     limit: str
     inside: tuple[float, float]
     out: tuple[float, float]

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import struts
 import wishbones
+from flat import built_in
 from jets import Moving
 from numpy.typing import NDArray
 from strut_motion import strut_motion
@@ -16,10 +17,10 @@ import absolute
 
 Array = NDArray[np.float64]
 Car = dict[str, Array]
-# Links of the lower arm and of the tie rod at their dead points, as refusals name them.
-LOWER_ARM = ("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear")
-UPPER_ARM = ("link upper_ball_joint - upper_arm_front", "link upper_ball_joint - upper_arm_rear")
-TIE_ROD = ("link tie_rod_inner - tie_rod_outer",)
+# What holds the mechanism at the dead points of its arms and of its tie rod, as refusals name it.
+LOWER_ARM = "hinge of lower_arm on chassis"
+UPPER_ARM = "hinge of upper_arm on chassis"
+TIE_ROD = "rod tie_rod"
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Kind:
     span: tuple[tuple[float, float], tuple[float, float]]
     random_car: Callable[[int, bool], Car]
     exact: Callable[[Car, Sequence[float], Sequence[float]], Moving | None]
-    links: tuple[tuple[str, ...], ...]
+    links: tuple[str, ...]
     held: tuple[tuple[str, str], ...]
     inner: tuple[str, ...]
     kingpin: tuple[str, str]
@@ -74,13 +75,13 @@ ARM_AND_ROD = (
 
 def _strut(closure: str, random_car: Callable[[int, bool], Car], upper: str) -> Kind:
     return Kind(
-        partial(absolute.SUSPENSIONS["macpherson"], closure=closure),
+        partial(built_in, "macpherson", closure=closure),
         {name: np.array(point) for name, point in struts.TABLE.items()},
         0.8,
         ((45.0, 145.0), (-60.0, 90.0)),
         lambda seed, closing: with_rack(random_car(seed, closing)),
         lambda points, angle, rack: strut_motion(points, angle, rack, closure),
-        (LOWER_ARM, ("strut axis",), TIE_ROD),
+        (LOWER_ARM, "slide strut at strut_top", TIE_ROD),
         (*ARM_AND_ROD, ("strut_rod_end", "strut_top"), ("strut_lower", "tie_rod_outer")),
         ("wheel_axis_inner", "strut_lower"),
         ("lower_ball_joint", upper),
@@ -91,7 +92,7 @@ KINDS = {
     "strut": _strut("drawn", struts.off_axis_strut, "strut_top"),
     "collinear strut": _strut("collinear", struts.collinear_strut, "strut_lower"),
     "double wishbone": Kind(
-        absolute.SUSPENSIONS["double_wishbone"],
+        partial(built_in, "double_wishbone"),
         {name: np.array(point) for name, point in wishbones.LOTUS.items()},
         0.9,
         ((52.0, 112.0), (-40.0, 40.0)),

@@ -9,7 +9,7 @@ from absolute.estimate import SUMMED, TURNED, TURNED_TWICE, BodyMotion, Errors, 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
 from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt
-from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose, row_motion
+from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose
 from absolute.vectors import cross
 
 Array = NDArray[np.float64]
@@ -77,11 +77,11 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
     targets = mechanism.target_series(series)
     jacobian = stack.jacobian(placed)
     inverse = np.asarray(np.linalg.inv(jacobian), dtype=float)
-    moving, bending = (row_motion(stack, placed, rates) for rates in (motion.velocity, motion.acceleration))
+    moving, bending = (stack.motion(placed, rates) for rates in (motion.velocity, motion.acceleration))
     speeds, seconds = (
         rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
     )
-    drift = stack.drift(placed, motion.velocity[:, :, 0], motion.velocity[:, :, 1])
+    drift = stack.drift(placed, motion.velocity)
     pose = pose_doubt(mechanism, placed, targets[0])
     slopes = mechanism.target_slopes(series)
     everything = pose.known + pose.rounded

@@ -54,16 +54,6 @@ def arm_end(drawn: Mapping[str, Vector], angle: Jet, as_drawn: int = 1) -> tuple
     return new_ball, axis, 1 - abs(rise.x)
 
 
-def tie_rod_spin(drawn: Vector, now: Vector) -> tuple[list[Any], list[Any]]:
-    """w and w' of the tie rod: the cross at the rack keeps its second pin at a right angle to the first,
-    which is still."""
-    along = unit(drawn)
-    choices = (UP, cross(RIGHT, UP), RIGHT)
-    still = unit(cross(along, min(choices, key=lambda way: abs(dot(way, along).x))))
-    tie = unit(now)
-    return spin(axes(tie, cross(tie, still)))
-
-
 def _strut(p: Drawing, angle: Jet, rack: Jet, closure: str) -> Moving | None:
     drawn = {name: fixed(point) for name, point in p.items()}
     front, top, ball, outer = (
@@ -126,9 +116,6 @@ def _strut(p: Drawing, angle: Jet, rack: Jet, closure: str) -> Moving | None:
     spins = {
         "lower_arm": spin(axes(axis, less(new_ball, front))),
         "knuckle": knuckle,
-        "strut_rod": knuckle,
-        "tie_rod": tie_rod_spin(rod, less(new_outer, inner)),
-        "rack": ([mpf(0)] * 3, [mpf(0)] * 3),
     }
     margins = arm_margin, slide.x / dot(sight, sight).x, 1 - abs(cosine.x)
     return Moving(points, spins, margins)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from flat import built_in
 from kinds import KINDS, inputs_at, mirrored
 from strut_motion import drawn_inputs
 from wishbones import LOTUS
@@ -41,7 +42,7 @@ def test_an_axis_laid_back_leans_a_wheel_in_that_is_turned_in(side: str, back: f
         "arm_angle": np.tile([angle, 0.0, 0.0], (2, 1)),
         "rack": np.stack([racks, 0 * racks, 0 * racks], -1),
     }
-    model = absolute.suspension_of("double_wishbone")(car, side=side)
+    model = built_in("double_wishbone", car, side=side)
     effects = absolute.solve(model, inputs, effects=["toe", "camber", "caster", "kingpin"]).effects
     assert abs(effects["kingpin"][0]) < 1e-12
     turned_in, leant = np.diff(effects["toe"])[0], np.diff(effects["camber"])[0]

@@ -20,7 +20,7 @@ def angle_between(run: Vector, rise: Vector) -> Effect:
         name="angle",
         gives="",
         sign="",
-        line=lambda corner: corner.wheel_axis,
+        role="wheel_axis",
         rise=lambda corner: rise,
         run=lambda corner: run,
     )
@@ -47,7 +47,7 @@ class ByHand:
 
 def by_hand(along: object, off: object) -> ByHand:
     """Of a car whose axes are not asked for."""
-    corner = Corner("knuckle", ("inner", "outer"), ("low", "high"), (0, 0, 1), (0, 1, 0), (0, 1, 0))
+    corner = Corner((0, 0, 1), (0, 1, 0), (0, 1, 0), ("inner", "outer"), ("low", "high"))
     return ByHand(corner, np.atleast_2d(np.asarray(along, float)), np.atleast_2d(np.asarray(off, float)))
 
 

@@ -1,7 +1,6 @@
 """The car that is drawn is the car that is solved: positions and rates are those of the closed form."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jets import errors_of
@@ -93,20 +92,6 @@ def test_steering_turns_the_knuckle_about_the_kingpin(kind: Kind) -> None:
     assert np.allclose(np.cross(axis, spin / rate[:, None]), 0.0, atol=tolerance)
 
 
-def test_every_suspension_knows_its_inputs_and_points(kind: Kind, model: absolute.Model) -> None:
-    suspension = next(
-        found for found in absolute.SUSPENSIONS.values() if found.bodies.keys() == model.bodies.keys()
-    )
-    assert tuple(model.inputs) == suspension.inputs
-    assert set(model.points) <= set(suspension.points)
-    assert set(suspension.points) - set(model.points) <= set(suspension.optional)
-    for point in set(suspension.points) - set(suspension.optional):
-        with pytest.raises(absolute.DescriptionError, match=rf"missing: \['{point}'\]"):
-            kind.build({name: place for name, place in kind.car.items() if name != point})
-    with pytest.raises(absolute.DescriptionError, match=r"unknown: \['spring'\]"):
-        kind.build({**kind.car, "spring": np.zeros(3)})
-
-
 def test_a_rack_line_that_is_not_drawn_passes_through_the_drawn_end(kind: Kind) -> None:
     bare = {name: place for name, place in kind.car.items() if name != "rack_centre"}
     inputs = kind.inputs(np.array([1.0]))
@@ -114,9 +99,3 @@ def test_a_rack_line_that_is_not_drawn_passes_through_the_drawn_end(kind: Kind) 
     full = absolute.solve(kind.build({**bare, "rack_centre": bare["tie_rod_inner"]}), inputs)
     for name, place in full.position.items():
         assert (short.position[name] == place).all()
-
-
-def test_an_unknown_suspension_is_refused_with_those_there_are() -> None:
-    with pytest.raises(absolute.DescriptionError, match=r"'multi_link'.*'macpherson', 'double_wishbone'"):
-        absolute.suspension_of("multi_link")
-    assert absolute.suspension_of("macpherson") is absolute.macpherson

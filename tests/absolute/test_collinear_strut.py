@@ -34,12 +34,6 @@ def test_strut_points_lie_on_one_line_with_one_sense(motion: absolute.Solution) 
     assert (np.sum((p["strut_top"] - p["strut_rod_end"]) * line, axis=-1) > 0).all()
 
 
-def test_rod_turns_with_the_knuckle_and_rack_does_not_turn(motion: absolute.Solution) -> None:
-    spin = motion.angular_velocity
-    assert np.allclose(spin["strut_rod"], spin["knuckle"], rtol=0, atol=EPS * CONDITION)
-    assert np.allclose(spin["rack"], 0.0, rtol=0, atol=EPS * CONDITION)
-
-
 def test_steering_turns_the_knuckle_about_the_line_from_ball_joint_to_top_mount(
     strut: absolute.Model, steering: Callable[[Array], dict[str, Array]]
 ) -> None:

@@ -143,9 +143,10 @@ def test_however_far_a_goal_is_the_way_ends_where_the_mechanism_locks(
         ends.append(caught.value.reached["rack"])
         assert caught.value.limit == "rack"
     assert ends[1] == pytest.approx(ends[0], abs=1e-9)
-    # Halves down to the longest step, and from there down to sqrt(eps); some tens of steps between, of which
-    # some are tried twice. Both goals.
-    assert count < math.log2(far) + 2 * (26 + 100)
+    # Halves down to the longest step. Then a step takes a quarter off the square root of the way to the fold,
+    # which falls from 1 to sqrt(eps): log(1 / sqrt(eps)) / -log(3 / 4) = 63 steps, of which each second is
+    # tried twice as long first, and 26 halves at last. Both goals.
+    assert count < math.log2(far) + 2 * (26 + 2 * 63)
 
 
 @pytest.mark.parametrize("way", [3.0, 30.0])
@@ -163,7 +164,7 @@ def test_a_way_that_no_step_leads_along_is_given_up_at_the_root_of_eps(
         return found
 
     monkeypatch.setattr(absolute.continuation, "accelerations", watched)
-    monkeypatch.setattr(absolute.continuation, "correct", lambda *_: Corrected(None, 2))
+    monkeypatch.setattr(absolute.continuation, "correct", lambda *_: Corrected(None, 2, 1.0))
     with pytest.raises(BlockedError) as caught:
         follow(
             mechanism,

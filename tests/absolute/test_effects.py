@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import strut_motion
 from exact_angles import ANGLES, exact_angles
+from flat import built_in
 from jets import DIGITS
 from kinds import KINDS, Car, Kind, inputs_at, mirrored
 from mpmath import mp, mpf
@@ -240,7 +241,6 @@ def test_corners_are_checked(strut: absolute.Model) -> None:
     corner = strut.corner
     assert corner is not None
     for change in (
-        {"knuckle": "hub"},
         {"wheel_axis": ("hub", "wheel_centre")},
         {"steering_axis": ("lower_ball_joint", "hub")},
     ):
@@ -254,4 +254,4 @@ def test_corners_are_checked(strut: absolute.Model) -> None:
 @pytest.mark.parametrize("side", ["Left", "", "both"])
 def test_a_side_is_left_or_right(table: dict[str, tuple[float, float, float]], side: str) -> None:
     with pytest.raises(absolute.DescriptionError, match=r"'left', 'right'"):
-        absolute.macpherson(table, side=side)
+        built_in("macpherson", table, side=side)

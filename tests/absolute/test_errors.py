@@ -7,6 +7,7 @@ import jets
 import numpy as np
 import pytest
 from dead_points import ENDS
+from flat import built_in
 from kinds import KINDS, Car, Kind
 from mpmath import mp, mpf
 from numpy.typing import NDArray
@@ -101,17 +102,16 @@ def test_errors_near_dead_points_are_below_their_estimates(end: Any, before: flo
 @pytest.mark.parametrize("turns", [1.0, 1e3])
 def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> None:
     # A slider crank: x = 50 cos a + sqrt(l^2 - y^2), y the pin's height, the crank turning evenly.
-    z, x, y = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    z, x = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
     pin, piston = (50.0 * np.cos(1.1), 50.0 * np.sin(1.1), 0.0), (147.0, 0.0, 0.0)
     axis, ends_of = absolute.Axis, absolute.Joint
     model = absolute.Model(
         {"pivot": (0.0, 0.0, 0.0), "pin": pin, "piston": piston},
         "ground",
-        {"ground": ("pivot",), "crank": ("pivot", "pin"), "rod": ("pin", "piston"), "slider": ("piston",)},
+        {"ground": ("pivot",), "crank": ("pivot", "pin"), "slider": ("piston",)},
         {
             "crank_pivot": ends_of("revolute", "ground", "crank", axis("pivot", z), axis("pivot", z)),
-            "crank_pin": ends_of("spherical", "crank", "rod", axis("pin"), axis("pin")),
-            "piston_pin": ends_of("universal", "slider", "rod", axis("piston", z), axis("piston", y)),
+            "rod": ends_of("distance", "crank", "slider", axis("pin"), axis("piston")),
             "bore": ends_of("prismatic", "ground", "slider", axis("pivot", x), axis("piston", x)),
         },
         {"angle": absolute.Input("ground", axis("pivot", x), "crank", "pin", "cosine", 50.0)},
@@ -146,7 +146,7 @@ def test_rows_close_to_what_they_are_rounded_from(kind: Kind) -> None:
         inputs = mechanism.drawn_inputs[None, None] * np.array([1.0, 0.0, 0.0])[:, None]
         targets = mechanism.target_series(inputs)
         # Corrections stop where they are expected to leave eps; refined, what is left is rounding.
-        found = Found(pose.q[None], np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.bool_), pose.sign)
+        found = Found(pose.q[None], np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.bool_), pose.signs)
         refined = refine(mechanism, found, targets, False)
         poses, target = mechanism.stack.place(refined.rotation, refined.origin), targets[0]
         doubt = pose_doubt(mechanism, poses, target)
@@ -163,7 +163,7 @@ def test_rows_close_to_what_they_are_rounded_from(kind: Kind) -> None:
 def test_a_point_does_not_take_the_sensitivity_of_another() -> None:
     end = next(end for end in ENDS if end.limit == "rack")
     goal = [inside - 1e-10 * out for inside, out in zip(end.inside, end.out, strict=True)]
-    motion = absolute.solve(absolute.macpherson(end.car), at(*goal, np.full(4, 0.5)), errors=True)
+    motion = absolute.solve(built_in("macpherson", end.car), at(*goal, np.full(4, 0.5)), errors=True)
     # The rack's own end moves with the rack, however near the tie rod is to its dead point.
     assert motion.position_error["tie_rod_outer"].max() > 1e-9
     assert motion.position_error["tie_rod_inner"].max() < 1e-11
@@ -205,7 +205,7 @@ def test_what_an_input_may_be_off_shows_as_its_motion(kind: Kind, name: str, ord
 def test_beyond_what_the_inputs_may_be_off_from_a_dead_point_rates_may_be_anything() -> None:
     end = ENDS[0]
     goal = [inside - 1e-6 * out for inside, out in zip(end.inside, end.out, strict=True)]
-    strut, inputs = absolute.macpherson(end.car), at(*goal, np.full(4, 0.5))
+    strut, inputs = built_in("macpherson", end.car), at(*goal, np.full(4, 0.5))
     for off, finite in ((1e-8, True), (1e-5, False)):
         doubt = {end.limit: np.array([[off, 0.0, 0.0]])}
         motion = absolute.solve(strut, inputs, errors=True, input_errors=doubt)

@@ -15,9 +15,10 @@ Array = NDArray[np.float64]
 def near_fold(slope: float, bend: float, doubts: list[float]) -> tuple[Array, Array, Array]:
     """Of a body whose first row is  c x - h x^2,  with other rows that stay zero, for doubts of that row."""
 
-    def drift(placed: Any, velocity: Array, spin: Array) -> Array:
+    def drift(placed: Any, rates: Array) -> Array:
+        velocity = rates[:, :, 0]
         assert (velocity[:, 0] == 0.0).all()
-        assert (spin == 0.0).all()
+        assert (rates[:, :, 1] == 0.0).all()
         second = np.zeros((len(doubts), 6))
         second[:, 0] = -2.0 * bend * velocity[:, 1, 0] ** 2
         return second

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 import absolute
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
-from absolute.newton import correct, inverse, seek
+from absolute.newton import correct, inverse
 from absolute.refine import refine
 from absolute.tracking import Found
 
@@ -25,7 +25,9 @@ def test_the_residual_reported_is_how_far_a_row_is_off_its_target_on_either_side
     monkeypatch.setattr(absolute.refine, "MOST_CORRECTIONS", 0)
     angle, rack = mechanism.drawn_inputs.tolist()
     series = np.array([[[angle, rack], [0, 0], [0, 0]], [[angle, rack + off], [0, 0], [0, 0]]])
-    found = Found(np.array([pose.q] * 2), np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.bool_), pose.sign)
+    found = Found(
+        np.array([pose.q] * 2), np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.bool_), pose.signs
+    )
     refined = refine(mechanism, found, mechanism.target_series(series), False)
     residual = refined.residual * mechanism.drawing.size
     # The rows themselves are closed to a few roundings of the size.
@@ -48,25 +50,6 @@ def test_one_correction_is_enough_below_the_root_of_eps_rcond(
     assert outcome.corrections == corrections
     assert outcome.pose is not None
     assert np.allclose(outcome.pose.poses.origin, pose.poses.origin, rtol=0, atol=16 * EPS / pose.rcond)
-
-
-@pytest.mark.parametrize(("far", "found"), [(0.05, True), (11.4, True), (11.55, True), (11.7, False)])
-def test_a_pose_is_sought_by_short_steps_as_far_as_two_dozen_lead(far: float, found: bool) -> None:
-    # A slide is linear: 23 steps of half the size, and then what is left must be a tenth of the size.
-    rail = absolute.Axis("near", "far")
-    slide = absolute.Model(
-        points={"near": (-100.0, 0.0, 0.0), "far": (100.0, 0.0, 0.0)},
-        chassis="rail",
-        bodies={"rail": ("near", "far"), "slide": ("near", "far")},
-        joints={"slide": absolute.Joint("prismatic", "rail", "slide", rail, rail)},
-        inputs={"way": absolute.Input("rail", rail, "slide", "far", "linear", 1.0)},
-    )
-    mechanism = Mechanism(slide)
-    start = mechanism.drawn.copy()
-    start[0] += far
-    pose = seek(mechanism, start, mechanism.targets(mechanism.drawn_inputs.tolist(), [0.0], [0.0])[0])
-    assert (pose is not None) is found
-    assert pose is None or np.abs(pose.q - mechanism.drawn).max() <= 8 * EPS
 
 
 def test_corrections_that_led_nowhere_are_counted_too(

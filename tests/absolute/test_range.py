@@ -116,12 +116,12 @@ def test_a_drawing_without_size_is_refused(kind: Kind, model: absolute.Model, va
 
 @pytest.mark.parametrize("scale", [5e-324, 1e-200, 1e155, 1.7e308])
 def test_the_length_of_a_direction_does_not_matter(model: absolute.Model, held: Held, scale: float) -> None:
-    slide = Axis("rack_centre", (0.0, scale, 0.0)), Axis("tie_rod_inner", (0.0, scale, 0.0))
-    joint = dataclasses.replace(model.joints["rack_slide"], on_first=slide[0], on_second=slide[1])
+    slide = Axis("rack_centre", (0.0, -scale, 0.0)), Axis("tie_rod_inner", (0.0, -scale, 0.0))
+    joint = dataclasses.replace(model.joints["slide rack"], on_first=slide[0], on_second=slide[1])
     drive = dataclasses.replace(model.inputs["rack"], axis=slide[0])
     other = dataclasses.replace(
         model,
-        joints={**model.joints, "rack_slide": joint},
+        joints={**model.joints, "slide rack": joint},
         inputs={**model.inputs, "rack": drive},
     )
     plain, motion = absolute.solve(model, held(1.6, 10.0)), absolute.solve(other, held(1.6, 10.0))

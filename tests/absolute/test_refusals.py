@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flat import built_in
 from kinds import Kind
 from numpy.typing import NDArray
 
@@ -15,15 +16,6 @@ from absolute import Axis, DescriptionError, InputError, Joint
 
 Array = NDArray[np.float64]
 Table = dict[str, tuple[float, float, float]]
-
-
-def test_missing_and_unknown_points_are_named(table: Table) -> None:
-    with pytest.raises(DescriptionError, match="missing: \\['strut_top'\\]"):
-        absolute.macpherson(
-            {name: p for name, p in table.items() if name != "strut_top"}, closure="collinear"
-        )
-    with pytest.raises(DescriptionError, match="unknown: \\['spring'\\]"):
-        absolute.macpherson({**table, "spring": (0, 0, 0)}, closure="collinear")
 
 
 @pytest.mark.parametrize(
@@ -50,7 +42,7 @@ def test_coincident_points_of_an_axis_are_refused(
 ) -> None:
     with pytest.raises(DescriptionError, match=f"{moved}|{onto}"):
         absolute.solve(
-            absolute.macpherson({**table, moved: table[onto]}, closure="collinear"), held(1.6, 0.0)
+            built_in("macpherson", {**table, moved: table[onto]}, closure="collinear"), held(1.6, 0.0)
         )
 
 
@@ -60,7 +52,7 @@ def test_nearly_coincident_points_of_an_axis_are_refused(
     x, y, z = table["lower_ball_joint"]
     with pytest.raises(DescriptionError, match="apart"):
         absolute.solve(
-            absolute.macpherson({**table, "strut_lower": (x, y, z + 1e-7)}, closure="collinear"),
+            built_in("macpherson", {**table, "strut_lower": (x, y, z + 1e-7)}, closure="collinear"),
             held(1.6, 0.0),
         )
 
@@ -72,12 +64,6 @@ def test_directions_are_checked(kind: Kind) -> None:
         kind.build(kind.car, up=(0, 0, 0))
     with pytest.raises(DescriptionError, match="right is"):
         kind.build(kind.car, right=(0, np.nan, 0))
-
-
-def test_reversed_strut_is_refused(table: Table, held: Callable[[float, float], dict[str, Array]]) -> None:
-    swapped = {**table, "strut_lower": table["lower_ball_joint"], "lower_ball_joint": table["strut_lower"]}
-    with pytest.raises(DescriptionError, match=r"strut.*less than 90"):
-        absolute.solve(absolute.macpherson(swapped, closure="collinear"), held(1.6, 0.0))
 
 
 def test_ball_joint_on_its_own_pivot_axis_is_singular(
@@ -92,18 +78,8 @@ def test_ball_joint_on_its_own_pivot_axis_is_singular(
         "strut_rod_end": 0.5 * (ball + top),
     }
     with pytest.raises(absolute.SingularError, match="condition number") as caught:
-        absolute.solve(absolute.macpherson({**table, **drawn}, closure="collinear"), held(1.6, 0.0))
+        absolute.solve(built_in("macpherson", {**table, **drawn}, closure="collinear"), held(1.6, 0.0))
     assert caught.value.instant is None
-
-
-def test_steering_arm_on_the_strut_axis_is_refused(
-    table: Table, held: Callable[[float, float], dict[str, Array]]
-) -> None:
-    low, high = np.array(table["lower_ball_joint"]), np.array(table["strut_lower"])
-    straight = {**table, "tie_rod_outer": tuple((0.5 * low + 0.5 * high).tolist())}
-    with pytest.raises(absolute.BranchError, match=r"no branch.*tie rod beside the kingpin") as caught:
-        absolute.solve(absolute.macpherson(straight, closure="collinear"), held(1.6, 0.0))
-    assert abs(caught.value.drawn) < 64 * np.finfo(float).eps
 
 
 def test_exact_limit_of_the_motion_is_refused(
@@ -114,12 +90,12 @@ def test_exact_limit_of_the_motion_is_refused(
     d = np.subtract(level["lower_ball_joint"], level["lower_arm_front"])
     angle = float(np.arccos(np.hypot(d[1], d[2]) / np.linalg.norm(d)))
     with pytest.raises(absolute.PoseError):
-        absolute.solve(absolute.macpherson(level, closure="collinear"), held(angle, 0.0))
+        absolute.solve(built_in("macpherson", level, closure="collinear"), held(angle, 0.0))
 
 
 @pytest.mark.parametrize("name", ["nowhere", "", "Lower_Ball_Joint", "universe", "root_joint"])
 def test_unknown_names_are_refused_before_they_reach_pinocchio(strut: absolute.Model, name: str) -> None:
-    joint = strut.joints["lower_ball"]
+    joint = strut.joints["ball joint lower_ball_joint"]
     for broken in (
         dataclasses.replace(joint, first=name),
         dataclasses.replace(joint, second=name),
@@ -127,8 +103,8 @@ def test_unknown_names_are_refused_before_they_reach_pinocchio(strut: absolute.M
         dataclasses.replace(joint, on_first=Axis(name)),
         dataclasses.replace(joint, on_second=Axis("lower_ball_joint", name)),
     ):
-        with pytest.raises(DescriptionError, match="lower_ball"):
-            dataclasses.replace(strut, joints={**strut.joints, "lower_ball": broken})
+        with pytest.raises(DescriptionError, match="lower_ball_joint"):
+            dataclasses.replace(strut, joints={**strut.joints, "ball joint lower_ball_joint": broken})
     drive = strut.inputs["rack"]
     for wrong in (
         dataclasses.replace(drive, first=name),
@@ -146,12 +122,14 @@ def test_unknown_names_are_refused_before_they_reach_pinocchio(strut: absolute.M
 
 
 def test_row_count_must_match_the_unknowns(strut: absolute.Model) -> None:
-    fewer = {name: joint for name, joint in strut.joints.items() if name != "lower_ball"}
-    with pytest.raises(DescriptionError, match=r"27 rows for 30 unknown.*add"):
+    fewer = {name: joint for name, joint in strut.joints.items() if name != "ball joint lower_ball_joint"}
+    with pytest.raises(DescriptionError, match=r"21 rows for 24 unknown.*add"):
         dataclasses.replace(strut, joints=fewer)
     extra = {**strut.inputs, "again": strut.inputs["rack"]}
-    with pytest.raises(DescriptionError, match=r"31 rows for 30 unknown.*remove"):
-        dataclasses.replace(strut, inputs=extra)
+    twice = dataclasses.replace(strut, inputs=extra)
+    still = {"arm_angle": np.array([[1.4, 0.0, 0.0]]), "rack": np.zeros((1, 3))}
+    with pytest.raises(DescriptionError, match=r"25 rows for 24 unknown.*remove"):
+        absolute.solve(twice, still)
 
 
 def test_a_joint_needs_two_bodies_and_a_line_where_its_kind_has_one(strut: absolute.Model) -> None:
@@ -163,7 +141,7 @@ def test_a_joint_needs_two_bodies_and_a_line_where_its_kind_has_one(strut: absol
     with pytest.raises(DescriptionError, match="toward"):
         dataclasses.replace(
             strut,
-            joints={"x": Joint("revolute", "chassis", "rack", Axis("rack_centre"), Axis("tie_rod_inner"))},
+            joints={"x": Joint("revolute", "chassis", "knuckle", Axis("rack_centre"), Axis("strut_lower"))},
         )
     with pytest.raises(DescriptionError, match="factor"):
         dataclasses.replace(
@@ -289,16 +267,18 @@ def test_tiny_inputs_are_as_good_as_none(strut: absolute.Model, tiny: float) -> 
 
 @pytest.mark.parametrize("fast", [1e6, 1e12, 1e100])
 def test_huge_rates_give_rates_in_proportion(strut: absolute.Model, fast: float) -> None:
-    def moving(scale: float) -> absolute.Solution:
+    def moving(scale: float, errors: bool) -> absolute.Solution:
         # Time runs faster by `scale`: rates by it, accelerations by its square.
         scales = np.array([1.0, scale, scale**2])
         arm, rack = np.array([[1.6, 0.25, 0.1]]) * scales, np.array([[10.0, 5.0, 2.0]]) * scales
-        return absolute.solve(strut, {"arm_angle": arm, "rack": rack})
+        return absolute.solve(strut, {"arm_angle": arm, "rack": rack}, errors=errors)
 
-    plain, quick = moving(1.0), moving(fast)
+    plain, quick = moving(1.0, True), moving(fast, False)
     for name in strut.points:
-        rounding = 2 * np.finfo(float).eps * 500 * 60
-        assert np.allclose(quick.velocity[name] / fast, plain.velocity[name], rtol=0, atol=rounding)
-        assert np.allclose(
-            quick.acceleration[name] / fast**2, plain.acceleration[name], rtol=0, atol=rounding
+        speed, second = (
+            np.abs(getattr(quick, quantity)[name] / scale - getattr(plain, quantity)[name])
+            for quantity, scale in (("velocity", fast), ("acceleration", fast**2))
         )
+        # Two solutions, each as far off as it says.
+        assert (speed <= 2.0 * plain.velocity_error[name]).all()
+        assert (second <= 2.0 * plain.acceleration_error[name]).all()

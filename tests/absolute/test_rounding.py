@@ -84,11 +84,11 @@ def test_a_row_is_rounded_from_its_arms_its_places_and_its_reach(model: absolute
 
 def test_rates_are_rounded_from_the_magnitudes_of_their_terms() -> None:
     random = np.random.default_rng(7)
-    lengths = random.uniform(0.5, 2.0, size=(10, 4))
-    ways = random.normal(size=(10, 1, 4, 3))
+    lengths = random.uniform(0.5, 2.0, size=(12, 4))
+    ways = random.normal(size=(12, 1, 4, 3))
     vectors = ways / np.linalg.norm(ways, axis=-1, keepdims=True) * lengths[:, None, :, None]
     motion = RowMotion(*vectors)
-    a, e, r1, r2, w1, w2, s1, s2, _, _ = lengths
+    a, e, r1, r2, w1, w2, s1, s2, turned, *_ = lengths
     assert a.shape == (4,)
     velocities, target = random.normal(size=(1, 6)), random.normal(size=(1, 4))
     jacobian, drift = random.normal(size=(1, 4, 6)), random.normal(size=(1, 4))
@@ -97,6 +97,8 @@ def test_rates_are_rounded_from_the_magnitudes_of_their_terms() -> None:
     doubt = rate_doubt(motion, jacobian, velocities, target)
     assert doubt.rounded[0] == pytest.approx(RATE * terms + TARGET * np.abs(target[0]), rel=1e-9, abs=0.0)
     assert doubt.known[0] == pytest.approx(np.abs(target[0] - jacobian[0] @ velocities[0]), rel=1e-12)
+    # The direction of a distance turns by itself, and any by no less than its body.
+    w1 = np.maximum(w1, turned)
     # a''.e, 2 a'.e', a.e'', with a'' = w1 x (w1 x a) and e'' of both arms turned twice; and the rate of the
     # accelerations, which are the same here.
     bend = w1 * w1 * e + 2.0 * w1 * (s2 + w2 * r2 + s1 + w1 * r1) + w2 * w2 * r2 + w1 * w1 * r1

@@ -201,7 +201,7 @@ def test_a_determinant_of_another_sign_is_found_out(
 
     def turned(mechanism: Mechanism, found: Any, *arguments: Any) -> Any:
         if not seen["unsure"]:
-            found = found._replace(sign=-found.sign)
+            found = found._replace(signs=-found.signs)
         refined = refine(mechanism, found, *arguments)
         seen["unsure"] += int((~refined.sure).sum())
         return refined

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from flat import built_in
 from kinds import Kind, inputs_at, mirrored
 from strut_motion import drawn_inputs
 from wishbones import LOTUS
@@ -46,8 +47,6 @@ def test_a_rack_that_moves_the_steering_arm_to_the_middle_turns_the_wheel(side: 
         "arm_angle": np.tile([angle, 0.0, 0.0], (2, 1)),
         "rack": np.stack([racks, 0 * racks, 0 * racks], -1),
     }
-    motion = absolute.solve(
-        absolute.suspension_of("double_wishbone")(car, side=side), inputs, effects=["toe"]
-    )
+    motion = absolute.solve(built_in("double_wishbone", car, side=side), inputs, effects=["toe"])
     assert abs(motion.position["tie_rod_inner"][1, 1]) < abs(car["tie_rod_inner"][1])
     assert motion.effects["toe"][1] - motion.effects["toe"][0] > 0.05

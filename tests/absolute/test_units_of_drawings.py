@@ -74,7 +74,7 @@ def test_points_too_near_each_other_for_their_coordinates_are_refused() -> None:
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
 def test_directions_of_a_car_are_unit_vectors_at_any_length(scale: float) -> None:
     up, right = (0.0, 0.6 * scale, 0.8 * scale), (0.0, 0.8 * scale, -0.6 * scale)
-    corner = absolute.Corner("k", ("a", "b"), ("c", "d"), up, right, right)
+    corner = absolute.Corner(up, right, right)
     assert corner.up == pytest.approx((0.0, 0.6, 0.8), rel=1e-15, abs=0.0)
     assert corner.outboard == pytest.approx((0.0, 0.8, -0.6), rel=1e-15, abs=0.0)
     assert corner.inboard == pytest.approx((0.0, -0.8, 0.6), rel=1e-15, abs=0.0)

@@ -26,7 +26,7 @@ from jets import (
     unit,
 )
 from mpmath import mp, mpf
-from strut_motion import RIGHT, arm_end, tie_rod_spin
+from strut_motion import RIGHT, arm_end
 
 # Signs of an assembly against those of the drawing: lower ball joint, upper ball joint, tie rod.
 Signs = tuple[int, int, int]
@@ -124,7 +124,5 @@ def _moving(p: Drawing, angle: Jet, rack: Jet, signs: Signs) -> Moving | None:
         "lower_arm": spin(axes(axis, less(new_ball, drawn["lower_arm_front"]))),
         "upper_arm": spin(axes(upper_axis, less(new_top, pivots[0]))),
         "knuckle": spin((carry(unmoved[0]), carry(unmoved[1]), carry(unmoved[2]))),
-        "tie_rod": tie_rod_spin(less(outer, drawn["tie_rod_inner"]), less(new_outer, inner)),
-        "rack": ([mpf(0)] * 3, [mpf(0)] * 3),
     }
     return Moving(points, spins, (arm_margin, upper_margin**2, tie_rod_margin**2))

@@ -35,8 +35,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.named_columns import number_columns
 from validate.cost.growth.unknowns import LongChain
 from validate.cost.instants import study_instants
-from validate.cost.way import Setting
-from validate.cost.ways.absolute import Absolute
+from validate.cost.ways.absolute import in_bodies
 from validate.output.motion_tables import write_csv
 
 Array = NDArray[np.float64]
@@ -165,9 +164,8 @@ def one_by_one() -> Race:
 def absolute_model() -> Race:
     """The absolute model with both rates."""
     asked = scene("bounce", BOTH_RATES)
-    ready = Absolute().prepare(asked, Setting())
-    instants = study_instants(asked)
-    return Race(lambda: ready.solve(instants), inverses, len(instants) / 1000)
+    solve, instants = in_bodies(asked, None), study_instants(asked)
+    return Race(lambda: solve(instants), inverses, len(instants) / 1000)
 
 
 def proofs() -> Race:
@@ -194,7 +192,7 @@ def csv() -> Race:
 def chain() -> Race:
     """A chain of many unknowns, against one of a tenth: how far from linear growth."""
     long, short = (LongChain("series", n).prepare() for n in (size(1500, 600), size(150, 60)))
-    return Race(long.solve, short.solve, 10.0)
+    return Race(long, short, 10.0)
 
 
 def comparing() -> Race:

@@ -16,9 +16,9 @@ from typing import Any, ClassVar
 import mpmath
 from hypothesis import Phase
 from mpmath import mpf
+from plain_mechanisms import close_car, count_car, solve_car
 
-from validate.reference import Instant, closed_drawing, count_assemblies, solve_reference
-from validate.reference.linkage import Known, Linkage
+from validate.reference import Instant
 from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 Points = dict[str, Vector]
@@ -34,12 +34,10 @@ class Pose:
 
     Attributes:
         points: by name.
-        unknown: what the reference's equations are solved for, in mm.
         sides: of each step that has two answers, +1 or -1.
     """
 
     points: Points
-    unknown: list[mpf]
     sides: tuple[int, ...]
 
 
@@ -48,7 +46,6 @@ class ClosedFormCar(ABC):
     """A drawing that closes, and the car's directions; exact fractions.
 
     Attributes:
-        linkage: whose car it is.
         suspension: its type.
         bodies: points of each body, the first three not on one line.
     """
@@ -57,7 +54,6 @@ class ClosedFormCar(ABC):
     up: Vector
     right: Vector
 
-    linkage: ClassVar[Linkage]
     suspension: ClassVar[str]
     bodies: ClassVar[Mapping[str, tuple[str, ...]]]
 
@@ -73,10 +69,6 @@ class ClosedFormCar(ABC):
     @abstractmethod
     def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
         """The assembly whose steps take these answers; None where one of them has none."""
-
-    @abstractmethod
-    def shape(self, p: Points) -> Points:
-        """What the equations need of the knuckle, mm."""
 
     @property
     def frame(self) -> dict[str, Vector]:
@@ -108,29 +100,14 @@ class ClosedFormCar(ABC):
 
         return min(self.poses(*self.drawn), key=moved).sides
 
-    def known(self, theta: object, travel: object) -> Known:
-        """What the reference's equations take as given, in mm."""
-        p = {name: numbers(place) for name, place in self.points.items()}
-        apart = {(a, b): minus(p[a], p[b]) for a, b in self.linkage.links}
-        arm = minus(p["lower_ball_joint"], p["lower_arm_front"])
-        return Known(
-            self.linkage,
-            {name: p[name] for name in self.linkage.chassis},
-            numbers(self.up),
-            numbers(self.right),
-            {link: dot(v, v) for link, v in apart.items()},
-            {"arm_angle": size(arm) * mpmath.cos(theta), "rack": travel},
-            self.shape(p),
-        )
-
     def solve(self, inputs: Mapping[str, tuple[Any, ...]], **settings: Any) -> Instant:
-        return solve_reference(self.points, inputs, **{**self.kind, **settings})
+        return solve_car(self.points, inputs, **{**self.kind, **settings})
 
     def count(self, inputs: Mapping[str, tuple[Any, ...]], **settings: Any) -> Any:
-        return count_assemblies(self.points, inputs, **self.kind, **settings)
+        return count_car(self.points, inputs, **self.kind, **settings)
 
     def close(self) -> Any:
-        return closed_drawing(self.points, **self.kind)
+        return close_car(self.points, **self.kind)
 
 
 def lower_ball_joint(

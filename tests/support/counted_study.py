@@ -1,55 +1,51 @@
-"""A study whose numbers leave a mark whenever they are begun, and take as long as they are told to."""
+"""A study whose tasks leave a mark whenever they are begun, and take as long as they are told to."""
 
-import os
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import ClassVar
 
 from threadpoolctl import threadpool_info
 
 from validate.exit_status import ExitStatus
-from validate.long_studies.study import Findings, Kind, Number, Row
+from validate.studies.cluster import rows_of
+from validate.studies.study import Findings, Row, Study, Task
+
+COLUMNS = {"square": "int64", "threads": "int64"}
 
 
-@dataclass(frozen=True)
-class CountedStudy:
+def counted(count: int, marks: Path, pause: float = 0.0, wrong: int = -1) -> Study:
     """Squares of numbers.
 
-    Attributes:
+    Args:
         marks: a file that gets a line with a number whenever that one is begun.
-        pause: seconds that each takes.
+        pause: seconds that each takes. wrong: the number that has no square.
     """
+    examine = partial(_square, marks=str(marks), pause=pause, wrong=wrong)
+    tasks = [Task("all", number) for number in range(count)]
+    return Study("counted", "number", {}, COLUMNS, tasks, examine, _nothing, chunk=2)
 
-    count: int
-    marks: str
-    pause: float = 0.0
 
-    name = "counted"
-    noun = "number"
-    chunk = 2
-    columns: ClassVar[Mapping[str, Kind]] = {"square": "int64", "threads": "int64", "told": "string"}
+def _square(task: Task, marks: str, pause: float, wrong: int) -> list[Row]:
+    with open(marks, "a") as file:
+        file.write(f"{task.number}\n")
+    time.sleep(pause)
+    if task.number == wrong:
+        raise ZeroDivisionError("no square")
+    return [{"square": task.number**2, "threads": max(one["num_threads"] for one in threadpool_info())}]
 
-    @property
-    def settings(self) -> Mapping[str, str | int]:
-        return {}
 
-    @property
-    def numbers(self) -> Sequence[Number]:
-        return [Number("all", number) for number in range(self.count)]
+def _nothing(rows: object) -> Findings:
+    return Findings((), {}, ExitStatus.AGREE)
 
-    def examine(self, number: Number) -> list[Row]:
-        with open(self.marks, "a") as marks:
-            marks.write(f"{number.number}\n")
-        time.sleep(self.pause)
-        threads = max(one["num_threads"] for one in threadpool_info())
-        told = os.environ.get("OPENBLAS_NUM_THREADS")
-        return [{"square": number.number**2, "threads": threads, "told": told}]
 
-    def findings(self, rows: Sequence[Row]) -> Findings:
-        return Findings((), {}, ExitStatus.AGREE)
+def worked_out(study: Study) -> list[Row]:
+    """The rows of a study in the order of its tasks, worked out in this process and without a cluster."""
+    return [row for task in study.tasks for row in rows_of(study.examine, task, "here")]
 
-    def begun(self) -> list[int]:
-        """The numbers that were begun, in that order."""
-        return [int(line) for line in Path(self.marks).read_text().split()]
+
+def without_who_and_how_long(rows: list[Row]) -> list[Row]:
+    """What of rows does not depend on who worked them out, without what they do not have."""
+    return [
+        {name: v for name, v in row.items() if name not in ("worker", "seconds") and v is not None}
+        for row in rows
+    ]

@@ -11,25 +11,27 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from flint import arb, ctx
+from mechanism_drawings import described
+from plain_mechanisms import design_of, solve_car
 
 import absolute
 import absolute.backend
 import pointcoord
+import validate.reference.route
 from absolute.continuation import follow
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
 from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
-from pointcoord.suspensions.macpherson import COLLINEAR
+from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
-from validate.cost.growth.unknowns import LongChain
-from validate.cost.loading import Loading
-from validate.cost.store import Header
+from validate.cost.parts.loading import run as run_python
 from validate.cost.store import Store as RowStore
-from validate.cost.way import Setting
+from validate.cost.store import measured_here
+from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
 from validate.curves.numbers import found, numbers_of
@@ -41,23 +43,28 @@ from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.html.folder import require_folder
 from validate.html.hard_cases import read_hard_cases
-from validate.long_studies import scheduler
-from validate.long_studies.maker import Maker
-from validate.long_studies.records import look
 from validate.measured.reading import columns_of_text
 from validate.output.motion_tables import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
-from validate.reference.candidates import choices_of_table
-from validate.reference.certificate import certify, refine
-from validate.reference.design import Design, values_only
+from validate.reference.certificate import certify
+from validate.reference.design import values_only
 from validate.reference.exact import bits
+from validate.reference.krawczyk import newton
+from validate.reference.route import closed
 from validate.relative.follow import follow as follow_tree
 from validate.relative.model import build
 from validate.solvers.check import check
+from validate.spanning_tree.cut import cut
+from validate.studies import cluster
+from validate.studies.store import look
+from validate.studies.study import Task
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
+COLLINEAR = mechanism_file("macpherson").topology("collinear", points=TABLE)
+PAPER_CAR = BOUNCE.mechanism.plain(("arm_angle", "rack"))
+HINGE_OF_ONE_POINT = {**PAPER_CAR, "points": TABLE | {"lower_arm_rear": TABLE["lower_arm_front"]}}
 UPRIGHT = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0.0]])}
 IN_LINE = np.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
@@ -68,7 +75,9 @@ TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_
 class Late:
     """What a cluster works out that is gone."""
 
-    def result(self, timeout: float) -> None:
+    status = "closed"
+
+    def result(self) -> None:
         raise TimeoutError
 
 
@@ -112,18 +121,31 @@ def cancelling(power_of_two: int) -> pointcoord.Scene:
 
 
 def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> object:
-    return absolute.solve(absolute.macpherson({**TABLE, **points}, closure="collinear"), inputs)
+    return absolute.solve(absolute.compile({**PAPER_CAR, "points": PAPER_CAR["points"] | points}), inputs)
+
+
+def on_another_branch(patch: pytest.MonkeyPatch) -> object:
+    """What is found for an instant is said to be on another branch, however it is led up to."""
+    solver = sys.modules["absolute.solve"]
+    right = solver.refine
+
+    def elsewhere(*arguments: Any) -> Any:
+        found = right(*arguments)
+        return found._replace(kept=np.zeros_like(found.kept))
+
+    patch.setattr(solver, "refine", elsewhere)
+    return solved({})
 
 
 def followed(angle: float) -> object:
     """The paper's car in relative coordinates, its arm at an angle."""
-    model = build("macpherson", TABLE, closure="collinear")
+    model = build(PAPER_CAR)
     return model.poses({"arm_angle": [angle], "rack": [0.0]}, [0.0])
 
 
 def followed_in_the_tree() -> object:
     """The same car's tree, led from its drawing to beyond a dead point."""
-    model = build("macpherson", TABLE, closure="collinear")
+    model = build(PAPER_CAR)
     return follow_tree(model.tree, model.home, np.array([[1.6, 0.0], [3.0, 0.0]]), np.arange(2.0), 1e-14)
 
 
@@ -140,7 +162,7 @@ def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
 
 def blocked() -> object:
     """A path along which the rack goes half a metre."""
-    mechanism = Mechanism(absolute.macpherson(TABLE, closure="collinear"))
+    mechanism = Mechanism(absolute.compile(PAPER_CAR))
     begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
 
     def path(share: float) -> Any:
@@ -150,26 +172,35 @@ def blocked() -> object:
     return follow(mechanism, assemble(mechanism)[0], path)
 
 
-def outside(points: Mapping[str, Any]) -> object:
-    return linkage_of("macpherson", points, *UPRIGHT.values(), "collinear")
-
-
 def leaving_by_scipy() -> object:
     """The rack goes half a metre, which no tie rod follows."""
     scene = changed(inputs={"rack": {"polynomial": [0.0, 500.0]}, "arm_angle": {"constant": 1.6}})
     way = next(way for way in SCIPY if way.name == "scipy-root")
-    return way.prepare(scene, Setting("", 1e-9)).solve(scene.instants)
+    return way.prepare(scene, 1e-9)(scene.instants)
+
+
+# An arm of 300 mm driven by the height of its end, which is singular at 300.
+UPRIGHT_ARM = described(
+    {"front": (-100, 0, 0), "rear": (100, 0, 0), "end": (0, -300, 0)},
+    {"chassis": ["front", "rear"], "arm": ["front", "rear", "end"]},
+    {"height": {"height": "end"}},
+)
 
 
 def uncertified() -> object:
     """One coordinate of an assembly moved by ten times the box that is to hold the assembly."""
     with ctx.workprec(bits(60)):
-        design = Design.from_points(TABLE, *UPRIGHT.values(), "left", "collinear")
-        known = values_only(design.known(design.driven({"arm_angle": (1.5, 0, 0)})))
-        drawn = design.linkage.candidate(known, choices_of_table(design.table, design.up, design.linkage))
-        assembled = refine(design.linkage.unknown_of(drawn.points, known), known)
+        design = design_of(TABLE, closure="collinear")
+        known = values_only(design.known_as_drawn())
+        assembled, _ = newton(known.system, closed(design).pose.unknown)
         assembled[0] = (assembled[0] + arb("1e-59")).mid()
         return certify(assembled, known, Fraction(1, 10**60))
+
+
+def in_no_step(patch: pytest.MonkeyPatch) -> object:
+    """A way that is given up before its first step."""
+    patch.setattr(validate.reference.route, "MOST_STEPS", 0)
+    return solve_car(TABLE, {"arm_angle": (1.1, 0, 0)})
 
 
 def report_of_two_numbers(folder: Path) -> object:
@@ -329,7 +360,7 @@ RECIPES: dict[str, Recipe] = {
         {"problem": "holds no scene", "folder": lambda name: Path(name).is_dir()},
     ),
     "validate.relative.errors.HardpointsError": Recipe(
-        lambda *_: build("macpherson", {**TABLE, "lower_arm_rear": TABLE["lower_arm_front"]}),
+        lambda *_: build(HINGE_OF_ONE_POINT),
         ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
         {"name": "lower_arm_front", "allowed": bool},
     ),
@@ -356,7 +387,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.relative.follow.Blocked": Recipe(
         lambda *_: followed_in_the_tree(),
-        ("cannot be reached", "the lower arm is at a dead point"),
+        ("cannot be reached", "arm_angle hold each other"),
         {"instant": 1, "here": lambda here: 2.6 < here[0] < 2.7, "solved": lambda poses: len(poses.q) == 1},
     ),
     "absolute.errors.DescriptionError": Recipe(
@@ -387,9 +418,9 @@ RECIPES: dict[str, Recipe] = {
         {},
     ),
     "absolute.errors.BranchError": Recipe(
-        lambda *_: solved({"tie_rod_outer": (451, -325, -10)}),
-        ("no branch", "tie rod beside the kingpin"),
-        {"branch_sign": bool, "drawn": np.isfinite},
+        lambda _, patch: on_another_branch(patch),
+        ("instant 0", "not on the branch of the drawing", "closer instants"),
+        {"instant": 0, "inputs": lambda inputs: inputs["arm_angle"] == 1.6},
     ),
     "absolute.errors.UnreachableError": Recipe(
         lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),
@@ -419,34 +450,34 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
         ("simulat", "invalid choice", "pointcoord --help"),
     ),
-    "validate.long_studies.errors.RecordsError": Recipe(
+    "validate.studies.study.RecordsError": Recipe(
         lambda folder, _: look(folder),
         ("--records ", "holds no records of a study", "run the study first"),
         {"problem": bool},
     ),
-    "validate.long_studies.errors.NoCluster": Recipe(
-        lambda *_: scheduler.require_same(scheduler.Worker("tcp://far:1", 2, Maker.here())),
-        ("the worker tcp://far:1 takes 2 tasks at once", "start it with --nthreads 1"),
+    "validate.studies.study.NoCluster": Recipe(
+        lambda *_: cluster._require_scheduler(cluster.quiet_dask(), "far"),
+        ("the scheduler far does not answer", "give --scheduler an address"),
     ),
-    "validate.long_studies.errors.ClusterLost": Recipe(
-        lambda *_: scheduler.result_of(Late(), "the scheduler there", lambda: False),
-        ("the scheduler there", "does not answer"),
+    "validate.studies.study.ClusterLost": Recipe(
+        lambda *_: cluster._result(Late(), Late()), ("the scheduler", "does not answer any more")
+    ),
+    "validate.studies.study.TaskFailed": Recipe(
+        lambda *_: cluster.rows_of(lambda task: [][task.number], Task("held", 7), "here"),
+        ("held 7: IndexError: ",),
     ),
     "validate.cost.store.StoreError": Recipe(
-        lambda folder, _: RowStore(folder, Header.here()), ("cannot be read", "directory", "another file")
+        lambda folder, _: RowStore(folder, measured_here()), ("cannot be read", "directory", "another file")
     ),
-    "validate.cost.way.LeftOut": Recipe(
-        lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), Setting()),
-        ("the paper prints the strut",),
+    "validate.cost.race.LeftOut": Recipe(
+        lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), 1e-9),
+        ("the strut that the paper prints",),
     ),
-    "validate.cost.errors.NoNumbers": Recipe(
-        lambda *_: errors_of({}, truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
+    "validate.cost.race.NoNumbers": Recipe(
+        lambda *_: errors_of(Answer({}), truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
     ),
-    "validate.cost.growth.task.WrongNumber": Recipe(
-        lambda *_: LongChain("series", 6).check(np.zeros((5, 2, 3))), ("tip_", "mm from the closed form")
-    ),
-    "validate.cost.loading.NotRun": Recipe(
-        lambda *_: Loading("nothing", words=("-c", "raise SystemExit('no such thing')")).seconds(),
+    "validate.cost.parts.loading.NotRun": Recipe(
+        lambda *_: run_python("-c", "raise SystemExit('no such thing')"),
         ("ended with status 1", "no such thing"),
     ),
     "validate.formulations.protocol.FormulationError": Recipe(
@@ -485,14 +516,19 @@ RECIPES: dict[str, Recipe] = {
         {"part": "absolute", "package": "absolute"},
     ),
     "validate.peers.linkage.PeerError": Recipe(
-        lambda *_: outside(TABLE | {"lower_arm_rear": TABLE["lower_arm_front"]}),
-        ("lower_arm_front and lower_arm_rear are at the same place",),
+        lambda *_: linkage_of(HINGE_OF_ONE_POINT),
+        ("lower_arm_front is where lower_arm_rear is",),
         {"problem": bool, "instant": None},
+    ),
+    "validate.spanning_tree.cut.CutError": Recipe(
+        lambda *_: cut(HINGE_OF_ONE_POINT),
+        ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
+        {"name": "lower_arm_front", "problem": bool, "allowed": bool},
     ),
     "validate.cost.ways.scipy_solvers.SolverStopped": Recipe(
         lambda *_: leaving_by_scipy(),
         ("scipy.optimize.root at t = ", "not making good progress"),
-        {"solver": "root", "where": lambda place: place.startswith("t = ")},
+        {"solver": "root", "instant": lambda instant: instant >= 0.0},
     ),
     "validate.output.files.OutputError": Recipe(
         lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
@@ -526,34 +562,37 @@ RECIPES: dict[str, Recipe] = {
         {"name": "arm-higest"},
     ),
     "validate.reference.errors.NoReferenceError": Recipe(
-        lambda *_: solve_reference(
+        lambda *_: solve_car(
             {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
         ).effect("camber"),
         ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
     ),
     "validate.reference.errors.BadInputError": Recipe(
-        lambda *_: solve_reference(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),
+        lambda *_: solve_car(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),
         ("side is 'middle'", "allowed is 'left' or 'right'"),
         {"what": "side", "value": "middle", "allowed": bool},
     ),
     "validate.reference.errors.InfeasibleError": Recipe(
-        lambda *_: solve_reference(TABLE, {"arm_angle": (1.5, 0, 0), "rack": (500, 0, 0)}),
-        ("tie_rod closure misses by", "mm", "limit 0", "try less rack travel"),
-        {"closure": "tie_rod", "gap": lambda gap: gap > 0.0},
+        lambda *_: solve_car(TABLE, {"arm_angle": (1.5, 0, 0), "rack": (500, 0, 0)}),
+        ("turns back at a fold", "needed 1", "rack = ", "nearer those of the drawing"),
+        {"way": bool, "share": lambda share: 0.0 < share < 1.0, "inputs": bool},
     ),
     "validate.reference.errors.AmbiguousAssemblyError": Recipe(
-        lambda *_: solve_reference(
-            {**TABLE, **TOP, "lower_ball_joint": (0, 0, -300)}, {"arm_angle": (3.0, 0, 0)}
-        ),
-        ("arm choice", "limit"),
+        lambda *_: solve_car({**TABLE, **TOP, "lower_ball_joint": (0, 0, -300)}, {"arm_angle": (3.0, 0, 0)}),
+        ("drawn at a singular pose", "limit"),
         {"what": bool, "value": np.isfinite, "limit": np.isfinite},
     ),
     "validate.reference.errors.NotDecidedError": Recipe(
         lambda *_: uncertified(), ("limit",), {"what": bool, "value": bool, "limit": bool}
     ),
     "validate.reference.errors.SingularPoseError": Recipe(
-        lambda *_: solve_reference({**TABLE, **TOP}, {"arm_angle": (0, 1, 0)}),
+        lambda *_: solve_reference(UPRIGHT_ARM, {"height": (300, 1, 0)}),
         ("no certificate with 400 digits", "dead point", "move an input"),
         {"digits": 400, "reason": lambda reason: type(reason).__name__ == "NotDecidedError"},
+    ),
+    "validate.reference.errors.TooManyStepsError": Recipe(
+        lambda _, patch: in_no_step(patch),
+        ("is given up after", "nothing is said of the pose"),
+        {"way": bool, "share": np.isfinite, "steps": 0},
     ),
 }

@@ -7,8 +7,9 @@ from functools import cache
 import mpmath
 from lotus_front import POINTS, ROLLING_RADIUS
 from mpmath import mpf
+from plain_mechanisms import close_car, solve_car
 
-from validate.reference import Instant, closed_drawing, solve_reference
+from validate.reference import Instant
 from validate.reference.vectors import dot, minus, times
 
 CAR = {"suspension": "double_wishbone", "side": "right"}
@@ -25,13 +26,13 @@ def contact_height(instant: Instant) -> mpf:
 
 def posed(theta: mpf, rack: float) -> Instant:
     inputs = {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}
-    return solve_reference(POINTS, inputs, digits=DIGITS, **CAR)
+    return solve_car(POINTS, inputs, digits=DIGITS, **CAR)
 
 
 @cache
 def drawn() -> tuple[mpf, mpf]:
     """The arm's angle and the contact point's height as drawn."""
-    closed = closed_drawing(POINTS, digits=DIGITS, **CAR)
+    closed = close_car(POINTS, digits=DIGITS, **CAR)
     return closed.inputs["arm_angle"], contact_height(closed.instant)
 
 

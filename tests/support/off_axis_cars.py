@@ -28,8 +28,6 @@ from closed_forms import (
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from validate.reference.macpherson import DRAWN
-from validate.reference.macpherson.drawn import AXIS
 from validate.reference.vectors import Vector, dot, minus, plus, times
 
 # A strut of a real car's size, mm; the ball joint is a few centimetres beside the strut's axis.
@@ -52,7 +50,6 @@ BASE: Points = {
 class OffAxisCar(ClosedFormCar):
     """A strut as drawn."""
 
-    linkage = DRAWN
     suspension = "macpherson"
     bodies: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "knuckle": (
@@ -67,15 +64,6 @@ class OffAxisCar(ClosedFormCar):
 
     def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
         return _pose(p, up, right, sides, inputs)
-
-    def shape(self, p: Points) -> Points:
-        """The knuckle in its own frame, its axis from strut_lower to strut_top and the rod as drawn."""
-        carried = ("tie_rod_outer", "strut_lower", "wheel_centre", "wheel_axis_inner")
-        return {
-            **{name: minus(p[name], p["lower_ball_joint"]) for name in carried},
-            AXIS: minus(p["strut_top"], p["strut_lower"]),
-            "strut_rod_end": minus(p["strut_rod_end"], p["strut_top"]),
-        }
 
 
 def closing(points: Points, rod: Fraction, travel: Fraction, right: Vector) -> Points:
@@ -134,11 +122,4 @@ def _pose(
     axis = unit(place(u))
     side = 1 if dot(rod, u) > 0 else -1
     points |= lower | {"strut_top": p4, "strut_rod_end": plus(p4, times(axis, side * size(rod)))}
-    # The columns of the knuckle's turn from the drawing, and the strut top's place as a share of 7-4 as
-    # drawn.
-    columns = (
-        place((mpf(1), mpf(0), mpf(0))),
-        place((mpf(0), mpf(1), mpf(0))),
-        place((mpf(0), mpf(0), mpf(1))),
-    )
-    return Pose(points, [*p5, *(x for column in columns for x in column), slide], sides)
+    return Pose(points, sides)

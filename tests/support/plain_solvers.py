@@ -5,10 +5,10 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from cars_in_closed_form import FORMS
 from mpmath import mpf
 
 from validate.cars.car import Car
-from validate.cars.registry import SUSPENSIONS
 
 DIGITS = 50
 STEP = mpf(10) ** -16  # of differences: they leave out its square, and lose as many of the digits
@@ -41,7 +41,7 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
             given["closure"],
             given["suspension"],
         )
-        form = SUSPENSIONS[car.suspension].form.of(car, mpf)
+        form = FORMS[car.suspension].of(car, mpf)
         before, now, after = (_poses(form, given["inputs"], step) for step in (-STEP, mpf(0), STEP))
         states = [
             {n: place.astype(float) for n, place in now.items()},
@@ -53,7 +53,7 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
         q: {n: state[n] for n in given["asked"].get(q, ())}
         for q, state in zip(quantities, states, strict=True)
     }
-    axis = SUSPENSIONS[car.suspension].kingpin
+    axis = FORMS[car.suspension].steering
     turning = _turning([_sides(state, (axis[0], "tie_rod_outer", "wheel_centre")) for state in states])
     found["angular_velocity"], found["angular_acceleration"] = ({"knuckle": turn} for turn in turning)
     inner = "wheel_axis_inner" if "wheel_axis_inner" in points else "strut_lower"

@@ -1,20 +1,18 @@
-"""One car for each linkage that the reference knows, and random numbers for its equations."""
+"""One car for each closed form that tests hold the reference to, and inputs near its drawing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from hypothesis import strategies as st
 from lotus_front import POINTS as LOTUS
 from off_axis_cars import BASE, closing
+from plain_mechanisms import close_car, count_car, design_of, solve_car
 
-from validate.reference import Instant, closed_drawing, count_assemblies, sensitivities, solve_reference
-from validate.reference.design import Design, values_only
-from validate.reference.linkage import Known, Linkage
-from validate.reference.suspensions import linkage_for
+from validate.reference import Instant, sensitivities
+from validate.reference.design import Design, Known, values_only
 from validate.reference.vectors import Vector
 
 Points = Mapping[str, Vector]
@@ -53,10 +51,6 @@ class ReferenceCar:
     frame: Mapping[str, Vector] = field(default_factory=dict)
 
     @property
-    def linkage(self) -> Linkage:
-        return linkage_for(self.suspension, self.closure)
-
-    @property
     def kind(self) -> dict[str, Any]:
         """What every function of the reference is told beside points and inputs."""
         return {"suspension": self.suspension, "closure": self.closure, "side": self.side, **self.frame}
@@ -68,8 +62,18 @@ class ReferenceCar:
 
     @property
     def design(self) -> Design:
-        up, right = self.frame.get("up", (0, 0, 1)), self.frame.get("right", (0, 1, 0))
-        return Design.from_points(self.points, up, right, self.side, self.closure, self.suspension)
+        return design_of(self.points, **self.kind)
+
+    @property
+    def wheel_axis(self) -> tuple[str, str]:
+        """Inner point and wheel centre."""
+        inner, centre = self.design.role("wheel_axis")
+        return inner, centre
+
+    @property
+    def bodies(self) -> dict[str, list[str]]:
+        """The points of each moving body."""
+        return {name: points for name, points in self.design.plain["bodies"].items() if name != "chassis"}
 
     def known(self, **changed: object) -> Known:
         """What the equations take as given, without motion; some inputs changed."""
@@ -78,16 +82,16 @@ class ReferenceCar:
         return values_only(design.known(design.driven(inputs)))
 
     def solve(self, inputs: Inputs, **settings: Any) -> Instant:
-        return solve_reference(self.points, inputs, **{**self.kind, **settings})
+        return solve_car(self.points, inputs, **{**self.kind, **settings})
 
     def count(self, inputs: Inputs, **settings: Any) -> Any:
-        return count_assemblies(self.points, inputs, **self.kind, **settings)
+        return count_car(self.points, inputs, **self.kind, **settings)
 
     def close(self, **settings: Any) -> Any:
-        return closed_drawing(self.points, **self.kind, **settings)
+        return close_car(self.points, **self.kind, **settings)
 
     def sensitivities(self) -> Any:
-        return sensitivities(self.points, self.inputs, **self.kind)
+        return sensitivities(self.design, self.inputs)
 
 
 CARS = {
@@ -126,34 +130,3 @@ CARS = {
         "right",
     ),
 }
-
-fractions = st.integers(-1000, 1000).map(lambda n: Fraction(n, 16))
-
-
-@st.composite
-def equations_data(draw: st.DrawFn, linkage: Linkage, unknowns: int) -> tuple[Known, list[list[Fraction]]]:
-    """What the equations of a linkage take as given, and some sets of unknowns: any numbers, exact."""
-    shape = next(car.design.knuckle for car in CARS.values() if car.linkage is linkage)
-    count = 3 * (len(linkage.chassis) + 2 + len(shape)) + len(linkage.links) + len(linkage.inputs)
-    numbers = iter(draw(st.lists(fractions, min_size=count, max_size=count)))
-    known = Known(
-        linkage,
-        {name: _vector(numbers) for name in linkage.chassis},
-        _vector(numbers),
-        _vector(numbers),
-        {link: next(numbers) for link in linkage.links},
-        {name: next(numbers) for name in linkage.inputs},
-        {name: _vector(numbers) for name in shape},
-    )
-    sets = draw(
-        st.lists(
-            st.lists(fractions, min_size=linkage.size, max_size=linkage.size),
-            min_size=unknowns,
-            max_size=unknowns,
-        )
-    )
-    return known, sets
-
-
-def _vector(numbers: Iterator[Fraction]) -> Vector:
-    return next(numbers), next(numbers), next(numbers)

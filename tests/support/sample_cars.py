@@ -13,7 +13,7 @@ from pointcoord import Scene
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.mechanism import mechanism_file
 from validate.cars.paper_car import PAPER
 
 Array = NDArray[np.float64]
@@ -37,17 +37,17 @@ class SampleCar:
 
     @property
     def whole(self) -> Topology:
-        """The topology with every point that a car may give."""
-        return SUSPENSIONS[self.type].closures[self.closure]
+        """The topology of a car that gives every point."""
+        return mechanism_file(self.type).topology(self.closure)
 
     @property
     def topology(self) -> Topology:
         """The topology of this car."""
-        return self.whole.given(self.points)
+        return mechanism_file(self.type).topology(self.closure, points=self.points)
 
     def mechanism(self, points: Mapping[str, object] | None = None) -> Mechanism:
         """The mechanism of this car, or of one with other points."""
-        return build_mechanism(self.whole, points or self.points, AXES)
+        return build_mechanism(self.topology, points or self.points, AXES)
 
     @property
     def drawn_inputs(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Ways whose errors and times are known, and the clock that they move."""
+"""Runs whose errors and times are known, the clock that they move, and numbers of the reference."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.cost.errors import truth_of
-from validate.cost.way import Ready, Setting
-from validate.formulations.protocol import Numbers
+from validate.cost.race import Found, Runner
+from validate.cost.row import Row
 
 Array = NDArray[np.float64]
 
@@ -23,74 +23,54 @@ class FakeClock:
     """A clock that stands still but for those who move it; nanoseconds."""
 
     now: int = 0
-    reads: int = 0
 
     def __call__(self) -> int:
-        self.reads += 1
         return self.now
 
     def advance(self, nanoseconds: int) -> None:
         self.now += nanoseconds
 
 
-def nothing(*_: object) -> None:
-    """Do nothing."""
-
-
 @dataclass
 class Toy:
-    """The reference, rounded, and off by what is asked for.
+    """Something to be timed: takes what `costs` says for each phase, ns, and is off by `error`.
 
     Attributes:
-        clock: that its phases move. costs: by phase, nanoseconds; of `solve` for each instant.
-        spoil: changes its numbers. before: is called with the name of each phase.
-        runs: what was run: the number of instants of each solve.
+        before: is called with the name of each phase. runs: how often it was run.
     """
 
     name: str
     clock: FakeClock = field(default_factory=FakeClock)
-    costs: Mapping[str, int] = field(default_factory=lambda: {"set-up": 20_000_000})
-    settings: tuple[Setting, ...] = (Setting(),)
-    spoil: Callable[[dict[str, dict[str, Array]]], object] = nothing
-    before: Callable[[str], object] = nothing
-    words: str = "a toy"
-    package: str | None = None
-    dense: bool = False
-    runs: list[int] = field(default_factory=list)
-    collecting: list[bool] = field(default_factory=list)
+    costs: Mapping[str, int] = field(default_factory=lambda: {"set-up": 20_000_000, "solve": 5_000_000})
+    error: float = 1e-9
+    before: Callable[[str], object] = lambda _: None
+    runs: int = 0
+    collecting: bool = False
 
-    def spend(self, phase: str, times: int = 1) -> None:
+    @property
+    def runner(self) -> Runner:
+        """As a race takes it; a run gives ten poses."""
+        return Runner(Row("accuracy", "scene", self.name, poses=10), self._set_up, self._found)
+
+    def _spend(self, phase: str) -> None:
         self.before(phase)
-        self.collecting.append(gc.isenabled())
-        self.clock.advance(self.costs.get(phase, 0) * times)
+        self.collecting |= gc.isenabled()
+        self.clock.advance(self.costs.get(phase, 0))
 
-    def prepare(self, scene: Scene, setting: Setting) -> Ready:
-        self.spend("set-up")
-        return _ToyReady(self, scene)
+    def _set_up(self) -> Callable[[], str]:
+        self._spend("set-up")
+        return self._solve
 
+    def _solve(self) -> str:
+        self.runs += 1
+        self._spend("solve")
+        return "solved"
 
-@dataclass
-class _ToyReady:
-    toy: Toy
-    scene: Scene
-
-    def solve(self, instants: Array) -> Any:
-        self.toy.runs.append(len(instants))
-        self.toy.spend("solve", len(instants))
-        return instants
-
-    def rates(self, solved: Any) -> Any:
-        self.toy.spend("rates")
-        return solved
-
-    def output(self, solved: Any) -> Numbers:
-        self.toy.spend("output")
-        numbers = reference_numbers(self.scene, solved)
-        self.toy.spoil(numbers)
-        return numbers
-
-    def counts(self, solved: Any) -> Mapping[str, int]:
-        return {"newton_steps": 3 * len(solved)}
+    def _found(self, answer: Any) -> Found:
+        assert answer == "solved"
+        self.clock.advance(10**12)  # looking at an answer is no part of it
+        position = {"error": self.error, "rms": self.error, "radius": 0.0, "numbers": 3}
+        return Found({"position": position}, {"wheel": "gives no angles"}, "steps 4")
 
 
 _KNOWN: dict[tuple[str, bytes], dict[str, dict[str, Array]]] = {}

@@ -30,7 +30,6 @@ from closed_forms import (
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from validate.reference.double_wishbone import DRAWN
 from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 KNUCKLE = ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer", "wheel_centre", "wheel_axis_inner")
@@ -40,7 +39,6 @@ KNUCKLE = ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer", "wheel_centr
 class WishboneCar(ClosedFormCar):
     """A double wishbone."""
 
-    linkage = DRAWN
     suspension = "double_wishbone"
     bodies: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "knuckle": KNUCKLE,
@@ -50,10 +48,6 @@ class WishboneCar(ClosedFormCar):
 
     def assembled(self, p: Points, up: Vector, right: Vector, sides: Sides, inputs: Vector) -> Pose | None:
         return _pose(p, up, right, sides, inputs)
-
-    def shape(self, p: Points) -> Points:
-        """Nothing: the knuckle's triangle is in the lengths."""
-        return {}
 
 
 RACK_CENTRE = (-10, 0, 154)
@@ -102,5 +96,4 @@ def _pose(
         return None
     points = {name: plus(ball, place(v)) for name, v in k.items()}
     points |= lower | {"upper_arm_front": front, "upper_arm_rear": rear}
-    unknown = [x for n in ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer") for x in points[n]]
-    return Pose(points, unknown, sides)
+    return Pose(points, sides)

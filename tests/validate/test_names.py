@@ -7,12 +7,12 @@ import pytest
 
 import validate
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.mechanism import mechanism_file, shipped
 
 ROOT = Path(validate.__file__).parent
 # The paper's tables are about the paper's car; cars and hard cases are about hardpoints.
 ROOMS = ("formulations", "comparison", "diagnosis", "output", "ci", "commands", "hardpoint_files", "html")
-TOPOLOGIES = [topology for kind in SUSPENSIONS.values() for topology in kind.closures.values()]
+STRUCTURES = [one for name in shipped() for one in mechanism_file(name).structures.values()]
 NAMES = {
     "effect": {*EFFECTS},
     "quantity": {*QUANTITIES},
@@ -22,10 +22,11 @@ NAMES = {
         for names in e.gives_numbers.values()
         for name in names or ()
     },
-    "suspension": {*SUSPENSIONS},
-    "hardpoint": {point for topology in TOPOLOGIES for point in topology.points},
-    "body": {body for topology in TOPOLOGIES for body in topology.bodies},
-    "input": {name for topology in TOPOLOGIES for name in topology.inputs},
+    "mechanism": {*shipped()},
+    # The letters by which a published linkage calls its pins are in use as metavars too.
+    "hardpoint": {point for one in STRUCTURES for point in one.points if len(point) > 1},
+    "body": {body for one in STRUCTURES for body in one.bodies if body != "chassis"},
+    "input": {name for one in STRUCTURES for name in one.inputs},
 }
 
 
@@ -44,14 +45,16 @@ def files() -> list[Path]:
 def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # The absolute model moves positions back to the user's origin, and the printed rows of the paper have
     # a wheel centre; a sweep and an import ask the topology which point its wheel centre is. The static
-    # angles of a wheel whose spin axis another program's file lacks are two options of the import.
+    # angles of a wheel whose spin axis another program's file lacks are two options of the import, and `axle`
+    # is which of the axles in such a file. A turn is one of the chassis.
     allowed = {
         "absolute_coordinates.py": {"position"},
         "report.py": {"wheel_centre"},
-        "printed_tables.py": {"wheel_centre"},
+        "paper.py": {"wheel_centre"},
         "sweep.py": {"wheel_centre"},
-        "importing.py": {"wheel_centre", "camber", "toe"},
+        "importing.py": {"wheel_centre", "camber", "toe", "axle"},
         "hardpoints.py": {"camber", "toe"},
+        "relative_coordinates.py": {"turn"},
     }
     assert NAMES[kind]
     for path in files():

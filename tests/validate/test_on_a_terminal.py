@@ -6,19 +6,21 @@ import re
 import struct
 import subprocess
 import sys
-from collections.abc import Mapping
 from fcntl import ioctl
-from importlib.util import find_spec
 from pathlib import Path
 from termios import TIOCSWINSZ
 
 import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, run
 
-from validate.output import terminal
+from validate.output import table
 from validate.output.console import Console
+from validate.output.progress import progress
 
-SLOW = "import time\nfrom validate.output.console import Console\nconsole = Console()\n{more}\n"
+SLOW = (
+    "import time\nfrom validate.output.console import Console\n"
+    "from validate.output.progress import progress\nconsole = Console()\n{more}\n"
+)
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
@@ -54,31 +56,18 @@ def on_terminal(
     return shown.decode()
 
 
-def without_rich(folder: Path) -> Mapping[str, str]:
-    """An environment in which rich does not load, for a program that runs in the folder.
-
-    Python looks in the folder where it runs first, then in PYTHONPATH: run where the packages are
-    installed, it would find rich beside them.
-    """
-    (folder / "rich.py").write_text("raise ImportError('gone', name='rich')\n")
-    return {"PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
-
-
 def validated(columns: int = 120, both: bool = False, folder: Path = ROOT, **more: str) -> str:
-    return on_terminal([*PROGRAM, "validate", "double-wishbone"], columns, both, folder, **more)
+    return on_terminal([*PROGRAM, "validate", "-v", "double-wishbone"], columns, both, folder, **more)
 
 
-def test_a_terminal_without_rich_shows_what_a_pipe_has(tmp_path: Path) -> None:
-    piped = run("validate", "double-wishbone").stdout
-    assert validated(both=True, folder=tmp_path, **without_rich(tmp_path)).replace("\r\n", "\n") == piped
+def test_a_dumb_terminal_shows_what_a_pipe_has() -> None:
+    piped = run("validate", "-v", "double-wishbone").stdout
     assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
 
 
-def test_a_pipe_has_plain_text_whatever_is_installed(tmp_path: Path) -> None:
-    there = run("validate", "double-wishbone")
-    gone = run("validate", "double-wishbone", env={**ENVIRONMENT, **without_rich(tmp_path)}, cwd=tmp_path)
-    assert there.stdout == gone.stdout
-    assert (there.stderr, gone.stderr) == ("", "")
+def test_a_pipe_has_plain_text() -> None:
+    there = run("validate", "-v", "double-wishbone")
+    assert there.stderr == ""
     assert "\x1b" not in there.stdout
 
 
@@ -88,56 +77,52 @@ def cells(text: str) -> list[str]:
 
 
 def test_a_terminal_with_rich_shows_the_same_words_in_colours() -> None:
-    if find_spec("rich"):
-        piped, shown = run("validate", "double-wishbone").stdout, validated()
-        assert "\x1b[32magrees" in shown
-        assert cells(shown) == cells(piped)
-        assert "\x1b[3" not in validated(NO_COLOR="1")
+    piped, shown = run("validate", "-v", "double-wishbone").stdout, validated()
+    assert "\x1b[32magrees" in shown
+    assert cells(shown) == cells(piped)
+    assert "\x1b[3" not in validated(NO_COLOR="1")
 
 
 def test_a_narrow_terminal_shows_every_cell_in_full() -> None:
-    if find_spec("rich"):
-        piped, shown = run("validate", "double-wishbone").stdout, validated(columns=40)
-        # The name of the first column is left out: each row begins with what it is about.
-        assert {*cells(piped)} - {"quantity"} <= {*cells(shown.replace(": ", " ")), *cells(shown)}
-        assert not re.search("[─━]", shown)
+    piped, shown = run("validate", "-v", "double-wishbone").stdout, validated(columns=40)
+    # The name of the first column is left out: each row begins with what it is about.
+    assert {*cells(piped)} - {"quantity"} <= {*cells(shown.replace(": ", " ")), *cells(shown)}
+    assert not re.search("[─━]", shown)
 
 
 def test_a_terminal_of_eighty_columns_shows_a_table_of_whole_words_within_them() -> None:
-    if find_spec("rich"):
-        piped, shown = run("validate", "double-wishbone").stdout, COLOURS.sub("", validated(columns=80))
-        lines = [line.rstrip() for line in shown.replace("\r\n", "\n").splitlines()]
-        begin = next(i for i, line in enumerate(lines) if set(line) == {"─"})
-        end = next(i for i, line in enumerate(lines) if "double-wishbone: " in line and i > begin)
-        assert end - begin > 7
-        assert max(map(len, lines[begin - 2 : begin + 8])) <= 80
-        assert sorted(cells(shown)) == sorted(cells(piped))
+    piped, shown = run("validate", "-v", "double-wishbone").stdout, COLOURS.sub("", validated(columns=80))
+    lines = [line.rstrip() for line in shown.replace("\r\n", "\n").splitlines()]
+    begin = next(i for i, line in enumerate(lines) if set(line) == {"─"})
+    end = next(i for i, line in enumerate(lines) if "double-wishbone: " in line and i > begin)
+    assert end - begin > 7
+    assert max(map(len, lines[begin - 2 : begin + 8])) <= 80
+    assert sorted(cells(shown)) == sorted(cells(piped))
 
 
 def test_progress_comes_after_two_seconds_and_goes_away() -> None:
-    if find_spec("rich"):
-        work = "with console.working('cases', 3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
-        work += "    console.say('a result')\n    time.sleep(0.6)\nconsole.say('the end')"
-        program = [sys.executable, "-c"]
-        long = on_terminal([*program, SLOW.format(more=work.format(2.6))])
-        assert "first" in long
-        assert "1/3" in long
-        last = long[long.rindex("1/3") :]
-        assert "\x1b[2K" in last  # the line is wiped
-        assert "\x1b[?25h" in last  # and the cursor is there again
-        short = on_terminal([*program, SLOW.format(more=work.format(0.1))])
-        assert short == "a result\r\nthe end\r\n"
+    work = "with progress(console, 'cases', total=3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
+    work += "    console.say('a result')\n    time.sleep(0.6)\nconsole.say('the end')"
+    program = [sys.executable, "-c"]
+    long = on_terminal([*program, SLOW.format(more=work.format(2.6))])
+    assert "first" in long
+    assert "1/3" in long
+    last = long[long.rindex("1/3") :]
+    assert "\x1b[2K" in last  # the line is wiped
+    assert "\x1b[?25h" in last  # and the cursor is there again
+    short = on_terminal([*program, SLOW.format(more=work.format(0.1))])
+    assert short == "a result\r\nthe end\r\n"
 
 
 def test_progress_goes_to_no_pipe(capsys: pytest.CaptureFixture[str]) -> None:
-    with Console().working("cases", 3) as told:
+    with progress(Console(), "cases", total=3, lines=False) as told:
         told("first", 1)
     assert capsys.readouterr() == ("", "")
 
 
 def test_a_table_is_columns_of_text() -> None:
-    table = terminal.Table(("name", "size", "verdict"), (("a", "1.5", "agrees"), ("long one", "10", "no")), 2)
-    assert table.text.splitlines() == [
+    made = table.Table(("name", "size", "verdict"), (("a", "1.5", "agrees"), ("long one", "10", "no")), 2)
+    assert made.text.splitlines() == [
         "  name      size  verdict",
         "  --------  ----  -------",
         "  a          1.5  agrees",

@@ -1,14 +1,15 @@
 """The reference as a solution: at a scene's instants, in doubles, which are off by their rounding.
 
-A drawing need not be assembled, so `solve_reference` calls a side unclear that is less than 1e-9 of the
-lengths that it is made of. Cars may be drawn so near to where two assemblies meet on purpose, and then their
-coordinates are exact: the sign of an exact product of them is the side that was drawn, however small the
-product is. Whoever knows that asks for `exact_sides`.
+A drawing need not be assembled, so the reference calls one unclear that is less than 1e-9 of its size from
+another assembly. Cars may be drawn so near to where two assemblies meet on purpose, and then their
+coordinates are exact. Whoever knows that asks for `exact_sides`.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,8 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
-from validate.reference import Design, Instant, instants_of, solve_reference
-from validate.reference.candidates import CLEAR_SIGN
+from validate.reference import Design, Instant, instants_of
+from validate.reference.route import CLEAR
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
@@ -37,29 +38,38 @@ def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
     return {name: tuple(rates(part, np.array([time]))[0].tolist()) for name, part in scene.inputs.items()}
 
 
+def design_of(scene: Scene) -> Design:
+    """The scene's mechanism, as the reference takes it; its drawing is closed once for all its instants."""
+    return _design(json.dumps(scene.mechanism.plain(tuple(scene.inputs))))
+
+
+@lru_cache(maxsize=64)
+def _design(plain: str) -> Design:
+    return Design.from_plain(json.loads(plain))
+
+
 def reference_instant(
     scene: Scene, inputs: Inputs, exact_sides: bool = False, digits: int = DIGITS
 ) -> Instant:
-    """The reference for a scene's car at given inputs.
+    """The reference for a scene's car at given inputs, reached from the drawing.
 
     Args:
         inputs: value, rate and acceleration of each.
-        exact_sides: whether every side that is drawn is meant, however small the product that tells it.
+        exact_sides: whether the drawing is meant as it is, however near it is to another assembly.
     Raises:
         NoReferenceError: there is no pose, or none can be proven.
     """
-    part = scene.mechanism
-    return solve_reference(
-        dict(part.points),
-        inputs,
-        up=part.up,
-        right=part.right,
-        side=part.side,
-        digits=digits,
-        closure=part.closure,
-        suspension=part.type,
-        clearness=0.0 if exact_sides else CLEAR_SIGN,
-    )
+    return next(instants_of(design_of(scene), [inputs], digits, _clearness(exact_sides)))
+
+
+def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = False) -> list[Instant]:
+    """The reference at instants of a scene's motion, in this order: each is reached from the one before.
+
+    Raises:
+        NoReferenceError: an instant has no pose, or none can be proven.
+    """
+    inputs = (inputs_at(scene, time) for time in times)
+    return list(instants_of(design_of(scene), inputs, DIGITS, _clearness(exact_sides)))
 
 
 def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
@@ -68,12 +78,11 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
     Raises:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
-    laws = {name: rates(part, scene.instants).tolist() for name, part in scene.inputs.items()}
-    inputs = [{name: law[k] for name, law in laws.items()} for k in range(len(scene.instants))]
-    part = scene.mechanism
-    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure, part.type)
-    clearness = 0.0 if exact_sides else CLEAR_SIGN
-    return as_solution(scene, list(instants_of(design, inputs, DIGITS, clearness)))
+    return as_solution(scene, reference_motion(scene, scene.instants.tolist(), exact_sides))
+
+
+def _clearness(exact_sides: bool) -> float:
+    return 0.0 if exact_sides else CLEAR
 
 
 def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
@@ -82,14 +91,14 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
     Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
-    times, bodies, first = scene.instants, scene.mechanism.topology.bodies, instants[0]
+    times, first = scene.instants, instants[0]
     angles = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
-        "angular_velocity": _rounded([i.angular_velocity for i in instants], bodies),
-        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], bodies),
+        "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
+        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
         "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}

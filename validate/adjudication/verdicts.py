@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import (
+    design_of,
     inputs_at,
     reference_instant,
     reference_solution,
     told_by,
 )
-from validate.cars.input_limits import Linkage
-from validate.cars.scene_content import car_of
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import Solution
-from validate.reference import InfeasibleError, NoReferenceError
+from validate.reference import InfeasibleError, NoReferenceError, instants_of
 
 NO_OBSTACLE = "no obstacle found"
 NEITHER_WRONG = "neither wrong by its own tolerance"
+DIGITS = 15  # of the reference where only whether there is a pose counts
 BETWEEN = 24  # instants between the first and the last at which a pose is looked for
 
 
@@ -64,42 +62,24 @@ def unanswered(scene: Scene) -> str:
 def obstacle(scene: Scene) -> str:
     """Where, between its drawing and its last instant, a scene has no pose: why a path cannot go on.
 
-    The way from the drawing to the first instant is straight in the driven coordinates.
+    The way from the drawing to the first instant is straight in the numbers that the reference's equations
+    take of the inputs.
     """
-    time = scene.time
-    if (place := _first_without_pose(scene, _way_to_the_start(scene))) is not None:
-        return f"{place} on the way from the drawing to the start"
-    times = np.linspace(time.start, time.stop, BETWEEN + 2)
-    if (place := _first_without_pose(scene, [inputs_at(scene, t) for t in times.tolist()])) is not None:
-        return f"{place} between the instants"
-    return NO_OBSTACLE
-
-
-def _first_without_pose(scene: Scene, way: list[dict[str, tuple[float, ...]]]) -> str | None:
-    for inputs in way:
+    times = np.linspace(scene.time.start, scene.time.stop, BETWEEN + 2)
+    instants = instants_of(design_of(scene), (inputs_at(scene, t) for t in times.tolist()), DIGITS)
+    for where in ("on the way from the drawing to the start", *["between the instants"] * (len(times) - 1)):
         try:
-            reference_instant(scene, inputs)
+            next(instants)
         except InfeasibleError:
-            return "no pose"
+            return f"no pose {where}"
         except NoReferenceError:
-            return "no provable pose"
-    return None
-
-
-def _way_to_the_start(scene: Scene) -> list[dict[str, tuple[float, ...]]]:
-    home, first = Linkage.of(car_of(scene)).home, inputs_at(scene, scene.time.start)
-    rise, travel = math.cos(home["arm_angle"]), home["rack"]
-    way: list[dict[str, tuple[float, ...]]] = []
-    for share in np.linspace(0.0, 1.0, BETWEEN).tolist():
-        height = rise + share * (math.cos(first["arm_angle"][0]) - rise)
-        slid = travel + share * (first["rack"][0] - travel)
-        way.append({"arm_angle": (math.acos(height), 0.0, 0.0), "rack": (slid, 0.0, 0.0)})
-    return way
+            return f"no provable pose {where}"
+    return NO_OBSTACLE
 
 
 def _unproven(error: NoReferenceError) -> str:
     return (
-        "no such pose, proven"
+        "no such pose on the way from the drawing, proven"
         if isinstance(error, InfeasibleError)
         else f"not provable: {type(error).__name__}"
     )

@@ -18,15 +18,15 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord import PointcoordError, Scene, simulate
+from pointcoord import Scene
 from pointcoord.method import AUTO
+from validate.cars.base_cars import Variant, input_sets, variants_of
 from validate.cars.car import Car, other_side, rotation, turned
-from validate.cars.closed_form import INNER, RACK
-from validate.cars.input_limits import DRIVEN, Linkage
-from validate.cars.macpherson import LOWER, ROD_END, TOP
+from validate.cars.input_ends import drawn_inputs
+from validate.cars.moved_points import HALVED, SHARE, Moves, drawn_back, sliding, with_every_point
 from validate.cars.near_singular import NearPose, approach
-from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
-from validate.cars.scene_content import car_of, scene_content
+from validate.cars.random_cars import is_accepted
+from validate.cars.scene_content import content_of
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError
@@ -36,11 +36,10 @@ try:
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.strategies", error, "strategies") from None
 
-REACH = 100  # mm, of a point from the base car's in every coordinate
-SLID = 5  # mm, of the rack in its drawing
-EIGHTHS = (3, 2, 4)  # of the way from the top to strut_lower, where the rod ends: exact in whole mm
-HALVED = 8  # times: a move of REACH is none then
 STEP = 0.01  # rad
+# Whole coefficients of laws by unit, in steps: offset, and rates; of the mechanism and of the chassis.
+WITHIN = {"rad": (25, 60), "mm": (20, 60)}
+CHASSIS = {"rad": (10, 40), "mm": (30, 200)}
 # Turns that permute axes and so keep whole numbers: none, then half and quarter turns about each axis.
 TURNS: tuple[tuple[int, int, int], ...] = (
     (0, 1, 0),
@@ -54,35 +53,34 @@ def mechanisms(
     draw: st.DrawFn,
     suspension: str | None = None,
     closure: str | None = None,
-    reach: int = REACH,
+    reach: int | None = None,
     turns: bool = True,
 ) -> dict[str, Any]:
     """Random cars as the `mechanism` of a scene's content: type, closure, side, axes and points, mm.
 
     Args:
-        suspension: such as "double_wishbone"; any of them if not given.
-        closure: such as "drawn"; any that the suspension has if not given.
-        reach: how far points lie from the base car's in each coordinate, mm.
+        suspension: such as "double_wishbone", or the path of a scene file (.toml) whose car others are made
+            from; any shipped mechanism if not given.
+        closure: such as "drawn"; any that the mechanism has if not given.
+        reach: how far points lie from the base car's in each coordinate, mm; a fifth of its size if none.
         turns: whether x, y and z may be other directions of the car than rearward, right and up, as `up` and
             `right` then say.
     """
-    return dict(scene_content(draw(_cars(suspension, closure, reach, turns)))["mechanism"])
+    return draw(cars(suspension, closure, reach, turns))[0].mechanism
 
 
 @st.composite
 def inputs(draw: st.DrawFn, mechanism: Mechanism, stop: float = 0.5) -> dict[str, Any]:
-    """Random laws for the inputs of a car, as the `inputs` of a scene's content; rad, mm and s.
+    """Random laws for inputs of a car, as the `inputs` of a scene's content; rad, mm and s.
 
-    The arm turns and the rack slides by polynomials or sines about the drawing's own values, and the chassis
-    may heave. The car can follow from time 0 to `stop`.
+    Any inputs that can drive the car do so, by polynomials or sines about the drawing's own values, and the
+    chassis may move. The car can follow from time 0 to `stop`.
 
     Args:
         mechanism: of a scene's content, such as `mechanisms` draws.
     """
-    resting = {"arm_angle": {"constant": 1.0}, "rack": {"constant": 0.0}}
-    time = {"start": 0.0, "stop": 0.0, "samples": 1}
-    car = car_of(Scene.from_mapping({"mechanism": mechanism, "inputs": resting, "time": time}))
-    return draw(_laws(car, stop))
+    car = Car.of_mechanism(mechanism)
+    return draw(_laws(car, draw(st.sampled_from(input_sets(car))), stop))
 
 
 @st.composite
@@ -90,7 +88,7 @@ def scenes(
     draw: st.DrawFn,
     suspension: str | None = None,
     closure: str | None = None,
-    reach: int = REACH,
+    reach: int | None = None,
     turns: bool = True,
     samples: int = 5,
 ) -> Scene:
@@ -100,10 +98,10 @@ def scenes(
         suspension, closure, reach, turns: see `mechanisms`.
         samples: instants.
     """
-    car = draw(_cars(suspension, closure, reach, turns))
+    car, variant = draw(cars(suspension, closure, reach, turns))
     stop = draw(st.sampled_from([0.5, 0.25, 0.0625]))
-    laws = draw(_laws(car, stop))
-    return Scene.from_mapping(scene_content(car, **laws, stop=stop, samples=samples))
+    laws = draw(_laws(car, draw(st.sampled_from(variant.input_sets)), stop))
+    return Scene.from_mapping(content_of(car, laws, stop=stop, samples=samples))
 
 
 @st.composite
@@ -111,89 +109,80 @@ def near_singular(
     draw: st.DrawFn,
     suspension: str | None = None,
     closure: str | None = None,
-    reach: int = REACH,
+    reach: int | None = None,
     turns: bool = True,
     nearest: float = 1e-6,
     farthest: float = 0.1,
 ) -> Scene:
     """One instant of a random car, close to where one of its inputs has an end and the mechanism locks.
 
-    Arm, tie rod or the knuckle's upper end locks there, and the way from the drawing is open. All inputs
-    move. The nearer, the harder: rates grow as the inverse root of the distance.
+    The way from the drawing is open. All inputs move. The nearer, the harder: rates grow as the inverse root
+    of the distance.
 
     Args:
         suspension, closure, reach, turns: see `mechanisms`.
         nearest, farthest: limits of the distance from the end, in parts of the input's range; 1e-12 < nearest
             <= farthest <= 0.1.
     """
-    car = draw(_cars(suspension, closure, reach, turns))
-    first = draw(st.sampled_from(DRIVEN)), draw(st.booleans())
+    there = variants_of(suspension, closure)
+    first_of = draw(st.integers(0, len(there) - 1))
+    chosen = next((one for one in there[first_of:] + there[:first_of] if one.ending_sets), None)
+    if chosen is None:
+        raise ValueError(f"no input of suspension={suspension!r} has an end")
+    car, variant = draw(_cars_of(chosen, reach, turns))
+    names = draw(st.sampled_from(variant.ending_sets))
+    first = draw(st.sampled_from(names)), draw(st.booleans())
     aside = draw(st.integers(-4, 4)) / 4.0
     decades = draw(st.integers(0, 16)) / 16.0 * math.log10(farthest / nearest)
-    rates = {"arm_angle": draw(st.integers(-50, 50)) * STEP, "rack": float(draw(st.integers(-50, 50)))}
+    steps = {name: draw(st.integers(-50, 50)) for name in names}
     distance = farthest * 10.0**-decades
-    for pose in _near(car, first, aside, distance):
-        laws: dict[str, Any] = {name: [pose.inputs[name], rates[name]] for name in DRIVEN}
-        scene = Scene.from_mapping(scene_content(pose.car, **laws))
+    for pose in _near(car, variant, names, first, aside, distance):
+        rates = {n: steps.get(n, 0) * _step(pose.car, n) for n in pose.home if n in names}
+        scene = Scene.from_mapping(
+            content_of(pose.car, {n: [pose.inputs[n], rate] for n, rate in rates.items()})
+        )
         if _is_solved(scene):
             return scene
-    raise AssertionError("the base car has no open way to an end of the rack")  # it has, see the tests
-
-
-def _variants(suspension: str | None, closure: str | None) -> list[Variant]:
-    """Those that are asked for.
-
-    Raises:
-        ValueError: there is none.
-    """
-    found = [v for v in VARIANTS if suspension in (None, v.suspension) and closure in (None, v.closure)]
-    if not found:
-        there = "; ".join(f"{s.name}: {', '.join(s.closures)}" for s in SUSPENSIONS.values())
-        raise ValueError(f"no car has suspension={suspension!r} and closure={closure!r}; there are: {there}")
-    return found
+    raise AssertionError("the base car has no open way to an end of an input")  # it has, see the tests
 
 
 @st.composite
-def _cars(draw: st.DrawFn, suspension: str | None, closure: str | None, reach: int, turns: bool) -> Car:
-    base = draw(st.sampled_from(_variants(suspension, closure))).base
-    whole = st.integers(-reach, reach)
-    moves = {name: np.array(draw(st.tuples(whole, whole, whole)), dtype=float) for name in base.points}
-    rod = draw(st.sampled_from(EIGHTHS)) / 8.0
-    slid = float(draw(st.integers(-SLID, SLID)))
+def cars(
+    draw: st.DrawFn,
+    suspension: str | None = None,
+    closure: str | None = None,
+    reach: int | None = None,
+    turns: bool = True,
+) -> tuple[Car, Variant]:
+    """Random cars, see `mechanisms`, each with its variant."""
+    return draw(_cars_of(draw(st.sampled_from(variants_of(suspension, closure))), reach, turns))
+
+
+@st.composite
+def _cars_of(draw: st.DrawFn, variant: Variant, reach: int | None, turns: bool) -> tuple[Car, Variant]:
+    base = with_every_point(variant.base)
+    own = with_every_point(base).points.keys() - variant.base.points.keys()
+    far = round(SHARE * base.size) if reach is None else reach
+    whole = st.integers(-far, far)
+    moves = (
+        Moves()
+        if variant.holds_its_shape
+        else Moves(
+            points={
+                name: np.array(draw(st.tuples(whole, whole, whole)), dtype=float) for name in base.points
+            },
+            slid={name: draw(st.integers(-5, 5)) / 5.0 for name in sliding(base)},
+            without=frozenset(name for name in sorted(own) if not draw(st.booleans())),
+            whole=True,
+        )
+    )
     turn = rotation(*map(int, draw(st.sampled_from(TURNS)))) if turns else np.eye(3)
-    mirror = draw(st.booleans())
-    for halved in range(HALVED + 1):
-        moved = {n: np.trunc(move / 2**halved) for n, move in moves.items()} if halved < HALVED else {}
-        car = _moved(base, moved, rod, slid)
-        car = turned(other_side(car) if mirror else car, turn)
-        if is_accepted(car):
-            return car
-    raise AssertionError("pointcoord refuses a base car")  # it solves them, see the tests
+    mirror = draw(st.booleans()) and not variant.of_parts
 
+    def put(car: Car) -> Car:
+        return turned(other_side(car) if mirror else car, turn)
 
-def _moved(base: Car, moves: Mapping[str, np.ndarray], rod: float, slid: float) -> Car:
-    """The base car with its points moved; what belongs on a line is put there."""
-    points = {name: place + moves.get(name, 0.0) for name, place in base.array.items()}
-    if ROD_END in points and base.closure == "drawn":
-        points[ROD_END] = points[TOP] + rod * (points[LOWER] - points[TOP])
-    if RACK in points:
-        points[INNER] = points[RACK] + slid * np.array(base.right)
-    return base.drawn_as(points)
-
-
-def is_accepted(car: Car) -> bool:
-    """Whether the car is sound, and pointcoord reads it and solves it at its own drawing."""
-    try:
-        # Points that coincide make no number, which is not sound.
-        with np.errstate(all="ignore"):
-            linkage = Linkage.of(car)
-            if not linkage.sound:
-                return False
-        home = linkage.home
-        simulate(Scene.from_mapping(scene_content(car, home["arm_angle"], home["rack"])))
-    except (PointcoordError, ValueError, ArithmeticError):
-        return False
-    return True
+    return put(drawn_back(base, moves, lambda car: is_accepted(put(car), variant.input_sets[0]))), variant
 
 
 def _is_solved(scene: Scene) -> bool:
@@ -205,26 +194,27 @@ def _is_solved(scene: Scene) -> bool:
 
 
 @st.composite
-def _laws(draw: st.DrawFn, car: Car, stop: float) -> dict[str, Any]:
-    home = Linkage.of(car).home
-    drawn = {
-        "arm_angle": draw(_shapes(25, 60)),
-        "rack": draw(_shapes(20, 60)),
+def _laws(draw: st.DrawFn, car: Car, names: Sequence[str], stop: float) -> dict[str, Any]:
+    home, known = drawn_inputs(car, names), car.structure.inputs
+    drawn = {name: draw(_shapes(*WITHIN[known[name].unit])) for name in names}
+    chassis = {
+        name: draw(st.none() | _shapes(*CHASSIS[one.unit]))
+        for name, one in known.items()
+        if one.moves_the_chassis
     }
-    heave = draw(st.none() | _shapes(30, 200))
+    beside = {n: _law(shape, 0.0, _step(car, n)) for n, shape in chassis.items() if shape is not None}
     for halved in range(HALVED + 1):
         share = 0.5**halved if halved < HALVED else 0.0
         # The least digits that can be read, but for the drawing itself.
-        angle = round(home["arm_angle"], 6) if share else home["arm_angle"]
-        laws: dict[str, Any] = {
-            "arm_angle": _law(drawn["arm_angle"], angle, STEP * share),
-            "rack": _law(drawn["rack"], home["rack"], share),
-        }
-        if heave is not None:
-            laws["heave"] = _law(heave, 0.0, 1.0)
-        if _is_solved(Scene.from_mapping(scene_content(car, **laws, stop=stop, samples=5))):
+        at = {name: round(value, 6) if share else value for name, value in home.items()}
+        laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in drawn.items()} | beside
+        if _is_solved(Scene.from_mapping(content_of(car, laws, stop=stop, samples=5))):
             return laws
     raise AssertionError("an accepted car cannot rest at its drawing")  # it is accepted because it can
+
+
+def _step(car: Car, name: str) -> float:
+    return STEP if car.structure.inputs[name].unit == "rad" else 1.0
 
 
 @st.composite
@@ -243,16 +233,19 @@ def _law(shape: tuple[Sequence[int], int], middle: float, unit: float) -> dict[s
     return {"sine": {**wave, "phase": second * STEP, "offset": middle + unit * offset}}
 
 
-def _near(car: Car, first: tuple[str, bool], aside: float, distance: float) -> Iterator[NearPose]:
+def _near(
+    car: Car, variant: Variant, names: Sequence[str], first: tuple[str, bool], aside: float, distance: float
+) -> Iterator[NearPose]:
     """The pose near the end that is asked for, then near others of the car, then of its base car."""
-    base = Variant.of(car).base
-    base = other_side(base) if base.side != car.side else base
-    others = ((driven, ahead) for driven in reversed(DRIVEN) for ahead in (False, True))
+    others = ((driven, ahead) for driven in reversed(names) for ahead in (False, True))
     ends = dict.fromkeys((first, *others))
-    for there in (car, base):
+    for there in (car, variant.base):
         for driven, ahead in ends:
             for beside in dict.fromkeys((aside, 0.0)):
                 for share in (distance, 0.1):
-                    pose = approach(there, driven=driven, forward=ahead, aside=beside, distance=share)
-                    if pose is not None:
-                        yield pose
+                    pose = approach(
+                        there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share
+                    )
+                    if pose is None:
+                        break  # there is no such end, at whatever distance
+                    yield pose

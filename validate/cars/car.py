@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import Scene
+from pointcoord.mechanism.structure import Structure
+from pointcoord.mechanism.tables import TABLES
+from pointcoord.scene.scene_file import MechanismPart
+
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
-Drawing = dict[str, Array]
 Closure = str  # what closes a drawing, as a scene names it
-Uniform = Callable[[float, float], float]  # a number between two, drawn at random or looked for
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Car:
-    """One wheel's suspension.
+    """A mechanism with a drawing.
 
     Attributes:
         points: hardpoints, mm.
         side: of the car, `left` or `right`.
         up, right: the car's axes in the frame of its points, unit vectors.
         closure: what makes a drawing close, as a scene names it.
-        suspension: its type, as a scene names it.
+        suspension: its type, as a scene names it; the title of its tables if it has these.
+        tables: of a mechanism that is not a shipped one.
+        wheel_radius: mm; needed by inputs at the wheel's contact point alone.
     """
 
     points: Mapping[str, tuple[float, float, float]]
@@ -35,11 +41,77 @@ class Car:
     right: tuple[float, float, float] = RIGHT
     closure: Closure = "drawn"
     suspension: str = "macpherson"
+    tables: Mapping[str, Any] | None = None
+    wheel_radius: float | None = None
+
+    @classmethod
+    def of(cls, scene: Scene) -> Car:
+        """The car of a scene."""
+        return cls._of(scene.mechanism)
+
+    @classmethod
+    def of_mechanism(cls, content: Mapping[str, Any]) -> Car:
+        """The car of the `mechanism` of a scene's content.
+
+        Raises:
+            SceneError: it is no car.
+        """
+        return cls._of(MechanismPart.checked(content, "a car"))
+
+    @classmethod
+    def _of(cls, part: MechanismPart) -> Car:
+        given = {name: getattr(part, name) for name in ("title", *TABLES)}
+        # A shipped mechanism has none of its own.
+        shipped = not (given["bodies"] or given["parts"])
+        tables = None if shipped else {name: table for name, table in given.items() if table}
+        own = part.points, part.side, part.up, part.right, part.closure
+        return cls(*own, part.name, tables, part.wheel_radius)
 
     @property
-    def array(self) -> Drawing:
+    def mechanism(self) -> dict[str, Any]:
+        """The `mechanism` of a scene's content."""
+        return {
+            **({"type": self.suspension} if self.tables is None else self.tables),
+            "closure": self.closure,
+            "side": self.side,
+            "up": [float(x) for x in self.up],
+            "right": [float(x) for x in self.right],
+            **({} if self.wheel_radius is None else {"wheel_radius": self.wheel_radius}),
+            "points": {name: [float(x) for x in place] for name, place in self.points.items()},
+        }
+
+    @property
+    def structure(self) -> Structure:
+        """What its bodies, rods, slides and inputs are, with every point that a car may have.
+
+        Raises:
+            SceneError: it is no car.
+        """
+        return self._part.file.structures[self.closure]
+
+    @property
+    def _part(self) -> MechanismPart:
+        return MechanismPart.checked(self.mechanism, "a car")
+
+    @property
+    def array(self) -> dict[str, Array]:
         """The hardpoints as arrays, (3,) each."""
         return {name: np.array(place) for name, place in self.points.items()}
+
+    @property
+    def size(self) -> float:
+        """Its largest extent along an axis, mm."""
+        return float(np.ptp(np.array(list(self.points.values())), axis=0).max())
+
+    def direction(self, name: str) -> Array:
+        """A direction of the car, unit vector: up, right, down, left, forward (up x right) or rearward."""
+        up, right = np.array(self.up), np.array(self.right)
+        forward = np.cross(up, right)
+        return np.asarray(
+            {"up": up, "right": right, "forward": forward, "down": -up, "left": -right, "rearward": -forward}[
+                name
+            ]
+        )
 
     def drawn_as(self, points: Mapping[str, Array]) -> Car:
         """The car with other hardpoints."""
@@ -47,14 +119,10 @@ class Car:
 
 
 def other_side(car: Car) -> Car:
-    """The same suspension on the other side of a car whose right is y."""
-    side = "left" if car.side == "right" else "right"
-    return replace(car, points=mirrored(car.points), side=side)
-
-
-def mirrored(points: Mapping[str, tuple[float, float, float]]) -> Points:
-    """The same hardpoints on the other side of a car whose right is y."""
-    return {name: (x, -y, z) for name, (x, y, z) in points.items()}
+    """The same suspension on the other side of the car, mirrored in the plane through the origin."""
+    right = np.array(car.right)
+    there = car.drawn_as({name: place - 2.0 * (place @ right) * right for name, place in car.array.items()})
+    return replace(there, side="left" if car.side == "right" else "right")
 
 
 def turned(car: Car, turn: Array) -> Car:
@@ -70,7 +138,8 @@ def moved(car: Car, away: Array) -> Car:
 
 def scaled(car: Car, scale: float) -> Car:
     """All lengths of the car multiplied, as seen from the origin."""
-    return car.drawn_as({name: scale * place for name, place in car.array.items()})
+    there = car.drawn_as({name: scale * place for name, place in car.array.items()})
+    return there if car.wheel_radius is None else replace(there, wheel_radius=scale * car.wheel_radius)
 
 
 def rotation(axis: int, cosine: float, sine: float) -> Array:
@@ -93,17 +162,6 @@ def random_rotation(rng: np.random.Generator) -> Array:
     return np.asarray(turn * np.sign(np.linalg.det(turn)))
 
 
-def placed(rng: np.random.Generator, car: Car) -> tuple[Car, float]:
-    """The car scaled by up to a thousand, turned and moved, each in one of two; and the scale."""
-    scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.5 else 1.0
-    turn = random_rotation(rng) if rng.random() < 0.5 else np.eye(3)
-    away = np.zeros(3)
-    if rng.random() < 0.5:
-        away = rng.normal(size=3)
-        away *= scale * 10.0 ** rng.uniform(0.0, 7.0) / np.linalg.norm(away)
-    return moved(scaled(turned(car, turn), scale), away), scale
-
-
 def as_tuples(points: Mapping[str, Array]) -> Points:
     """Plain numbers, as a scene has them."""
     return {name: as_tuple(place) for name, place in points.items()}
@@ -113,11 +171,6 @@ def as_tuple(vector: Array) -> tuple[float, float, float]:
     """The three numbers of a vector."""
     x, y, z = (float(component) for component in vector)
     return x, y, z
-
-
-def random_vector(uniform: Uniform, reach: float) -> Array:
-    """A vector with components up to `reach`."""
-    return np.array([uniform(-reach, reach) for _ in range(3)])
 
 
 def unit(vector: Array) -> Array:

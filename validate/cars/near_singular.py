@@ -1,23 +1,26 @@
 """Random cars driven close to a pose where the mechanism locks, each reproducible by its number.
 
-With the links given, an input can go only so far (see `input_limits`). Here it is driven to such an end of a
-random car and steps back by a drawn share of its whole range.
+With its rods and bodies given, an input can go only so far (see `input_ends`). Here it is driven to such an
+end of a random car and steps back by a drawn share of its whole range.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from pointcoord import PointcoordError
+from validate.cars.base_cars import Variant
 from validate.cars.car import Car
-from validate.cars.input_limits import DRIVEN, Inputs, Linkage
-from validate.cars.random_cars import Kind, random_car
+from validate.cars.input_ends import Inputs, drawn_inputs, end, room
+from validate.cars.random_cars import random_car
 
 NEAREST = 1e-12  # of an input's range: its own rounding is 1e-4 of that
-# Most cars lock in whatever way comes first; two in ten by the arm, two in ten by the knuckle's upper end.
-MADE: tuple[Kind, ...] = ("regular", "regular", "regular", "dead arm", "upper lock")
+# How far other inputs are held from the drawing, and the chassis is moved: rad, and parts of the car's size.
+ASIDE, LIFTED = (0.3, 0.06), (0.1, 0.1)
 
 
 @dataclass(frozen=True)
@@ -27,14 +30,15 @@ class NearPose:
     Attributes:
         number: with the seed it gives the same pose again.
         home: the inputs at which the car is drawn; the way from there to `inputs` is open.
-        inputs: arm angle (rad), rack and heave (mm).
+        inputs: of all that is driven, the chassis too, rad and mm.
         driven: the input that is near its last reachable value.
-        lock: what locks there: `arm`, `tie_rod` or the suspension's `upper_lock`.
+        lock: what locks there: the row of pointcoord's equations that holds it the most.
         reach: range of that input, rad or mm.
         distance: from the last reachable value, in parts of the range.
     """
 
     number: int
+    variant: Variant
     car: Car
     home: Inputs
     inputs: Inputs
@@ -52,64 +56,63 @@ def near_pose(number: int, seed: int = 0, nearest: float = NEAREST, farthest: fl
     """
     rng = np.random.default_rng([seed, number])
     while True:
-        found = _attempt(number, rng, nearest, farthest)
+        drawn = random_car(rng)
+        found = approach(
+            drawn.car,
+            drawn.variant,
+            drawn.inputs,
+            driven=drawn.inputs[int(rng.integers(len(drawn.inputs)))],
+            forward=bool(rng.integers(2)),
+            aside=rng.uniform(-1.0, 1.0),
+            distance=float(np.exp(rng.uniform(math.log(nearest), math.log(farthest)))),
+            lifted=rng.uniform(-1.0, 1.0) if rng.random() < 0.3 else 0.0,
+            number=number,
+        )
         if found is not None:
             return found
 
 
-def _attempt(number: int, rng: np.random.Generator, nearest: float, farthest: float) -> NearPose | None:
-    return approach(
-        car_with_ends(rng),
-        driven=DRIVEN[int(rng.integers(2))],
-        forward=bool(rng.integers(2)),
-        aside=rng.uniform(-1.0, 1.0),
-        distance=float(np.exp(rng.uniform(math.log(nearest), math.log(farthest)))),
-        heave=rng.uniform(-1.0, 1.0) if rng.random() < 0.3 else 0.0,
-        number=number,
-    )
-
-
-def car_with_ends(rng: np.random.Generator) -> Car:
-    """A random car, now and then one whose arm or upper end can come to lock."""
-    return random_car(rng, MADE[int(rng.integers(len(MADE)))])[0]
-
-
 def approach(
     car: Car,
+    variant: Variant,
+    inputs: Sequence[str],
     *,
     driven: str,
     forward: bool,
     aside: float,
     distance: float,
-    heave: float = 0.0,
+    lifted: float = 0.0,
     number: int = -1,
 ) -> NearPose | None:
     """Drive one input of a car to its end and step back; None if it has no end that is open to reach.
 
     Args:
-        driven: `arm_angle` or `rack`.
+        inputs: all that are driven but the chassis' own motions.
+        driven: one of them.
         forward: to the upper end of the input, else to the lower one.
-        aside: where the other input is held, -1 to 1.
+        aside: where the other inputs are held, -1 to 1.
         distance: from the end, in parts of the range between both ends.
-        heave: -1 to 1.
+        lifted: how far the chassis is moved, -1 to 1.
         number: for the record.
     """
-    linkage = Linkage.of(car)
-    if not linkage.sound:
+    chassis = {name: lifted * room(car, name, LIFTED) for name in variant.chassis_motions}
+    try:
+        home = drawn_inputs(car, inputs)
+        held = {n: value + (aside * room(car, n, ASIDE) if n != driven else 0.0) for n, value in home.items()}
+        last = end(car, held, driven, forward)
+    except PointcoordError:
         return None
-    size = linkage.size
-    home = linkage.home | {"heave": 0.0}
-    held = dict(home)
-    if driven == "arm_angle":
-        held["rack"] += 0.06 * size * aside
-    else:
-        held["arm_angle"] += 0.3 * aside
-    last = linkage.end(held, driven, forward)
-    other = linkage.end(held, driven, not forward) if last else None
-    if last is None or other is None:
+    if last is None:
         return None
-    value, lock = last
-    inputs = held | {driven: value + (other[0] - value) * distance, "heave": 0.1 * size * heave}
-    if not (0.0 < inputs["arm_angle"] < math.pi and linkage.way_is_open(home, inputs)):
-        return None
-    return NearPose(number, car, home, inputs, driven, lock, abs(other[0] - value), distance)
+    near = last.value + (-1.0 if forward else 1.0) * distance * last.reach
+    return NearPose(
+        number,
+        variant,
+        car,
+        home | dict.fromkeys(chassis, 0.0),
+        held | {driven: near} | chassis,
+        driven,
+        last.lock,
+        last.reach,
+        distance,
+    )

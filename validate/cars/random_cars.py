@@ -1,52 +1,107 @@
-"""Random cars: any suspension on either side, scaled, turned and moved, some made to lock in one way."""
+"""Random cars of every mechanism: points moved, mirrored, turned, scaled and displaced.
+
+A car is one that pointcoord reads and solves at its own drawing; a drawing that it refuses is drawn back
+towards the base car. A mechanism some of whose rows follow from others in the drawing, as those of a planar
+one do, is only mirrored, turned, scaled and displaced: nothing else is sure to keep them true.
+"""
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Collection
+from dataclasses import dataclass
 
 import numpy as np
 
-from validate.cars.car import Car, as_tuples, other_side, placed
-from validate.cars.registry import SUSPENSIONS, Variant
-from validate.cars.suspension import LEFT_OVER, REACH
+from pointcoord import PointcoordError
+from validate.cars.base_cars import Variant, variants
+from validate.cars.car import Array, Car, moved, other_side, random_rotation, scaled, turned
+from validate.cars.input_ends import condition, drawn_inputs
+from validate.cars.moved_points import LEFT_OVER, SHARE, Moves, drawn_back, sliding, with_every_point
 
-# What a car, or a motion of it, comes close to: "upper lock" is that of the knuckle's upper end, the slide of
-# a strut or the upper arm of a double wishbone.
-Kind = Literal["regular", "dead arm", "toggle", "upper lock", "singular drawing"]
-KINDS: tuple[Kind, ...] = ("regular", "dead arm", "toggle", "upper lock", "singular drawing")
-FIRST = 0.7  # of the cars of a suspension with several closures are of the first one
-NEAREST = -12.0  # decades: how near to a singular pose, as a share of the whole way to it
+FIRST = 0.7  # of the cars of a mechanism with several closures are of the first one
+OWN = 0.5  # of the cars have the inputs of their base car's scene
 
 
-def random_variant(rng: np.random.Generator) -> Variant:
-    """Every suspension as often as any other, and its first closure more often than the rest."""
-    types = tuple(SUSPENSIONS)
-    suspension = SUSPENSIONS[types[int(rng.integers(len(types)))]]
-    first, *rest = suspension.closures
-    if rest and rng.random() >= FIRST:
-        return Variant(suspension.name, rest[int(rng.integers(len(rest)))])
-    return Variant(suspension.name, first)
+@dataclass(frozen=True)
+class Placing:
+    """Where a car is put: on the other side, turned, scaled from the origin, displaced (mm)."""
+
+    mirrored: bool
+    turn: Array
+    scale: float
+    away: Array
+
+    def __call__(self, car: Car) -> Car:
+        """The car put there."""
+        there = other_side(car) if self.mirrored else car
+        return moved(scaled(turned(there, self.turn), self.scale), self.away)
 
 
-def random_car(rng: np.random.Generator, kind: Kind) -> tuple[Car, float]:
-    """A random car, and its scale.
+@dataclass(frozen=True)
+class RandomCar:
+    """A random car with the inputs that drive it.
 
-    Args:
-        kind: which of its locks a motion of it must be able to reach. The upper end of a suspension locks
-            as it is drawn first: a collinear strut's slide never runs out.
+    Attributes:
+        inputs: names; the chassis' own motions are not among them.
+        scale: by which the whole car is multiplied.
     """
-    variant = random_variant(rng)
-    suspension = SUSPENSIONS[variant.suspension]
-    if kind == "upper lock":
-        variant = Variant(suspension.name, suspension.closures[0])
-    drawn = suspension.drawing(rng.uniform, variant.closure, REACH, LEFT_OVER)
-    if kind == "upper lock":
-        drawn = suspension.with_upper_lock(rng.uniform, drawn)
-    if kind == "dead arm":
-        drawn = suspension.with_arm_lock(rng.uniform, drawn)
-    if kind == "singular drawing":
-        nearly = suspension.nearly_singular[variant.closure]
-        left = 10.0 ** rng.uniform(NEAREST, -1.0)
-        drawn = nearly[str(rng.choice(list(nearly)))](rng, drawn, left)
-    car = Car(as_tuples(drawn), "left", closure=variant.closure, suspension=variant.suspension)
-    return placed(rng, other_side(car) if rng.random() < 0.5 else car)
+
+    variant: Variant
+    car: Car
+    inputs: tuple[str, ...]
+    scale: float
+
+
+def is_accepted(car: Car, inputs: Collection[str]) -> bool:
+    """Whether pointcoord reads the car and solves it at its own drawing."""
+    try:
+        # Points that coincide make no number, which is no car.
+        with np.errstate(all="ignore"):
+            return condition(car, drawn_inputs(car, inputs)) < np.inf
+    except (PointcoordError, ValueError, ArithmeticError):
+        return False
+
+
+def random_car(rng: np.random.Generator) -> RandomCar:
+    """A random car of any mechanism, each as often as any other."""
+    variant = _variant(rng)
+    own, *others = variant.input_sets
+    inputs = own if not others or rng.random() < OWN else others[int(rng.integers(len(others)))]
+    base = with_every_point(variant.base)
+    moves, placing = _moves(rng, base), _placing(rng, variant)
+    if variant.holds_its_shape:
+        moves = Moves()
+    car = drawn_back(base, moves, lambda there: is_accepted(placing(there), inputs))
+    return RandomCar(variant, placing(car), inputs, placing.scale)
+
+
+def _variant(rng: np.random.Generator) -> Variant:
+    """Every mechanism as often as any other, and its first closure more often than the rest."""
+    names = tuple(dict.fromkeys(variant.suspension for variant in variants()))
+    name = names[int(rng.integers(len(names)))]
+    first, *rest = (variant for variant in variants() if variant.suspension == name)
+    return rest[int(rng.integers(len(rest)))] if rest and rng.random() >= FIRST else first
+
+
+def _moves(rng: np.random.Generator, base: Car) -> Moves:
+    """Most points moved by up to a share of the car's size; now and then a point off its line or left out."""
+    reach = SHARE * base.size * 10.0 ** rng.uniform(-1.0, 0.0)
+    on_lines = sliding(base)
+    return Moves(
+        points={name: rng.uniform(-reach, reach, 3) for name in base.points},
+        slid={name: rng.uniform(-1.0, 1.0) for name in on_lines},
+        beside={n: rng.uniform(-LEFT_OVER, LEFT_OVER, 3) for n in on_lines if rng.random() < 0.3},
+        without=frozenset(name for name in base.structure.stand_ins if rng.random() < 0.3),
+    )
+
+
+def _placing(rng: np.random.Generator, variant: Variant) -> Placing:
+    """Scaled by up to a thousand, turned and displaced, each in one of two."""
+    mirrored = bool(rng.random() < 0.5) and not variant.of_parts
+    scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.5 else 1.0
+    turn = random_rotation(rng) if rng.random() < 0.5 else np.eye(3)
+    away = np.zeros(3)
+    if rng.random() < 0.5:
+        away = rng.normal(size=3)
+        away *= scale * 10.0 ** rng.uniform(0.0, 7.0) / np.linalg.norm(away)
+    return Placing(mirrored, turn, scale, away)

@@ -1,33 +1,40 @@
 """Random scenes by number: the same number is the same scene, on every machine and in every run.
 
-Every suspension comes up as often as any other; of the struts seven in ten are as drawn, the others
-collinear. The whole car is mirrored, turned, moved and scaled. Inputs are of every kind and go from slow and
-small to fast and large. A share of the scenes comes close to a singular pose: the arm at its dead point, tie
-rod and steering arm in line, what holds the knuckle's upper end locked, or a drawing that is itself nearly
-singular.
+Every mechanism comes up as often as any other; of several closures the first one in seven of ten. The whole
+car is mirrored, turned, moved and scaled. Inputs are every set that the mechanism allows, by laws of every
+kind, from slow and small to fast and large. A share of the scenes comes close to a singular pose: near the
+end of an input, or drawn there.
+
+The recipe is that of seed 20261123: cars are perturbed base cars of every shipped mechanism. (Until 20261122
+they were struts and double wishbones alone, each with a recipe of its own.)
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
-from pointcoord import Scene
-from validate.cars.input_limits import Linkage
-from validate.cars.random_cars import KINDS, NEAREST, Kind, random_car
-from validate.cars.registry import Variant
-from validate.cars.scene_content import scene_content
+from pointcoord import PointcoordError, Scene
+from validate.cars.base_cars import Variant
+from validate.cars.input_ends import End, Inputs, drawn_inputs, end, redrawn, room
+from validate.cars.random_cars import RandomCar, random_car
+from validate.cars.scene_content import content_of
 
-SHARES = (0.88, 0.035, 0.035, 0.03, 0.02)  # of the kinds
-SEED = 20261122  # another recipe for the scenes takes another seed: a store of results keeps it
+Kind = Literal["regular", "near an end", "singular drawing"]
+KINDS: tuple[Kind, ...] = ("regular", "near an end", "singular drawing")
+SHARES = (0.88, 0.09, 0.03)  # of the kinds
+SEED = 20261123  # another recipe for the scenes takes another seed: a store of results keeps it
+NEAREST = -12.0  # decades: how near to a singular pose, as a share of the whole way to it
+# How far inputs go, rad and parts of the car's size: from their drawn values, by their laws, the chassis.
+OFFSET, LARGEST, HEAVED = (0.25, 0.04), (0.5, 0.12), (0.3, 0.4)
 
 
 @dataclass(frozen=True)
 class RandomScene:
-    """A scene with its number, its kind of suspension, and what it was made to come near to."""
+    """A scene with its number, its mechanism, and what it was made to come near to."""
 
     number: int
     variant: Variant
@@ -36,49 +43,81 @@ class RandomScene:
 
 
 def random_scene(number: int, samples: int = 3) -> RandomScene:
-    """The random scene of a number, from zero up."""
+    """The random scene of a number, from zero up; one without an end to come near to is regular."""
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
-    car, scale = random_car(rng, kind)
+    drawn = random_car(rng)
+    home = drawn_inputs(drawn.car, drawn.inputs)
+    found = None if kind == "regular" else _some_end(rng, drawn, home)
+    if found is None:
+        kind = "regular"
+    elif kind == "singular drawing":
+        drawn, home = _drawn_near(rng, drawn, home, *found)
     duration = 10.0 ** rng.uniform(-3.0, 2.0)
     start = float(rng.choice([0.0, rng.uniform(-duration, duration)]))
-    laws = _inputs(rng, kind, Linkage.of(car), scale, start, start + duration)
-    content = scene_content(
-        car,
-        **laws,
+    times = start, start + duration
+    if kind == "near an end" and found is not None:
+        driven, last = found
+        laws: dict[str, Any] = {name: {"constant": value} for name, value in home.items()}
+        laws[driven] = _approach(rng, home[driven], last.value, *times)
+    else:
+        laws = {name: _about(rng, drawn, name, value, LARGEST, *times) for name, value in home.items()}
+    for name in drawn.variant.chassis_motions:
+        if rng.random() < 0.5:
+            laws[name] = _about(rng, drawn, name, 0.0, HEAVED, *times)
+    content = content_of(
+        drawn.car,
+        laws,
         start=start,
         stop=start + duration,
         samples=samples,
-        tolerance=1e-9 * scale,
+        tolerance=1e-9 * drawn.scale,
         title=f"random car {number}",
     )
-    return RandomScene(number, Variant.of(car), kind, Scene.from_mapping(content))
+    return RandomScene(number, drawn.variant, kind, Scene.from_mapping(content))
 
 
-def _inputs(
-    rng: np.random.Generator, kind: Kind, linkage: Linkage, scale: float, start: float, stop: float
+def _some_end(rng: np.random.Generator, drawn: RandomCar, home: Inputs) -> tuple[str, End] | None:
+    """An input and one of its ends, the others as drawn; None if no input has any."""
+    ways = [(name, ahead) for name in drawn.inputs for ahead in (False, True)]
+    for place in rng.permutation(len(ways)):
+        driven, ahead = ways[int(place)]
+        try:
+            last = end(drawn.car, home, driven, ahead)
+        except PointcoordError:
+            continue
+        if last is not None:
+            return driven, last
+    return None
+
+
+def _drawn_near(
+    rng: np.random.Generator, drawn: RandomCar, home: Inputs, driven: str, last: End
+) -> tuple[RandomCar, Inputs]:
+    """The car drawn anew near an end, and its inputs there; farther from it where it must be."""
+    left = 10.0 ** rng.uniform(NEAREST, -1.0)
+    while True:
+        try:
+            there = redrawn(drawn.car, home | {driven: last.value + left * (home[driven] - last.value)})
+            return replace(drawn, car=there), drawn_inputs(there, drawn.inputs)
+        except PointcoordError:
+            if left == 1.0:
+                return drawn, home
+            left = min(10.0 * left, 1.0)
+
+
+def _about(
+    rng: np.random.Generator,
+    drawn: RandomCar,
+    name: str,
+    value: float,
+    largest: tuple[float, float],
+    start: float,
+    stop: float,
 ) -> dict[str, Any]:
-    angle, travel = linkage.drawn_angle, linkage.drawn_rack
-    middle = angle + float(rng.choice([0.0, rng.uniform(-0.25, 0.25)]))
-    inputs = {
-        "arm_angle": _law(rng, middle, 0.5, start, stop),
-        "rack": _law(rng, rng.uniform(-20.0, 20.0) * scale, 60.0 * scale, start, stop),
-    }
-    if kind == "dead arm":
-        inputs["arm_angle"] = _approach(rng, angle, float(rng.choice(linkage.dead_points())), start, stop)
-    if kind == "toggle":
-        held = min(max(middle, 0.0), math.pi)
-        if ends := linkage.ends({"arm_angle": held, "rack": travel}, "rack"):
-            inputs["arm_angle"] = {"constant": held}
-            inputs["rack"] = _approach(rng, travel, float(rng.choice([end for end, _ in ends])), start, stop)
-    if kind == "upper lock":
-        ends = linkage.ends(linkage.home, "arm_angle")
-        if locked := [end for end, lock in ends if lock == linkage.suspension.upper_lock]:
-            inputs["arm_angle"] = _approach(rng, angle, float(rng.choice(locked)), start, stop)
-            inputs["rack"] = {"constant": travel}
-    if rng.random() < 0.5:
-        inputs["heave"] = _law(rng, rng.uniform(-30.0, 30.0) * scale, 200.0 * scale, start, stop)
-    return inputs
+    """The law of an input about a value or some way from it."""
+    middle = value + float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])) * room(drawn.car, name, OFFSET)
+    return _law(rng, middle, room(drawn.car, name, largest), start, stop)
 
 
 def _law(

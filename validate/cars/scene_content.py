@@ -12,54 +12,45 @@ from validate.cars.car import Car
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
 Law = float | Sequence[float] | Mapping[str, Any]
 
-SQUARE = 1.5707963267948966  # rad: the arm angle at which rise and angle are most nearly proportional
 
-
-def scene_content(
+def content_of(
     car: Car,
-    arm_angle: Law = SQUARE,
-    rack: Law = 0.0,
-    heave: Law | None = None,
+    laws: Mapping[str, Law],
     *,
     start: float = 0.0,
     stop: float | None = None,
     samples: int | None = None,
     tolerance: float = 1e-9,
-    effects: Sequence[str] = tuple(EFFECTS),
+    effects: Sequence[str] | None = None,
     title: str = "",
 ) -> dict[str, Any]:
     """The content of a scene.
 
     Args:
-        arm_angle, rack, heave: laws of the inputs, rad and mm over s.
+        laws: of the inputs, rad and mm over s.
         start, stop: s; without a stop there is a single instant.
         samples: instants; three of a motion if not given.
         tolerance: mm.
-        effects: all that there are if not given.
+        effects: all that the car has if not given.
+    Raises:
+        SceneError: it is no scene, and no effects are given.
     """
-    laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
     stop = start if stop is None else stop
-    return {
+    content = {
         **({"title": title} if title else {}),
-        "effects": list(effects),
+        "effects": list(effects or ()),
         "tolerance": tolerance,
-        "mechanism": {
-            "type": car.suspension,
-            "closure": car.closure,
-            "side": car.side,
-            "up": [float(x) for x in car.up],
-            "right": [float(x) for x in car.right],
-            "points": {name: [float(x) for x in place] for name, place in car.points.items()},
-        },
+        "mechanism": car.mechanism,
         "inputs": {name: _input(law) for name, law in laws.items()},
         "time": {"start": start, "stop": stop, "samples": samples or (1 if stop == start else 3)},
     }
+    return content if effects is not None else content | {"effects": _every_effect(content)}
 
 
-def car_of(scene: Scene) -> Car:
-    """The car of a scene."""
-    part = scene.mechanism
-    return Car(part.points, part.side, part.up, part.right, part.closure, part.type)
+def _every_effect(content: dict[str, Any]) -> list[str]:
+    """The effects that a car has: some ask for a role that a mechanism may not have."""
+    part = Scene.from_mapping(content).mechanism
+    return [name for name, effect in EFFECTS.items() if not effect.refusal(part.topology, part.points)]
 
 
 def _input(law: Law) -> dict[str, Any]:

@@ -81,13 +81,17 @@ def _suites(record: Record) -> Iterator[Suite]:
         if faults := [*_faults(examined)]:
             yield examined.name, {"scene": examined.name}, faults
     for since in record.since:
-        properties = {"scene": since.scene, "baseline": str(record.baseline), **factor}
+        properties = {"scene": since.scene, "baseline": _target(record), **factor}
         yield f"{since.scene}: since the baseline", properties, [*_since(since, record.factor)]
     for name in record.gone:
         case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
-        yield f"{name}: since the baseline", {"scene": name, "baseline": str(record.baseline)}, [case]
+        yield f"{name}: since the baseline", {"scene": name, "baseline": _target(record)}, [case]
     for name in record.not_run:
         yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {record.stopped}")]
+
+
+def _target(record: Record) -> str:
+    return "" if record.baseline is None else record.baseline.target
 
 
 def _counts(cases: Sequence[_Case]) -> dict[str, int]:

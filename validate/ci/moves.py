@@ -8,7 +8,8 @@ from dataclasses import asdict
 from typing import Any
 
 from validate.ci.baseline import Baseline, Move, Since
-from validate.output.report import about, heading, table
+from validate.output.report import about, heading, with_unit
+from validate.output.table import Cell, Part, Table
 
 NAMED = 8  # numbers in a sentence: the table's notes have them all
 ORDER = ("agrees", "not tested", "moved")
@@ -31,30 +32,35 @@ def _severity(move: Move) -> tuple[int, float]:
     return ORDER.index(move.verdict), 0.0 if math.isnan(move.share) else move.share
 
 
-def since_text(since: Since) -> str:
+def since_parts(since: Since) -> tuple[Part, ...]:
     """A scene against the baseline: a row for each formulation and quantity."""
     if since.standing != "compared":
-        return f"Since the baseline: {since.words}."
-    rows = [
-        (
-            move.formulation,
-            heading(move.quantity, move.name),
-            move.name,
-            *_numbers(move),
-            "MOVED" if move.verdict == "moved" else move.verdict,
-        )
-        for move in worst_moves(since)
-    ]
-    head = ("formulation", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
-    lines = [f"{since.scene}: since the baseline", *([table(head, rows)] if rows else [])]
+        return (f"Since the baseline: {since.words}.",)
+    table = moves_table([since])
     notes = (*((since.words,) if since.words else ()), *_alone(since))
-    return "\n".join((*lines, *(f"  note: {line}" for line in notes)))
+    lines = (f"  note: {line}" for line in notes)
+    return f"{since.scene}: since the baseline", *((table,) if table.rows else ()), *lines
 
 
-def _numbers(move: Move) -> tuple[str, ...]:
-    share = f"{move.share:.1e}" if math.isfinite(move.share) else "not a number"
-    moved = f"{move.moved:.1e} {move.unit}" if math.isfinite(move.moved) else "not a number"
-    return moved, f"{move.bound:.1e} {move.unit}", f"{move.instant:.4g} s", share
+def moves_table(found: Sequence[Since], most: int | None = None) -> Table:
+    """What moved by how much: of each scene, formulation and quantity the worst."""
+    rows = [_row(since.scene, move) for since in found for move in worst_moves(since)]
+    head = ("scene", "solved by", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
+    return Table(head, tuple(rows[:most]))
+
+
+def _row(scene: str, move: Move) -> tuple[str | Cell, ...]:
+    return (
+        scene,
+        move.formulation,
+        heading(move.quantity, move.name),
+        move.name,
+        with_unit(move.moved, move.unit),
+        with_unit(move.bound, move.unit),
+        f"{move.instant:.4g} s",
+        with_unit(move.share, ""),
+        Cell("MOVED", verdict="moved") if move.verdict == "moved" else move.verdict,
+    )
 
 
 def _alone(since: Since) -> Iterator[str]:

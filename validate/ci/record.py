@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.ci.baseline import Since
+from validate.ci.baseline import Baseline, Since
+from validate.ci.moves import baseline_data
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
+from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Accuracy, Solution
-from validate.output.report import about
+from validate.output.report import about, examined_data, finding_data, paper_data
+from validate.paper.tables import PaperRow
+
+if TYPE_CHECKING:  # most runs compare no file
+    from validate.measured.comparing import DataOutcome
 
 Case = tuple[Examined, Outcome]
 
@@ -25,24 +32,26 @@ class Record:
     Attributes:
         names: of all scenes, as they are shown; the examined ones come first.
         factor: how many times the derived tolerance differences are held to.
-        baseline: the file that the scenes are held to, if there is one.
+        baseline: that the scenes are held to, if there is one.
         examined: what came of each scene, in order. since: each against the baseline.
-        gone: the scenes of the baseline that are none of the run's.
+        files: of results, by the name of the scene whose car they are held to.
+        paper: the paper's printed tables beside ours.
         stopped: why the rest was not run. ended: the status of a run that came to its end.
     """
 
     names: Sequence[str]
     factor: float = 1.0
-    baseline: str | None = None
-    gone: tuple[str, ...] = ()
+    baseline: Baseline | None = None
     examined: list[Examined] = field(default_factory=list)
     since: list[Since] = field(default_factory=list)
+    files: dict[str, DataOutcome] = field(default_factory=dict)
+    paper: Sequence[PaperRow] = ()
     stopped: str = "the run did not come to its end"
     ended: ExitStatus | None = None
 
-    def add(self, examined: Examined, since: Since | None) -> None:
+    def add(self, examined: Examined, since: Since | None = None) -> None:
         """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(replace(without_numbers(examined), printed=None))
+        self.examined.append(without_numbers(examined))
         if since is not None:
             self.since.append(since)
 
@@ -52,10 +61,20 @@ class Record:
         return tuple(self.names[len(self.examined) :])
 
     @property
+    def gone(self) -> tuple[str, ...]:
+        """The scenes of the baseline that are none of the run's."""
+        return () if self.baseline is None else self.baseline.gone(self.names)
+
+    @property
     def outcomes(self) -> Iterator[Case]:
         """Every comparison of every scene."""
         for examined in self.examined:
             yield from ((examined, outcome) for outcome in examined.outcomes)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the paper's formulas as printed get wrong."""
+        return findings([one.printed for one in self.examined if one.printed is not None])
 
     @property
     def status(self) -> ExitStatus:
@@ -64,6 +83,18 @@ class Record:
         if self.baseline is not None and not any(one.compared for one in self.since):
             found.append(ExitStatus.NO_VERDICT)
         return combined(found)
+
+    def data(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        baseline = self.baseline
+        return {
+            "scenes": [examined_data(one, self.files.get(one.name)) for one in self.examined],
+            "printed_formulas": [*map(finding_data, self.findings)],
+            "printed_tables": paper_data(self.paper) if self.paper else None,
+            "tolerance_factor": self.factor,
+            "not_run": list(self.not_run),
+            "baseline": None if baseline is None else baseline_data(baseline, self.since, self.gone),
+        }
 
 
 def without_numbers(examined: Examined) -> Examined:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections import Counter
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field, replace
-from typing import Any, get_args
+from dataclasses import replace
 
 from pointcoord import Scene, SceneError
-from validate.ci.baseline import Baseline, Recorder, Since, read_baseline
-from validate.ci.moves import baseline_data, lost_lines, since_text
-from validate.ci.record import Record, ends_the_run, why_undecided
+from validate.ci import verdict
+from validate.ci.baseline import Recorder, Since, read_baseline
+from validate.ci.moves import since_parts
+from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
 from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
@@ -24,27 +23,25 @@ from validate.commands.usage import (
     add_timings,
     load_scene,
     name_of,
+    positive,
     result_files,
 )
-from validate.comparison.compare import Verdict
 from validate.comparison.examined import Examined, examine
-from validate.comparison.findings import Finding, findings
-from validate.diagnosis import Explanation, explain_outcome
+from validate.diagnosis import explain_outcome
 from validate.exit_status import ExitStatus
-from validate.formulations.refusals import Refusal
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal, program_version
+from validate.output.progress import progress
+from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
-from validate.paper.tables import PaperRow, compare_with_paper
+from validate.paper.tables import compare_with_paper
 from validate.plain_text import shown
 from validate.solvers.apart import LIMIT, Apart
 from validate.solvers.check import ACCURACY, required_accuracy
 from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
-
-Explained = Sequence[Sequence[Explanation]]
 
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
@@ -54,8 +51,8 @@ _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
 Solve each scene by two formulations and compare every number that it asks for. Each
 formulation claims how far off its numbers may be, and a difference is held to the sum of both
-claims, its tolerance. Of each quantity the largest difference is printed, and how much of its
-tolerance any number of it uses at most.
+claims, its tolerance. Of each scene a line says how much of its tolerance any number uses at most,
+and where; -v prints every quantity.
 
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
@@ -96,7 +93,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--map",
         metavar="FILE.toml",
-        help="what the columns of --data are; not needed for files that pointcoord simulate -o writes",
+        help="what the columns of --data are; not needed for files that pointcoord simulate -o writes; one "
+        "that is not there yet is written, to be filled in",
     )
     parser.add_argument(
         "--solver",
@@ -117,7 +115,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--solver-timeout",
-        type=_timeout,
+        type=positive("time limit in s"),
         metavar="S",
         help=f"how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes longer, "
         "or crashes, has no answer there, and is made anew for the next scene",
@@ -132,7 +130,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--tolerance-factor",
-        type=_factor,
+        type=positive("factor"),
         default=1.0,
         metavar="F",
         help="hold differences to F times the derived tolerance; every result says so",
@@ -153,66 +151,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
     )
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="print the table of every quantity of each scene"
+    )
     add_timings(parser)
     add_quiet(parser)
-
-
-def _factor(word: str) -> float:
-    return _positive(word, "factor")
-
-
-def _timeout(word: str) -> float:
-    return _positive(word, "time limit in s")
-
-
-def _positive(word: str, what: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no {what}; allowed: a positive, finite number")
-    return value
-
-
-@dataclass
-class _Results:
-    """What is there so far, as plain data and in counts."""
-
-    record: Record
-    baseline: Baseline | None
-    scenes: list[dict[str, Any]] = field(default_factory=list)
-    agreed: dict[tuple[str, str], int] = field(default_factory=dict)
-    uncompared: int = 0
-    printed: list[str] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
-    unprinted: list[tuple[str, Refusal]] = field(default_factory=list)
-    paper: Sequence[PaperRow] = ()
-
-    def add(self, examined: Examined, since: Since | None, explanations: Explained) -> None:
-        self.record.add(examined, since)
-        self.scenes.append(report.examined_data(examined, explanations))
-        self.uncompared += not examined.outcomes
-        for outcome in examined.outcomes:
-            first, second = (s.formulation for s in outcome.solutions)
-            self.agreed[first, second] = self.agreed.get((first, second), 0) + outcome.passed
-        if examined.printed is not None:
-            self.printed.append(examined.name)
-            self.findings += findings([examined.printed])
-        if examined.unprinted is not None:
-            self.unprinted.append((examined.name, examined.unprinted))
-
-    def data(self) -> dict[str, Any]:
-        return {
-            "scenes": self.scenes,
-            "printed_formulas": [report.finding_data(finding) for finding in self.findings],
-            "printed_tables": report.paper_data(self.paper) if self.paper else None,
-            "tolerance_factor": self.record.factor,
-            "not_run": list(self.record.not_run),
-            "baseline": None
-            if self.baseline is None
-            else baseline_data(self.baseline, self.record.since, self.record.gone),
-        }
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -258,63 +201,75 @@ def compare_scenes(
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
     shown_names = [name_of(name) for name in names]
-    record = Record(shown_names, options.tolerance_factor, options.baseline)
-    if baseline is not None:
-        record.gone = baseline.gone(shown_names)
+    record = Record(shown_names, options.tolerance_factor, baseline)
     files.require_writable()
     if page is not None:
         page.require()
     telling = None if page is None else page.telling(len(names))
     head = Head.of("validate", options.command, options.timings)
     journal = Journal(options.json, head, console)
-    results = _Results(record, baseline)
+
+    def finished() -> str:
+        return f"{len(record.examined)} of {counted_as(len(names), 'scene')}"
+
     with (
         _solver(options) as own,
         nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
-        journal.closing(results.data, lambda: results.scenes, lambda: _finished(results, names)) as ending,
+        journal.closing(record.data, lambda: record.examined, finished) as ending,
         files.closing(record, recorder, console),
-        console.working("scenes", len(names), lines=brief) as told,
+        progress(console, "scenes", total=len(names), lines=brief) as told,
     ):
-        for place, (name, scene) in enumerate(_loaded(names, console)):
-            since = None
+        loaded = _loaded(names, console)
+        width = max(map(len, shown_names))
+        compared = "; ".join(" and ".join(pair) for pair in pairs)
+        console.say(f"{compared}: {counted_as(len(names), 'scene')}\n")
+        if not options.verbose:
+            console.say(verdict.scene_head(width))
+        for place, (name, scene) in enumerate(loaded):
+            since, began = None, time.monotonic()
             told(shown_names[place], place)
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
-                examined = examine(name, scene, pairs, printed, record.factor, own)
-                explained = [explain_outcome(scene, outcome) for outcome in examined.outcomes]
-                told_why = zip(examined.outcomes, explained, strict=True)
-                outcomes = tuple(replace(outcome, explanations=why) for outcome, why in told_why)
-                examined = replace(examined, outcomes=outcomes)
-                _say(examined, explained, console)
+                examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
                 if recorder is not None:
                     recorder.add(examined.name, scene, examined.outcomes)
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
-                    console.say(since_text(since) + "\n")
             else:
-                examined, explained = scene, []
-            results.add(examined, since, explained)
+                examined = scene
+            record.add(examined, since)
+            _say(
+                examined,
+                since,
+                time.monotonic() - began,
+                options.verbose,
+                console,
+                max(map(len, shown_names)),
+            )
             if telling is not None:
-                telling.add(examined, scene if isinstance(scene, Scene) else None, explained)
-            journal.keep(results.data, _finished(results, names))
+                telling.add(examined, scene if isinstance(scene, Scene) else None)
+            journal.keep(record.data, finished())
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
                 break
         if all_of_ours and not own and not record.not_run:
-            results.paper = compare_with_paper()
-        _say_at_the_end(results, pairs, len(names), console)
+            record.paper = compare_with_paper()
+        _say_at_the_end(record, options.verbose, console)
         ending.status = record.ended = record.status
-        if console.quiet and ending.status is ExitStatus.NO_VERDICT:
-            for line in _why_no_verdict(record):
-                console.complain(line)
         if page is not None and telling is not None:
             told("the page", len(names))
-            whole = page.write(telling.run(head, record, results.paper, results.data()["baseline"]), console)
+            whole = page.write(telling.run(head, record), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute
                 console.say(f"{whole.sentence}\n{page.place}")
     return ending.status
+
+
+def explained(scene: Scene, examined: Examined) -> Examined:
+    """What came of a scene, with what would explain where it disagrees."""
+    outcomes = (replace(one, explanations=explain_outcome(scene, one)) for one in examined.outcomes)
+    return replace(examined, outcomes=tuple(outcomes))
 
 
 @contextmanager
@@ -388,97 +343,53 @@ def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | E
     return scenes
 
 
-def _say(examined: Examined, explained: Explained, console: Console) -> None:
-    if examined.complaint:
-        console.complain(examined.complaint)
-    else:
-        for warning in examined.warnings:
-            console.warn(f"{examined.name}: {warning}")
-    told = list(zip(examined.outcomes, explained, strict=True))
-    for outcome, why in told[:1]:
-        notes = (f"  note: {note}" for note in examined.defaults)
-        console.show((*report.outcome_parts(outcome, why), *notes, ""))
-    for outcome, why in told[1:]:
-        # The tables of a further pair would say nearly the same.
-        same = outcome.agreed
-        parts = (report.agreement_line(outcome),) if same else report.outcome_parts(outcome, why)
-        console.show((*parts, ""))
-
-
-def _finished(results: _Results, names: Sequence[str]) -> str:
-    return f"{len(results.scenes)} of {report.counted_as(len(names), 'scene')}"
-
-
-def _say_at_the_end(
-    results: _Results, pairs: Sequence[tuple[str, str]], count: int, console: Console
+def _say(
+    examined: Examined, since: Since | None, seconds: float, verbose: bool, console: Console, width: int
 ) -> None:
-    if results.printed:
-        console.show((*report.findings_parts(results.findings, results.printed), ""))
-    for name, why in results.unprinted:
-        console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
-    if results.paper:
-        console.show((*report.paper_parts(results.paper), ""))
-    agreed = [results.agreed.get(pair, 0) for pair in pairs]
-    counts = [report.agreeing(agreed[0], count), *(f"{more} of {count}" for more in agreed[1:])]
-    told = [
-        f"{words} between {first} and {second}" for words, (first, second) in zip(counts, pairs, strict=True)
-    ]
-    # No agreement is no disagreement yet: what was not compared is counted apart.
-    record = results.record
-    rest = f"; {results.uncompared} of {count} could not be compared at all" if results.uncompared else ""
-    if record.not_run:
-        rest += f"; {len(record.not_run)} of {count} not run ({record.stopped}): {', '.join(record.not_run)}"
-    rest += _how_much(record)
-    if record.factor != 1.0:
-        rest += f"; {report.held_to(record.factor)}"
-    console.say(", ".join(told) + rest + ".")
-    if results.baseline is not None:
-        _say_what_moved(record, console)
+    """A line for a scene; its tables for who asks for them."""
+    if examined.complaint and examined.problem is None:
+        console.complain(examined.complaint)
+    if not verbose:
+        console.show([*verdict.scene_parts(examined, seconds, width)])
+    for i, outcome in enumerate(examined.outcomes if verbose else ()):
+        notes = (f"  note: {note}" for note in examined.defaults if not i)
+        brief = i and outcome.passed
+        parts = (report.agreement_line(outcome),) if brief else report.outcome_parts(outcome)
+        console.show((*parts, *notes, ""))
+    if since is not None and (verbose or since.status is not ExitStatus.AGREE):
+        console.show((*since_parts(since), ""))
 
 
-def _how_much(record: Record) -> str:
-    """How much of what is asked for was compared, of a solver that may give what it has."""
-    counts: Counter[str] = Counter()
-    for _, outcome in record.outcomes:
-        counts.update(outcome.counts if outcome.stated else {})
-    verdicts = get_args(Verdict)
-    if not (count := sum(counts[verdict] for verdict in verdicts)):
-        return ""
-    rest = "".join(f", {counts[v]} {v}" for v in ("not given", "not tested") if counts[v])
-    back = f", {counts['given back']} of them data that the solver was given" if counts["given back"] else ""
-    return f"; {counts['agrees'] + counts['disagrees']} of {count} numbers compared{back}{rest}"
-
-
-def _say_what_moved(record: Record, console: Console) -> None:
-    held = [since for since in record.since if since.compared]
-    moved = [since.scene for since in held if since.moved]
-    names = f": {', '.join(moved)}" if moved else ""
-    nouns = "scene" if len(held) == 1 else "scenes"
-    told = (
-        f"Since the baseline {shown(str(record.baseline))} {len(moved)} of {len(held)} {nouns} moved{names}"
-    )
-    if not held:
-        told = f"Since the baseline {shown(str(record.baseline))} no scene could be compared"
-    lost = [line for since in record.since for line in lost_lines(since)]
-    lacking = f"; given then and not now: {'; '.join(lost)}" if lost else ""
-    gone = f"; gone, in the baseline and not in this run: {', '.join(record.gone)}" if record.gone else ""
-    nothing = "; nothing of this run could be held to it" if not held else ""
-    others = [since.words for since in record.since if since.replaced]
-    another = f"; no verdict: {'; '.join(others)}" if others else ""
-    console.say(f"{told}{lacking}{another}{gone}{nothing}.")
-
-
-def _why_no_verdict(record: Record) -> Iterator[str]:
-    """Why scenes have no verdict, a line each; not those of which a complaint has said it."""
-    for examined in record.examined:
-        for outcome in examined.outcomes[: 0 if examined.complaint else None]:
-            if not outcome.passed and not outcome.disagreements:
-                words = outcome.why_no_verdict or "not every number is tested"
-                untested = [row for row in outcome.undecided if row.verdict == "not tested"]
-                for row in (*untested, *outcome.undecided)[:1]:
-                    words += f"; {report.about(row.quantity, row.name)}: {why_undecided(row, outcome)}"
-                yield f"{examined.name}: no verdict: {words}"
-    for since in record.since:
-        if since.status is ExitStatus.NO_VERDICT:
-            words = since.words or f"{since.scene}: not every number is tested"
-            yield f"no verdict since the baseline: {words}"
+def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
+    """What all scenes have in common, the verdict, and what to do next."""
+    for warning in verdict.by_scene(record, lambda one: iter(() if one.complaint else one.warnings)):
+        console.warn(warning)
+    printed = [one for one in record.examined if one.printed is not None]
+    unprinted = [(one.name, one.unprinted) for one in record.examined if one.unprinted is not None]
+    if verbose:
+        if record.findings:
+            table = report.findings_table(record.findings)
+            console.show((table.caption, table, ""))
+        elif printed:
+            console.say(f"The paper's printed formulas agree in {', '.join(one.name for one in printed)}.\n")
+        for name, why in unprinted:
+            console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
+        if record.paper:
+            console.show((*report.paper_parts(record.paper), ""))
+    elif printed or unprinted:
+        wrong = counted_as(len(record.findings), "wrong result")
+        console.say(
+            f"\nThe paper's formulas as printed give {wrong} in these scenes; -v says which, and why."
+        )
+    console.say(f"\n{verdict.sentence(record)}.")
+    if step := verdict.next_step(record, verbose):
+        console.say(step)
+    if console.quiet and record.status is ExitStatus.NO_VERDICT:
+        for one in record.examined:
+            # A complaint has said it of the others.
+            if not one.complaint and (told := verdict.silence(one)):
+                console.complain(f"{one.name}: {told}")
+        for since in record.since:
+            if since.status is ExitStatus.NO_VERDICT:
+                words = since.words or f"{since.scene}: not every number is tested"
+                console.complain(f"no verdict since the baseline: {words}")

@@ -6,8 +6,7 @@ import argparse
 import importlib
 import os
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
@@ -25,42 +24,30 @@ from validate.commands.usage import (
 )
 from validate.cost.report import Report
 from validate.cost.row import Part, Row
-from validate.cost.store import Header, Key, Store, StoreError, read_rows
-from validate.cost.tables import csv_text
+from validate.cost.store import Store, StoreError, latest, measured_here, read_rows
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.files import OutputError, require_writable, write_whole
-from validate.output.progress import Told, progress
+from validate.output.progress import progress
 
 if TYPE_CHECKING:
-    from validate.cost.scenes import StudyScene
+    from validate.cost.study import Study
     from validate.cost.way import Way
 
 PARTS: tuple[Part, ...] = get_args(Part)
-# Each is imported when it is measured: they need packages that a report does without.
-MODULES: Mapping[Part, str] = {
-    "accuracy": "accuracy",
-    "effects": "effects",
-    "growth": "growth.rows",
-    "loading": "loading",
-    "unrelated": "unrelated",
-}
 ROWS = "pointcoord-cost.jsonl"
-RACED = "bounce-and-steer"
-"""The scene of the study whose car is solved at unrelated inputs if none is named."""
 
 DESCRIPTION = """\
-Measure what accuracy costs in time: every way to solve a scene, over the range of its settings,
-held to a many-digit reference and timed phase by phase. Said is who reaches an accuracy of
-1e-3, 1e-6 and 1e-9 in what time, where another way is quicker than ours, and from how many
-instants on; what each effect costs; how time and memory grow with instants, designs and
-unknowns; what loading takes; what a pose takes at inputs that have nothing to do with each
-other.
+What accuracy costs in time: every way to solve a scene, over the range of its settings, held to
+a many-digit reference. Three sentences say who is quickest, what a digit costs and where others
+win; a picture shows error against time; tables hold the rest: what each effect costs, how time
+and memory grow with instants, designs and unknowns, what loading takes, and what a pose takes at
+inputs that have nothing to do with each other.
 
-A row is kept in a file when it is measured: a run that is stopped goes on where it was, and
---from-rows makes the report again without measuring."""
+What is measured is kept in a file, a row for each number: a run that is stopped goes on with the
+scene that it was in, and --from-rows makes the report again without measuring."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -77,12 +64,15 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"{SCENE_HELP}; none: the scenes of the study",
     )
     parser.add_argument("--list", action="store_true", help="name the ways, scenes and parts, and end")
-    parser.add_argument("--quick", action="store_true", help="a first look at one scene, in under a minute")
+    parser.add_argument(
+        "--quick", action="store_true", help="a first look at one scene: its accuracy, in under a minute"
+    )
     parser.add_argument("--ways", metavar="A,B", help="measure these ways only; --list names them")
     parser.add_argument(
         "--parts",
         metavar="A,B",
-        help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene",
+        help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene, with "
+        "--quick accuracy",
     )
     parser.add_argument(
         "--effects", action="store_true", help="what each effect costs at many instants: --parts effects"
@@ -103,22 +93,6 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     add_quiet(parser)
     parser.set_defaults(run=run)
-
-
-@dataclass(frozen=True)
-class Study:
-    """What is to be measured.
-
-    Attributes:
-        scenes: for the accuracy; the first one's cost is measured as it grows.
-        raced: for unrelated inputs.
-    """
-
-    parts: tuple[Part, ...]
-    scenes: tuple[StudyScene, ...]
-    raced: tuple[StudyScene, ...]
-    ways: tuple[Way, ...]
-    quick: bool
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -151,7 +125,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return status
     study = _study(options, parts)
     try:
-        store = Store(Path(options.rows), Header.here(shlex.join(options.command)))
+        store = Store(Path(options.rows), measured_here(shlex.join(options.command)))
     except StoreError as error:
         raise UsageError(f"--rows {error}") from None
     return _measured(study, store, options, journal, console)
@@ -159,7 +133,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _listing() -> str:
     """Ways, scenes and parts by name."""
-    of_study, registry = _modules()
+    of_study, registry = _module("scenes"), _module("ways.registry")
     wide = max(len(way.name) for way in registry.WAYS)
     return "\n".join(
         (
@@ -174,11 +148,6 @@ def _listing() -> str:
 
 def _needs(way: Way) -> str:
     return f" (needs the package {way.package})" if way.package else ""
-
-
-def _modules() -> tuple[Any, Any]:
-    """The study's scenes and ways."""
-    return _module("scenes"), _module("ways.registry")
 
 
 def _module(name: str) -> Any:
@@ -212,6 +181,8 @@ def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
         if options.parts is not None:
             raise UsageError("--effects and --parts both say what to measure; give one of them")
         return ("effects",)
+    if options.parts is None and options.quick and not options.from_rows:
+        return ("accuracy",)
     if options.parts is None:
         about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth", "unrelated")
         return about_scenes if options.scenes and not options.from_rows else PARTS
@@ -231,9 +202,7 @@ def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
 
 def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     """What is to be measured; everything is found before anything is measured."""
-    of_study, registry = _modules()
-    for part in parts:
-        _module(MODULES[part])
+    of_study, registry, study = _module("scenes"), _module("ways.registry"), _module("study")
     ways = registry.WAYS
     if options.ways is not None:
         ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
@@ -243,64 +212,51 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             own = name in of_study.STUDY_SCENES
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
-    chosen = tuple(scenes) or of_study.own_scenes(quick=options.quick)
-    raced = tuple(scenes) or tuple(study for study in chosen if study.name == RACED)
-    return Study(parts, chosen, raced, ways, options.quick)
+    if not scenes:
+        names = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
+        scenes = [of_study.study_scene(name, of_study.own_scene(name)) for name in names]
+    found: Study = study.Study(parts, tuple(scenes), ways, options.quick, own=bool(options.scenes))
+    return found
 
 
 def _measured(
     study: Study, store: Store, options: argparse.Namespace, journal: Journal, console: Console
 ) -> ExitStatus:
     """Measure, and report; what was measured is kept and named however it ends."""
-    held = len(store.rows())
-    console.note(f"rows are kept in {options.rows} ({held} there); a run that is stopped goes on with them")
+    there = f"rows are kept in {options.rows} ({len(store.rows)} there)"
+    console.note(f"{there}; a run that is stopped goes on with its scene")
 
     def report(rows: Iterable[Row]) -> Report:
-        return Report(options.rows, store.header, shlex.join(options.command), options.quick, tuple(rows))
+        return Report(options.rows, shlex.join(options.command), options.quick, tuple(rows))
 
     rows: list[Row] = []
     try:
         with journal.closing(lambda: report(rows).data(), lambda: rows, lambda: _rows(len(rows))) as ending:
             try:
                 with progress(console, "what accuracy costs") as told:
-                    for part in study.parts:
-                        rows += _of_part(part, study, store, told)
+                    rows += _module("study").measure(study, store, told)
             except BaseException:
-                # What the part that was stopped has kept is in the file only.
-                rows[:] = [row for row in latest(store.entries(), study.quick) if row.part in study.parts]
+                # What was kept before it stopped is in the file only.
+                rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
                 raise
             ending.status = _told(report(rows), options, console)
     except StoreError as error:
         raise OutputError("rows", str(error)) from None
     finally:
-        console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows()))}")
+        console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows))}")
     return ending.status
-
-
-def _of_part(part: Part, study: Study, store: Store, told: Told) -> tuple[Row, ...]:
-    """Measure what is missing of a part, and give its rows."""
-    module = _module(MODULES[part])
-    if part == "accuracy":
-        found = module.accuracy_rows(study.scenes, store, study.ways, quick=study.quick, progress=told)
-    elif part == "effects":
-        found = module.measure_effects(store, study.scenes, study.quick, told)
-    elif part == "growth":
-        found = module.measure_growth(store, study.scenes, study.ways, study.quick, told)
-    elif part == "loading":
-        found = module.measure_loading(store, study.quick, told)
-    else:
-        found = module.measure_unrelated(store, study.raced, study.ways, study.quick, told)
-    return tuple(found)
 
 
 def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
     """The rows of a file, chosen as they would be measured."""
     try:
-        header, entries = read_rows(Path(options.rows))
+        found = read_rows(Path(options.rows))
+        if not found:
+            raise StoreError(f"{options.rows}: holds no rows; measure them first")
     except StoreError as error:
         raise UsageError(f"--rows {error}") from None
-    quick = options.quick or all(key.quick for key, _ in entries)
-    rows = [row for row in latest(entries, quick) if row.part in parts]
+    quick = options.quick or all(row.quick for row in found)
+    rows = [row for row in latest(found, quick) if row.part in parts]
     if options.scenes:
         names = [name_of(name) for name in options.scenes]
         for name in names:
@@ -316,17 +272,7 @@ def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
             if name not in there:
                 raise UnknownName(f"way in the rows of {options.rows}", name, there)
         rows = [row for row in rows if row.way in asked or row.part == "loading"]
-    return Report(options.rows, header, shlex.join(options.command), quick, tuple(rows))
-
-
-def latest(entries: Sequence[tuple[Key, Row]], quick: bool) -> list[Row]:
-    """One row for each way with its setting on each scene.
-
-    Of a scene that was changed between two runs, and has rows of both, those of the last one count.
-    """
-    entries = [(key, row) for key, row in entries if key.quick == quick]
-    last = {(key.part, key.scene): (key.digest, key.configurations) for key, _ in entries}
-    return [row for key, row in entries if last[key.part, key.scene] == (key.digest, key.configurations)]
+    return Report(options.rows, shlex.join(options.command), quick, tuple(rows))
 
 
 def _about(row: Row, scene: str) -> bool:
@@ -343,10 +289,10 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
     console.show(report.parts())
     if options.csv == "-":
-        console.write(csv_text(report.rows))
+        console.write(report.csv())
         console.flush()
     elif options.csv:
-        _put(options.csv, csv_text(report.rows).encode())
+        _put(options.csv, report.csv().encode())
     if options.report:
         # Most runs write no page.
         from validate.html.folder import make_folder
@@ -357,9 +303,24 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
         from validate.html.run import Run
 
         Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
+    elif not options.from_rows and not console.quiet and not console.mute:
+        _picture(report, Path(options.rows).with_suffix(".svg"), console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
+
+
+def _picture(report: Report, place: Path, console: Console) -> None:
+    """The one picture, beside the rows."""
+    try:
+        content = report.headline()
+    except ImportError:
+        console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
+        return
+    if content is not None:
+        _put(str(place), content)
+        console.written.append(f"{place} holds the picture")
+        console.say(f"the picture: {place}")
 
 
 def _rows(count: int) -> str:

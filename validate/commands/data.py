@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import Any
+import os
 
 from pointcoord import Scene
 from validate.ci.record import Record
+from validate.ci.verdict import next_step
 from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.commands.reporting import Page
+from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import (
     STANDARD_INPUT,
     UsageError,
@@ -21,8 +23,9 @@ from validate.commands.usage import (
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.measured.comparing import OURS, DataOutcome, compare_results
+from validate.measured.map_to_fill_in import map_to_fill_in
 from validate.measured.mapping import read_results
-from validate.output import results_text
+from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.plain_text import shown
@@ -55,25 +58,20 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
     (given,) = options.scenes
     files = tuple(file for file in (options.data, options.map) if file is not None)
     targets = result_files(options, (given, *files), console)
+    if options.map is not None and not os.path.exists(options.map):
+        return to_be_filled_in(options.map, map_to_fill_in(options.data, load_scene(given)), console)
     mute, console.mute = console.mute, console.mute or brief
     targets.require_writable()
     if page is not None:
         page.require()
     head = Head.of("validate", options.command, options.timings)
     journal = Journal(options.json, head, console)
-    done: list[dict[str, Any]] = []
-    results = {
-        "scenes": done,
-        "printed_formulas": [],
-        "printed_tables": None,
-        "tolerance_factor": options.tolerance_factor,
-        "not_run": [],
-        "baseline": None,
-    }
     name = name_of(given)
     record = Record([name], options.tolerance_factor)
     with (
-        journal.closing(lambda: results, lambda: done, lambda: f"{len(done)} of 1 scenes") as ending,
+        journal.closing(
+            record.data, lambda: record.examined, lambda: f"{len(record.examined)} of 1 scenes"
+        ) as ending,
         targets.closing(record, None, console),
     ):
         scene = load_scene(given)
@@ -81,16 +79,18 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
             measured = read_results(options.data, options.map, scene)
             found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
         examined = _examined(found, scene, name)
-        record.add(examined, None)
-        done.append(results_text.examined_data_of(examined, found))
+        record.files[name] = found
+        record.add(examined)
         for warning in examined.warnings:
             console.warn(f"{name}: {warning}")
-        console.say(results_text.text_of(found))
+        console.show(report.file_parts(found))
+        if step := next_step(record):
+            console.say(step)
         ending.status = record.ended = examined.status
         if page is not None:
             telling = page.telling(1)
-            telling.add_file(examined, scene, found)
-            whole = page.write(telling.run(head, record, (), None), console)
+            telling.add(examined, scene, found)
+            whole = page.write(telling.run(head, record), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute

@@ -9,6 +9,7 @@ import shlex
 from functools import partial
 from typing import BinaryIO
 
+from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import (
     STANDARD_INPUT,
     UsageError,
@@ -24,10 +25,12 @@ from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
 from validate.fitting.record import data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
+from validate.measured.map_to_fill_in import map_to_fill_in
 from validate.measured.mapping import read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
 from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.output.progress import progress
 from validate.plain_text import shown
 
 ENDINGS = (".toml",)
@@ -51,7 +54,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         required=True,
         help="a file of results (CSV, whitespace table, Parquet), as for validate --data",
     )
-    parser.add_argument("--map", metavar="FILE.toml", help="what the columns of --data are")
+    parser.add_argument(
+        "--map", metavar="FILE.toml", help="what the columns of --data are; a new one is written"
+    )
     parser.add_argument(
         "--free",
         metavar="POINT.AXIS",
@@ -110,8 +115,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             raise UsageError(f"--{option} is {value:g}; allowed: a finite number {least}")
     targets = _targets(options, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
+    if options.map is not None and not os.path.exists(options.map):
+        return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
     head = Head.of("fit", options.command)
-    with told_as(name), console.working("designs") as told:
+    with told_as(name), progress(console, "designs", total=None, lines=False) as told:
         measured = read_results(options.data, options.map, scene)
         count = len(free_coordinates(scene, options.free))
         numbers = len(measured.numbers) * len(measured.rows)

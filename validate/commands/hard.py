@@ -9,6 +9,7 @@ from validate.commands.usage import UsageError, add_quiet, require_target
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
+from validate.output.progress import progress
 
 DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
@@ -84,7 +85,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     with (
         journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending,
-        console.working("cases", len(cases)) as working,
+        progress(console, "cases", total=len(cases), lines=False) as working,
     ):
         hard_run.run(cases, tell)
         if options.times:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import os
 from typing import BinaryIO
 
 from validate.closed_drawing import warnings_of
+from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import require_target
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS, UNITS
 from validate.hardpoint_files.format import formats
-from validate.hardpoint_files.importing import PARTS, SIDES, Imported, import_hardpoints
+from validate.hardpoint_files.importing import PARTS, SIDES, Imported, import_hardpoints, names_of
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_whole
 from validate.plain_text import shown
@@ -51,7 +53,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--names",
         metavar="FILE.toml",
         help='what the file calls our points: a table [names] of our_name = "its name", or of '
-        "our_name = [x, y, z] for a point that it does not have",
+        "our_name = [x, y, z] for a point that it does not have; one that is not there yet is written, to be "
+        "filled in",
     )
     parser.add_argument(
         "--axes",
@@ -88,6 +91,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     else:
         require_known_ending(target, ENDINGS)
         require_writable(target)
+    if options.names is not None and not os.path.exists(options.names):
+        text = names_of(options.file, options.format, options.suspension)
+        return to_be_filled_in(options.names, text, console)
     found = import_hardpoints(
         options.file,
         format=options.format,

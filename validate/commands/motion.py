@@ -20,6 +20,7 @@ from validate.commands.usage import (
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.motion_tables import ENDINGS, require_writer, write_csv, write_motion
+from validate.output.progress import progress
 from validate.paper.printed import PRINTED
 from validate.plain_text import shown
 
@@ -96,7 +97,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     scene, name = load_scene(options.scene), name_of(options.scene)
     try:
-        with told_as(name), console.working(f"solving {name}"):
+        with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
             motion = simulate(scene, BY_NAME[options.method])
         comment(scene, name, motion, console)
         _write(target, motion, options.instants, console)

@@ -24,6 +24,7 @@ from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console
 from validate.output.files import write_whole
+from validate.output.progress import progress
 
 ENDINGS = (".svg", ".png")
 # A curve of fewer instants has corners.
@@ -97,7 +98,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     chosen = _chosen(options, numbers, name)
     problem: PointcoordError | None = None
     try:
-        with told_as(name), console.working(f"solving {name}"):
+        with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
             motion = simulate(scene)
     except SceneError:
         raise

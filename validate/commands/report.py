@@ -11,11 +11,10 @@ from pathlib import Path
 
 from pointcoord import built_in_scenes
 from validate.commands.comparison import add_options, compare_scenes
-from validate.commands.cost import latest
 from validate.commands.reporting import Page
 from validate.commands.usage import UsageError
 from validate.cost.report import Report
-from validate.cost.store import StoreError, read_rows
+from validate.cost.store import StoreError, latest, read_rows
 from validate.exit_status import ExitStatus
 from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
@@ -137,7 +136,7 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
     from validate.hard.catalogue import chosen
 
     cases = chosen(HARD)
-    with console.working("hard cases", len(cases), lines=True) as at:
+    with progress(console, "hard cases", total=len(cases)) as at:
         done: list[str] = []
 
         def tell(one: hard_run.Examined) -> None:
@@ -152,23 +151,24 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
 
 def _first_look_at_cost(head: Head, console: Console) -> Report:
     # So does the study of cost.
-    from validate.cost.accuracy import accuracy_rows
     from validate.cost.scenes import own_scene, study_scene
-    from validate.cost.store import Header, Store
+    from validate.cost.store import Store, measured_here
+    from validate.cost.study import Study, measure
     from validate.cost.ways.registry import ways_named
 
     command = shlex.join(head.command)
-    store = Store(None, Header.here(command))
-    scenes = (study_scene(SCENE, own_scene(SCENE)),)
+    study = Study(("accuracy",), (study_scene(SCENE, own_scene(SCENE)),), ways_named(WAYS), quick=True)
     with progress(console, "a first look at cost") as told:
-        rows = accuracy_rows(scenes, store, ways_named(WAYS), quick=True, progress=told)
-    return Report("in this run", store.header, command, True, tuple(rows))
+        rows = measure(study, Store(None, measured_here(command)), told)
+    return Report("in this run", command, True, tuple(rows))
 
 
 def _kept_cost(options: argparse.Namespace) -> Report:
     try:
-        header, entries = read_rows(Path(options.cost))
+        rows = read_rows(Path(options.cost))
+        if not rows:
+            raise StoreError(f"{options.cost}: holds no rows; measure them first")
     except StoreError as error:
         raise UsageError(f"--cost {error}") from None
-    quick = all(key.quick for key, _ in entries)
-    return Report(options.cost, header, header.command, quick, tuple(latest(entries, quick)))
+    quick = all(row.quick for row in rows)
+    return Report(options.cost, rows[0].command, quick, tuple(latest(rows, quick)))

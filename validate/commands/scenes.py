@@ -11,9 +11,10 @@ from pointcoord.drawing_stands import End, Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism.joints import bodies, joints
 from pointcoord.results.closing import ALLOWED
+from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import Effort, effort
-from pointcoord.suspensions import SUSPENSIONS
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import add_scene, load_scene, name_of, told_as
 from validate.exit_status import ExitStatus
@@ -57,7 +58,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     part, name = scene.mechanism, name_of(options.scene)
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
-        f"mechanism: {part.type}, {part.side} side; inputs: {', '.join(scene.inputs)}",
+        f"mechanism: {part.name}, {part.side} side; inputs: {', '.join(scene.inputs)}",
+        *_mechanism(part),
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
         *(f"computed: {effect.gives}" for effect in ALWAYS),
         *_reported(scene),
@@ -71,6 +73,30 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     ]
     console.say("\n".join(lines))
     return _say_where_it_stands(scene, name, console)
+
+
+def _mechanism(part: MechanismPart) -> list[str]:
+    """Bodies, joints, freedoms and what can be driven."""
+    structure, topology = part.structure, part.topology
+    count = part.freedoms
+    others = [
+        name
+        for name, one in structure.inputs.items()
+        if name not in (part.driven or ()) and not one.moves_the_chassis
+    ]
+    lines = [f"bodies: {'; '.join(bodies(structure))}", "joints:"]
+    lines += [f"  {joint}" for joint in joints(structure)]
+    lines.append(
+        f"freedoms: {count}, held by {', '.join(topology.required_inputs) or 'no input'}"
+        + (f"; could be driven as well: {', '.join(others)}" if others else "")
+    )
+    left_out = [label for constraint in topology.left_out for label in constraint.labels]
+    if left_out:
+        lines.append(
+            f"redundant: {', '.join(left_out)}; each follows from the other equations as drawn and is "
+            "held to at every answer"
+        )
+    return lines
 
 
 def _reported(scene: Scene) -> list[str]:
@@ -147,8 +173,9 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
         lines.append(f"  {one} is {_told(value, units[one])}; the other inputs held, it reaches")
         lines += [f"    from {low}", f"    to   {high}"]
     lines += [f"  {angle} is {_degrees(value)} deg" for angle, value in stands.angles.items()]
-    inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
-    lines.append(f"  the wheel turns about the line from {inner} to {centre}")
+    if topology.wheel_axis:
+        inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
+        lines.append(f"  the wheel turns about the line from {inner} to {centre}")
     lines.append(f"  {stands.closing.words}")
     console.say("\n".join(lines))
     if stands.closing.changes_the_car and not topology.puts_in_place:
@@ -179,8 +206,7 @@ def _out_of_reach(scene: Scene, stands: Standing) -> list[str]:
 
 def _default(scene: Scene, point: str) -> str:
     """A word on a point that stands in for one that the scene leaves out."""
-    stand_ins = SUSPENSIONS[scene.mechanism.type].closures[scene.mechanism.closure].stand_ins
-    left_out = (name for name, other in stand_ins.items() if other == point)
+    left_out = (name for name, other in scene.mechanism.topology.stand_ins.items() if other == point)
     names = [name for name in left_out if name not in scene.mechanism.topology.points]
     return f" (the default of {names[0]})" if names else ""
 

@@ -23,7 +23,7 @@ from pointcoord import (
     grid_of,
     sweep_blocks,
 )
-from pointcoord.scene.scene_text import read_file
+from pointcoord.toml_text import read_file
 from validate.commands.usage import (
     UsageError,
     add_quiet,
@@ -39,6 +39,7 @@ from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.files import require_known_ending, require_writable
 from validate.output.motion_tables import require_writer
+from validate.output.progress import Told, progress
 from validate.output.sweep_summary import Summary
 from validate.output.sweep_tables import ENDINGS, write_csv, write_sweep
 from validate.plain_text import shown
@@ -155,22 +156,21 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     with journal.closing(data, lambda: summary.tried, finished) as ending:
         try:
-            blocks = _seen(sweep_blocks(designs, memory=1e6 * options.memory), summary, console)
-            if options.output == "-":
-                write_csv(console, blocks)
-            elif target is not None:
-                write_sweep(target, blocks, designs.count)
-            else:
-                for _ in blocks:
-                    pass
+            with progress(console, "designs", total=designs.count, lines=False) as told:
+                blocks = _seen(sweep_blocks(designs, memory=1e6 * options.memory), summary, told)
+                if options.output == "-":
+                    write_csv(console, blocks)
+                elif target is not None:
+                    write_sweep(target, blocks, designs.count)
+                else:
+                    for _ in blocks:
+                        pass
         except (SceneError, SweepError, UnknownName):
             raise
         except PointcoordError as error:
             console.complain(f"{name}: {error}")
             ending.status = ExitStatus.NO_VERDICT
             return ending.status
-        finally:
-            console.end_progress()
         if target is not None:
             console.written = [f"{target} holds the designs"]
         console.say("\n".join(summary.lines()))
@@ -198,12 +198,11 @@ def _target(options: argparse.Namespace, console: Console) -> str | None:
     return target
 
 
-def _seen(blocks: Iterator[Sweep], summary: Summary, console: Console) -> Iterator[Sweep]:
+def _seen(blocks: Iterator[Sweep], summary: Summary, told: Told) -> Iterator[Sweep]:
     """The blocks, each taken into the summary on its way."""
-    console.progress(f"0 of {summary.total} designs")
     for block in blocks:
         summary.add(block)
-        console.progress(f"{summary.tried} of {summary.total} designs")
+        told("designs", summary.tried)
         yield block
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import stat
 import sys
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pointcoord import Scene, SceneError
@@ -42,6 +43,18 @@ def add_timings(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write into the JSON when the run began and when it was written",
     )
+
+
+def positive(what: str) -> Callable[[str], float]:
+    """Reads a positive, finite number of what it is."""
+
+    def read(word: str) -> float:
+        with suppress(ValueError):
+            if 0.0 < (value := float(word)) < math.inf:
+                return value
+        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no {what}; allowed: a positive, finite number")
+
+    return read
 
 
 def name_of(scene: str) -> str:

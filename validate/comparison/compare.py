@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.scene.messages import meant, shown
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
+from pointcoord.wording import meant, shown
 from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested

@@ -7,8 +7,7 @@ rounded, and
     d - x = (d - h) - l
 
 where d - h is exact for d within a factor of two of h (Sterbenz), and rounded by 2^-53 of itself elsewhere.
-What h + l is not of x, 2^-106 of it, and what the reference does not prove of x, make the radius of the
-row.
+What h + l is not of x, 2^-106 of it, and what the reference does not prove of x, make the radius of the row.
 
 The reference solves the scene with its inputs rounded to doubles at each instant (`input_rates`), which is
 what anybody can be given: half a unit in the last place of an angle is no error of a way.
@@ -25,12 +24,12 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import DIGITS, inputs_at, reference_instant
-from validate.cost.row import QuantityError
+from validate.adjudication.reference_solution import DIGITS, reference_motion
+from validate.cost.race import Found, NoNumbers
+from validate.cost.way import Answer
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import Numbers, shape_of
-from validate.reference import Instant
+from validate.formulations.protocol import shape_of
 
 try:
     from mpmath import mp, mpf
@@ -38,10 +37,6 @@ except ModuleNotFoundError as error:
     raise MissingPackage("validate.cost.errors", error) from None
 
 Array = NDArray[np.float64]
-
-
-class NoNumbers(Exception):
-    """What a way gives is not what it was asked for: a number that is none, or that is not there."""
 
 
 @dataclass(frozen=True)
@@ -61,17 +56,12 @@ class Truth:
         radius: by quantity, the largest proven error of any of these numbers.
     """
 
-    instants: Array
     exact: Mapping[str, Mapping[str, Exact]]
     radius: Mapping[str, float]
 
-    def every(self, stride: int) -> Truth:
-        """The same at every how many-th instant."""
-        exact = {
-            quantity: {name: Exact(x.high[::stride], x.low[::stride]) for name, x in names.items()}
-            for quantity, names in self.exact.items()
-        }
-        return Truth(self.instants[::stride], exact, self.radius)
+    def of(self, *quantities: str) -> Truth:
+        """The same of some quantities."""
+        return Truth({q: names for q, names in self.exact.items() if q in quantities}, self.radius)
 
 
 def truth_of(scene: Scene, instants: Array) -> Truth:
@@ -80,28 +70,29 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
     Raises:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
-    solved = [reference_instant(scene, inputs_at(scene, t)) for t in instants.tolist()]
+    solved = reference_motion(scene, instants.tolist())
     # A point of the chassis is where it is drawn: it would dilute the mean, and says nothing of a way.
     fixed = set(scene.mechanism.topology.chassis)
     exact: dict[str, dict[str, Exact]] = {}
     radius: dict[str, float] = {}
     with mp.workdps(2 * DIGITS + 40):
         for quantity, names in asked_numbers(scene).items():
-            of_car = QUANTITIES[quantity].of == "car"
-            kept = (n for n in names if n not in fixed and all(n in _told(i, quantity) for i in solved))
+            of_car, shape = QUANTITIES[quantity].of == "car", shape_of(quantity, len(solved))
+            rows: list[Mapping[str, Any]] = [i.effects if of_car else getattr(i, quantity) for i in solved]
             numbers = {
-                name: _split([_told(i, quantity)[name] for i in solved], shape_of(quantity, len(solved)))
-                for name in kept
+                name: _split([row[name] for row in rows], shape)
+                for name in names
+                if name not in fixed and all(name in row for row in rows)
             }
             if numbers:
                 exact[quantity] = numbers
                 proven = max(i.error_bound["effects" if of_car else quantity] for i in solved)
                 rounded = max(float(np.abs(x.low).max()) for x in numbers.values()) * 2.0**-53
                 radius[quantity] = float(proven) + rounded
-    return Truth(instants, exact, radius)
+    return Truth(exact, radius)
 
 
-def errors_of(numbers: Numbers, truth: Truth) -> tuple[dict[str, QuantityError], dict[str, str]]:
+def errors_of(answer: Answer, truth: Truth) -> Found:
     """Errors by quantity, and why there is none of the others that the scene asks for.
 
     A quantity that is given at all must be given whole.
@@ -109,10 +100,10 @@ def errors_of(numbers: Numbers, truth: Truth) -> tuple[dict[str, QuantityError],
     Raises:
         NoNumbers: a number is none, or it or its point is missing.
     """
-    found: dict[str, QuantityError] = {}
+    found: dict[str, dict[str, float | int]] = {}
     not_given: dict[str, str] = {}
     for quantity, names in truth.exact.items():
-        given = numbers.get(quantity) or {}
+        given = answer.numbers.get(quantity) or {}
         if not any(name in given for name in names):
             if quantity == "position":
                 raise NoNumbers("gives no positions")
@@ -123,8 +114,13 @@ def errors_of(numbers: Numbers, truth: Truth) -> tuple[dict[str, QuantityError],
         largest = float(errors.max())
         # In parts of the largest, so that no square is too large or too small for a double.
         mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
-        found[quantity] = QuantityError(largest, largest * mean**0.5, truth.radius[quantity], errors.size)
-    return found, not_given
+        found[quantity] = {
+            "error": largest,
+            "rms": largest * mean**0.5,
+            "radius": truth.radius[quantity],
+            "numbers": errors.size,
+        }
+    return Found(found, not_given, ", ".join(f"{name} {int(n)}" for name, n in answer.work.items()))
 
 
 def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -> Array:
@@ -149,14 +145,6 @@ def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -
     if not np.isfinite(off).all():
         raise NoNumbers(f"the {what} is off by more than a double can tell")
     return np.asarray(off)
-
-
-def _told(instant: Instant, quantity: str) -> Mapping[str, Any]:
-    """The reference's numbers of a quantity by name: triples, or one number of what the car has one of."""
-    if QUANTITIES[quantity].of == "car":
-        return instant.effects
-    numbers: Mapping[str, Any] = getattr(instant, quantity)
-    return numbers
 
 
 def _split(numbers: list[Any], shape: tuple[int, ...]) -> Exact:

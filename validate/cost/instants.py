@@ -21,8 +21,7 @@ from pointcoord import Scene
 Array = NDArray[np.float64]
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
-MOST = 200  # the reference takes some 5 ms for each, and more instants tell no more about an error
-MOST_QUICK = 24
+MOST, MOST_QUICK = 200, 24  # the reference takes some 5 ms for each, and more tell no more about an error
 
 
 def study_instants(scene: Scene, count: int | None = None, *, quick: bool = False) -> Array:

@@ -1,4 +1,4 @@
-"""The report of a study of cost from its rows: as text, as a page, as data, and as a folder with pictures.
+"""The report of a study from its table: sentences and short tables, a page, data, and a folder with pictures.
 
 The same rows give the same bytes: nothing in it depends on when or where it is made.
 """
@@ -9,27 +9,27 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from validate.cost.findings import Findings, accuracy_rows, findings, scenes_of
 from validate.cost.row import Row
-from validate.cost.sentences import verdicts
-from validate.cost.store import Header
-from validate.cost.tables import csv_text, full_tables, short_tables, wrapped
+from validate.cost.words import literal, wrapped
 from validate.output.document import json_text
-from validate.output.terminal import Part, text_of
+from validate.output.table import Part, text_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from validate.cost.tables import Table
 
 TITLE = "What accuracy costs in time"
 NOTHING = "nothing was measured, so that there is nothing to say"
-
-
 REFERENCE = (
     "against a reference in 60 digits whose assembly is proven by interval arithmetic, and whose equations "
     "share no code with any way; at instants that are special to none"
 )
 TIMES = (
-    "medians of interleaved repeats with their quartiles, by one thread, the garbage collector off; set-up, "
-    "solve, rates and output apart, and the first run of all apart from the others"
+    "medians of interleaved repeats, by one thread, the garbage collector off; from instants to arrays, "
+    "positions alone where positions are judged; the set-up apart"
 )
 
 
@@ -38,92 +38,110 @@ class Report:
     """Rows with where they come from.
 
     Attributes:
-        store: the file that holds them.
-        header: where and by what they were measured; None if nothing was.
-        command: that makes this report, as a shell would take it.
+        store: the file that holds them. command: that makes this report, as a shell would take it.
         quick: whether they are those of `--quick`.
     """
 
     store: str
-    header: Header | None
     command: str
     quick: bool
     rows: tuple[Row, ...]
 
     @cached_property
-    def found(self) -> Findings:
-        """What the rows say."""
-        return findings(self.rows)
+    def table(self) -> pd.DataFrame:
+        """The rows as a data frame."""
+        # Imported here and below: pandas takes half a second, and most pages tell of no cost.
+        from validate.cost.findings import frame
+
+        return frame(self.rows)
 
     @cached_property
     def sentences(self) -> list[str]:
-        """The same in sentences."""
-        return verdicts(self.found)
+        """What the rows say."""
+        from validate.cost.findings import sentences
+
+        return sentences(self.table)
+
+    @cached_property
+    def tables(self) -> list[Table]:
+        """The same with its numbers."""
+        from validate.cost.tables import tables_of
+
+        return tables_of(self.table)
 
     @property
     def measured(self) -> int:
         """How many rows hold numbers."""
-        return sum(row.status == "measured" for row in self.rows)
+        return sum(row.verdict == "measured" for row in self.rows)
 
     def head(self) -> list[tuple[str, str]]:
-        """Machine, versions, threads and commands."""
-        header = self.header
-        told = [("command", self.command), ("rows", self._counted())]
-        if header is not None:
-            told += [
-                ("measured by", header.command or "not known"),
-                ("program", header.program),
-                ("machine", header.machine),
-                ("python", f"{header.python}; {_listed(header.packages)}"),
-                ("threads", _listed(header.threads)),
-            ]
-        told += [("errors", REFERENCE), ("times", TIMES)]
-        if self.quick:
-            told.append(("quick", "fewer settings, instants and repeats: no more than a first look"))
-        return told
-
-    @property
-    def _said(self) -> list[str]:
-        """The sentences; that there are none only where nothing was measured."""
-        return self.sentences or ([] if self.measured else [NOTHING])
-
-    def _counted(self) -> str:
-        states = {state: sum(row.status == state for row in self.rows) for state in ("failed", "left out")}
-        rest = "".join(f", {count} {state}" for state, count in states.items() if count)
-        return f"{self.store}: {self.measured} measured{rest}"
+        """Machine, versions and commands."""
+        counts = {v: sum(row.verdict == v for row in self.rows) for v in ("failed", "left out")}
+        rest = "".join(f", {count} {verdict}" for verdict, count in counts.items() if count)
+        first = self.rows[0] if self.rows else None
+        return [
+            ("command", self.command),
+            ("rows", f"{self.store}: {self.measured} measured{rest}"),
+            *((what, getattr(first, what)) for what in _WHERE if first and getattr(first, what)),
+            ("errors", REFERENCE),
+            ("times", TIMES),
+            *((("quick", "fewer settings, instants and repeats: a first look"),) if self.quick else ()),
+        ]
 
     def parts(self) -> tuple[Part, ...]:
-        """For a terminal: sentences first, then short tables."""
-        head = "\n".join(wrapped(f"{name}: {value}", "  ") for name, value in self.head())
-        blocks = [f"{TITLE}\n{head}", *map(wrapped, self._said)]
-        tables = (("", *table.parts()) for table in short_tables(self.rows, self.found))
-        return ("\n".join(blocks), *(part for parts in tables for part in parts))
+        """For a terminal: sentences, short tables, and by what it was measured."""
+        said = self.sentences or ([] if self.measured else [NOTHING])
+        tables = [part for table in self.tables if table.brief for part in ("", *table.parts())]
+        where = [f"{row.program}, {row.machine}" for row in self.rows[:1]]
+        last = [wrapped(f"{self.store}: {self.measured} rows measured by {words}") for words in where]
+        return ("\n".join(map(wrapped, (TITLE, *said))), *tables, "", *last)
 
     def text(self) -> str:
         """The same in lines."""
         return text_of(self.parts())
 
     def markdown(self, pictures: Sequence[str] = ()) -> str:
-        """For a page: sentences, pictures by the names of their files, and full tables."""
+        """For a page: sentences, pictures by the names of their files, and all tables."""
+        said = self.sentences or [NOTHING]
         blocks = [
             f"# {TITLE}",
-            "\n".join(f"- {name}: {_literal(value)}" for name, value in self.head()),
-            "\n".join(f"- {_literal(sentence)}" for sentence in self._said),
+            "\n".join(f"- {literal(sentence)}" for sentence in said),
             *(f"![{name.removesuffix('.svg')}]({name})" for name in pictures),
-            *(table.markdown().rstrip() for table in full_tables(self.rows, self.found)),
+            *(table.markdown() for table in self.tables),
+            "\n".join(f"- {name}: {literal(value)}" for name, value in self.head()),
         ]
         return "\n\n".join(blocks) + "\n"
 
+    def csv(self) -> str:
+        """The long table."""
+        return str(self.table.to_csv(index=False, lineterminator="\n"))
+
     def data(self) -> dict[str, Any]:
         """As plain data: see the schema of the documents, kind `cost`."""
+        from validate.cost.findings import growths, races
+
+        first = self.rows[0] if self.rows else None
         return {
             "quick": self.quick,
             "store": self.store,
-            "measured_by": None if self.header is None else asdict(self.header),
+            "measured_by": None if first is None else {what: getattr(first, what) for what in _WHERE},
             "sentences": self.sentences,
-            **asdict(self.found),
+            "races": _records(races(self.table)),
+            "growths": _records(growths(self.table)),
             "rows": [asdict(row) for row in self.rows],
         }
+
+    def headline(self) -> bytes | None:
+        """The one picture, as SVG; None if there is nothing to draw.
+
+        Raises:
+            ImportError: matplotlib is not there.
+        """
+        from validate.cost.picture.figures import headline
+        from validate.cost.picture.look import drawn
+
+        figure = headline(self.table)
+        return None if figure is None else drawn(figure, "svg")
 
     def files(self) -> Iterator[tuple[str, bytes]]:
         """Names and contents of the files of a folder.
@@ -131,44 +149,31 @@ class Report:
         Raises:
             ImportError: matplotlib is not there.
         """
-        # Nothing else of the program needs it.
-        from validate.cost.picture import error_time, growing, headline
+        from validate.cost.picture.figures import figures
         from validate.cost.picture.look import drawn
 
-        figures = {}
-        first = headline.figure(self.rows, self.found)
-        if first is not None:
-            figures["headline"] = first
-        accuracy = accuracy_rows(self.rows)
-        for scene in scenes_of(accuracy):
-            here = [row for row in accuracy if row.scene == scene]
-            if any(row.errors for row in here):
-                figures[_free(f"error-time-{_slug(scene)}", figures)] = error_time.figure(here)
-        dense = frozenset(row.way for row in self.rows if row.dense)
-        for against, scene in dict.fromkeys((one.against, one.scene) for one in self.found.growths):
-            grown = [one for one in self.found.growths if (one.against, one.scene) == (against, scene)]
-            if any(growth.points for growth in grown):
-                figures[_free(f"growth-{against}-{_slug(scene)}", figures)] = growing.figure(grown, dense)
-        for name, figure in figures.items():
+        found: dict[str, Any] = {}
+        for name, figure in figures(self.table):
+            found[_free(_slug(name), found)] = figure
+        for name, figure in found.items():
             for ending in ("svg", "png"):
                 yield f"{name}.{ending}", drawn(figure, ending)
-        yield "report.md", self.markdown([f"{name}.svg" for name in figures]).encode()
-        yield "table.csv", csv_text(self.rows).encode()
+        yield "report.md", self.markdown([f"{name}.svg" for name in found]).encode()
+        yield "table.csv", self.csv().encode()
         yield "rows.json", json_text(self.data()).encode()
 
 
-def _listed(values: Any) -> str:
-    return ", ".join(f"{name} {value}" for name, value in values.items())
+_WHERE = ("command", "program", "machine", "python", "packages")
 
 
-def _literal(text: str) -> str:
-    """Text in which Markdown sees no marks of its own."""
-    return re.sub(r"([*_<>|`\[\]])", r"\\\1", text)
+def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Lines of a data frame as plain data; what is not there is null."""
+    return list(table.astype(object).where(table.notna(), None).to_dict("records"))
 
 
-def _slug(scene: str) -> str:
-    """A scene's name as part of the name of a file."""
-    return re.sub(r"[^A-Za-z0-9]+", "-", scene.rpartition("/")[2].removesuffix(".toml")).strip("-") or "scene"
+def _slug(name: str) -> str:
+    """A name with a scene's as the name of a file."""
+    return re.sub(r"[^A-Za-z0-9]+", "-", name.removesuffix(".toml")).strip("-")
 
 
 def _free(name: str, taken: Any) -> str:

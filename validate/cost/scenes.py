@@ -1,4 +1,4 @@
-"""The scenes of the study of cost: those that it takes by itself, and how a user's own are taken."""
+"""The scenes of the study: those that it takes by itself, and how a user's own are taken."""
 
 from __future__ import annotations
 
@@ -8,17 +8,14 @@ from importlib import resources
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.scene.scene_text import parsed
+from pointcoord.toml_text import parsed
 from validate.cost.store import scene_digest
 
 NEAR_TOGGLE = "near-toggle"
-
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
 """Those that are measured if none is named."""
-
-QUICK_SCENES = ("bounce-and-steer",)
-"""That of a quick study: both inputs move. A second one would nearly double its time."""
-
+QUICK_SCENE = "bounce-and-steer"
+"""That of a quick study, and that whose car is solved at unrelated inputs: both inputs move."""
 RATES = ("velocity", "acceleration", "knuckle_rates")
 
 
@@ -27,13 +24,16 @@ class StudyScene:
     """A scene as it is measured.
 
     Attributes:
-        name: in rows.
-        digest: of its content.
+        name: in rows. digest: of its content.
     """
 
     name: str
     scene: Scene
     digest: str
+
+    def positions_only(self) -> Scene:
+        """The scene without any effect."""
+        return self.scene.model_copy(update={"effects": ()})
 
 
 def study_scene(name: str, scene: Scene) -> StudyScene:
@@ -58,8 +58,3 @@ def own_scene(name: str) -> Scene:
         text = resources.files("validate.cost").joinpath("scenes", f"{NEAR_TOGGLE}.toml").read_bytes()
         return Scene.from_mapping(parsed(text, name), name)
     return Scene.load(name)
-
-
-def own_scenes(*, quick: bool = False) -> tuple[StudyScene, ...]:
-    """Those that are measured if none is named."""
-    return tuple(study_scene(name, own_scene(name)) for name in (QUICK_SCENES if quick else STUDY_SCENES))

@@ -1,93 +1,60 @@
-"""What a way to solve a scene is to the study of cost: a name, its settings, and work in separate phases."""
+"""What a way to solve a scene is to the study: a name, its settings, and a function."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from validate.cost.words import power
 from validate.formulations.protocol import Numbers
 
 Array = NDArray[np.float64]
 
+DIGITS = tuple(10.0**-digits for digits in range(2, 14))
+
 
 @dataclass(frozen=True)
-class Setting:
-    """How a way is told to solve.
+class Answer:
+    """What a way computed, by quantity and name, in the scene's axes and units, and what it did for that."""
+
+    numbers: Numbers
+    work: Mapping[str, int] = field(default_factory=dict)
+
+
+Solve = Callable[[Array], Answer]
+"""Solves at increasing instants, (N,), s; the first may lie after the scene's start."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to solve scenes. Adding one is a file with one of these, and a line of the registry.
 
     Attributes:
-        words: in tables, such as `1e-9 mm`; empty where a way has nothing to set.
-        value: the number that is dialled, None where there is none.
+        name: on the command line and in tables. words: what it is, in a line.
+        prepare: makes a scene ready for the value of a setting, which is the set-up. It raises `LeftOut`
+            where the way does not apply, and whatever the way refuses a scene with. The scene's own
+            instants mean nothing here; what it asks for does.
+        values: what can be dialled, the coarsest first; None where there is nothing to set.
+        setting: a value in words.
+        dense: whether one solve serves any instant, so that more instants cost their evaluation only.
+        rates_only: whether its positions are those of another way.
+        package: an optional one that it needs, by the name that it is imported with.
     """
 
-    words: str = ""
-    value: float | None = None
+    name: str
+    words: str
+    prepare: Callable[[Scene, Any], Solve]
+    values: tuple[float | None, ...] = DIGITS
+    setting: str = "{} mm"
+    dense: bool = False
+    package: str = ""
+    rates_only: bool = False
 
-
-class LeftOut(Exception):
-    """A way does not apply to a scene, as the paper's formulas not to a double wishbone; says why in words.
-
-    It is no failure: the row says that it was left out.
-    """
-
-
-class Ready(Protocol):
-    """A scene made ready by a way, which is the set-up. Its phases follow each other, timed apart."""
-
-    def solve(self, instants: Array) -> Any:
-        """Find the positions at increasing instants, (N,), s; the first may lie after the scene's start."""
-        ...
-
-    def rates(self, solved: Any) -> Any:
-        """Add the rates to what `solve` returned; the same again where the way gives positions only."""
-        ...
-
-    def output(self, solved: Any) -> Numbers:
-        """What was computed as arrays by quantity and name, in the scene's axes and units."""
-        ...
-
-    def counts(self, solved: Any) -> Mapping[str, int]:
-        """What was done: factorisations, newton_steps, jacobians, residuals, series_orders, segments."""
-        ...
-
-
-class Way(Protocol):
-    """A way to solve scenes. Adding one is one object with these members and one line of the registry."""
-
-    @property
-    def name(self) -> str:
-        """On the command line and in tables, such as `series`."""
-        ...
-
-    @property
-    def words(self) -> str:
-        """What it is, in a line."""
-        ...
-
-    @property
-    def package(self) -> str | None:
-        """The optional package that it needs, by the name that it is imported with; None if there is none."""
-        ...
-
-    @property
-    def settings(self) -> tuple[Setting, ...]:
-        """Those that are measured, the coarsest first."""
-        ...
-
-    @property
-    def dense(self) -> bool:
-        """Whether one solve serves any instant, so that more instants cost their evaluation only."""
-        ...
-
-    def prepare(self, scene: Scene, setting: Setting) -> Ready:
-        """Make a scene ready. The scene's own instants mean nothing here.
-
-        Raises:
-            LeftOut: the way does not apply to the scene.
-            Exception: whatever the way refuses a scene with; it becomes the row's reason.
-        """
-        ...
+    def says(self, value: float | None) -> str:
+        """A setting in words, such as `1e-9 mm`."""
+        return "" if value is None else self.setting.format(power(value))

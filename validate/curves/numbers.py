@@ -68,15 +68,16 @@ class Number:
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
-    """Time, travel and inputs of a scene, and every number that it can ask for."""
+    """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
     time = Number((TIME,), TIME, "s", "", (TIME,), lambda _, samples: samples.times)
     effects = (*ALWAYS, *EFFECTS.values())
-    return (time, _travel(scene), *_inputs(scene), *(n for e in effects for n in _of_effect(e, scene)))
+    travel = [_travel(scene)] if wheel_centre(scene) else []
+    return (time, *travel, *_inputs(scene), *(n for e in effects for n in _of_effect(e, scene)))
 
 
 def wheel_centre(scene: Scene) -> str:
-    """The point of the wheel's middle."""
-    return scene.mechanism.topology.wheel_axis[1]
+    """The point of the wheel's middle; empty if the mechanism has no one wheel."""
+    return scene.mechanism.topology.wheel_centre
 
 
 def _travel(scene: Scene) -> Number:
@@ -94,17 +95,17 @@ def _travel(scene: Scene) -> Number:
 def movement(scene: Scene, motion: Motion, samples: Samples) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
     centre = wheel_centre(scene)
-    drawn = closed_drawing(scene).places[centre]
-    moved = samples.numbers[ALWAYS[0].quantities[0].name][centre] - drawn
-    for shift in motion.solved.readout.chassis.states(samples.times, 0):
-        moved = moved - shift
-    return np.asarray(moved)
+    readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
+    local = samples.numbers[ALWAYS[0].quantities[0].name][centre] - readout.mechanism.origin
+    return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
 
 
 def _inputs(scene: Scene) -> list[Number]:
     topology = scene.mechanism.topology
     signs = {drive.input: drive.sign for drive in topology.drives}
     signs |= {name: f"{along}ward" for name, along in topology.chassis_motion.items()}
+    turns = topology.chassis_turns.items()
+    signs |= {name: f"right-handed about {along} through {about}" for name, (along, about) in turns}
 
     def reader(name: str) -> Read:
         return lambda _, samples: scene.functions[name].series(samples.times, 0)[:, 0]
@@ -243,7 +244,7 @@ def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
 
     The angles of the wheel against its travel, which goes upward on the paper, where the wheel goes mostly up
     and down; else against the one input that moves, or time. The wheel centre's place over time where there
-    are no angles.
+    are no angles; without a wheel that of the first point that moves.
     """
     there = [n for n in numbers if n.missing is None]
     one: Mapping[str, Number] = {n.path[0]: n for n in there if len(n.path) == 1}
@@ -251,8 +252,10 @@ def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
     if not angles:
         points = [n for n in there if len(n.path) == 3]
         name = wheel_centre(scene)
-        place = [n for n in points if n.path[1] == name] or points
-        return Curves((one[TIME],), tuple(n for n in place if n.path[:2] == place[0].path[:2]))
+        place = [n for n in points if n.path[1] == name]
+        place = place or [n for n in points if np.ptp(n.read(motion, motion)) > 0.0] or points
+        place = [n for n in points if n.path[:2] == place[0].path[:2]]
+        return Curves((one[TIME],), tuple(place))
     if TRAVEL in one:
         moved = movement(scene, motion, motion)
         up = np.array(scene.mechanism.up)

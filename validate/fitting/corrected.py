@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 from validate.fitting.fit import Fit
 from validate.fitting.words import counted
 from validate.plain_text import shown
+from validate.toml_written import written
 
 
 def corrected_text(fit: Fit, name: str, source: str) -> str:
@@ -29,32 +26,4 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
         )
         for one, amount in fit.corrections.items()
     ]
-    return "\n".join([*before, *_lines(content, ())]) + "\n"
-
-
-def _lines(table: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
-    """A table: its values, then the tables in it."""
-    plain = [f"{_key(key)} = {_value(value)}" for key, value in table.items() if not _is_table(value)]
-    lines = (["", f"[{'.'.join(map(_key, place))}]"] if place and plain else []) + plain
-    for key, value in table.items():
-        if _is_table(value):
-            lines += _lines(value, (*place, key))
-    return lines
-
-
-def _is_table(value: object) -> bool:
-    return isinstance(value, Mapping)
-
-
-def _key(key: str) -> str:
-    return key if key.replace("_", "").replace("-", "").isalnum() and key.isascii() else json.dumps(key)
-
-
-def _value(value: object) -> str:
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, Sequence):
-        return f"[{', '.join(map(_value, value))}]"
-    return repr(value)
+    return "\n".join([*before, *written(content)]) + "\n"

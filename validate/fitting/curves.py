@@ -1,15 +1,15 @@
-r"""The numbers of a file's columns as a design gives them, and how they change with each hardpoint, exactly.
+r"""The numbers of a file's columns as a design gives them, and how they change with each hardpoint.
 
-Positions and angles are read off poses that are solved one by one, and rates off the motion. With dq/dp at
-held inputs and dq/dx from `slopes`, a number at a row of the file changes by
+Positions and angles are read off poses that are solved one by one, and rates off the motion. An input that
+the file gives is the same in every design; one that it does not give is as drawn, and the drawing changes.
+The input x that reaches a travel is another one in every design: the travel is h = height(x, p) less that
+of the drawing's own inputs, and what is held is h. So a number q at a row changes with a coordinate p by
 
-    dq/dp + sum over the inputs x of dq/dx dx/dp.
+    dq/dp - dq/dx (dh/dp) / (dh/dx),    dq/dp = (q(p + s) - q(p - s)) / 2 s at the same x.
 
-An input that the file gives is the same in every design; one that it does not give is as drawn, and the
-drawing changes. The input that reaches a travel h is another one in every design: what is held is
-h(x, p) - h(x_0, p), with x_0 the drawing's own inputs, so that
-
-    dx/dp = -(dh/dp - dh_0/dp - sum dh_0/dx_0 dx_0/dp + sum over the other inputs dh/dx dx/dp) / (dh/dx).
+Central differences of solved designs lack s^2 / 6 of the third derivative: with s = STEP and points some
+100 mm apart a part of 1e-8 of a slope; poses that are solved to 1e-12 mm make it off by 1e-10. The search
+ends at 1e-9 of the sum of squares, where a part of 1e-5 of a slope would matter.
 
 Which pose has a travel is meant as in `measured.poses`: the one on the part about the drawing where h goes
 one way. The car as drawn is followed there in steps, each by Newton's method; a moved design is solved for
@@ -26,27 +26,32 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, designs_of, solve_poses
 from pointcoord.data_classes import dataclass
-from pointcoord.effects.registry import ALWAYS
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.fitting.errors import FitError
-from validate.fitting.slopes import CarSlopes, Slopes
-from validate.formulations.input_rates import rates
 from validate.measured.comparing import ours_of
-from validate.measured.mapping import ARCSINE, CONTACT, INPUT, TIME, TRAVEL, Measured, Series, angle_of
+from validate.measured.mapping import (
+    CONTACT,
+    INPUT,
+    PLACES,
+    TIME,
+    TRAVEL,
+    Measured,
+    angle_of,
+)
 from validate.measured.poses import Found, Plan, asked_scene, poses_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-AXES = "xyz"
 TRIES = 40  # of an input that reaches a travel: Newton's method takes some five, halved steps more
 CLOSE = 1e-6  # mm of a travel, from which one more step leaves rounding
-TIGHT = 1e-12  # mm, of poses that a travel is read off
+TIGHT = 1e-12  # mm, of poses
+STEP = 0.02  # mm, of differences by coordinates
+NEAR = 1e-5  # rad or mm, of differences by an input
 PARTS = 8  # in which the car as drawn is followed to a travel
 NO_POSE = "the car has no pose there with this travel's input as drawn"
-(PLACES,) = (quantity.name for effect in ALWAYS for quantity in effect.quantities)
 
 
 @dataclass(frozen=True)
@@ -89,18 +94,6 @@ class Curves:
             return self.solved(amounts, values).numbers
         except PointcoordError:
             return np.full(len(self.measured.numbers) * len(self.measured.rows), np.nan)
-
-    @cached_property
-    def moves(self) -> dict[str, tuple[tuple[str, int], ...]]:
-        """By coordinate, the points that move with it."""
-        following = designs_of(self.scene, offsets=dict.fromkeys(self.free, 0.0)).following
-        found = {}
-        for name in self.free:
-            point, _, axis = name.partition(".")
-            along = AXES.index(axis)
-            going = (other for other, leader in following.items() if leader == point)
-            found[name] = ((point, along), *((other, along) for other in going))
-        return found
 
     @cached_property
     def as_drawn(self) -> tuple[str, ...]:
@@ -147,7 +140,8 @@ class Curves:
             s.meaning.quantity == PLACES or angle_of(s.meaning) is not None for s in self.measured.numbers
         )
 
-    def _by_poses(self, design: Scene, values: Sequence[Array]) -> Found:
+    def _by_poses(self, design: Scene, values: Sequence[Array], roots: Array | None = None) -> Found:
+        """Poses of a design; of travels at these values of the input that reaches them, if they are known."""
         inputs: dict[str, Array] = {}
         count = len(values[0])
         reached: Bools = np.ones(count, dtype=bool)
@@ -170,10 +164,11 @@ class Curves:
         if self.travel:
             if wanted is None:
                 wanted = np.full(count, self.measured.held[f"{TRAVEL}.{self.travel}"])
-            roots, reasons = self._roots(design, wanted, inputs, drawn, self._begin(drawn))
+            if roots is None:
+                roots, reasons = self._roots(design, wanted, inputs, drawn, self._begin(drawn))
             inputs[self.solved_input] = roots
             reached = np.array([row not in reasons for row in range(count)])
-        poses = solve_poses(design, inputs)
+        poses = solve_poses(design, inputs, TIGHT)
         reasons = {row: str(error) for row, error in poses.failures.items()} | reasons
         reached = np.asarray(poses.solved & reached)
         part = design.mechanism
@@ -241,40 +236,33 @@ class Curves:
         found = begin[0].copy()
         if not len(rows):
             return found, reasons
-        car = CarSlopes(design, {}, (name,))
         home = {n: np.array([value]) for n, value in self.home_inputs(drawn).items()}
-        places = dict(solve_poses(design, home, TIGHT).position)
-        level = self.height(design, places)[0]
-        way = self._going(car, places, home)[0]
+        level, way = (number[0] for number in self._heights(design, home))
         others = {n: value[rows] for n, value in inputs.items() if n != name}
         x = found[rows]
         step, told = np.zeros(len(rows)), np.full(len(rows), np.inf)
         for _ in range(TRIES):
-            tried = {**others, name: x + step}
-            poses = solve_poses(design, tried, TIGHT)
-            some = np.flatnonzero(poses.solved)
-            left, slope = np.full(len(rows), np.inf), np.ones(len(rows))
-            if len(some):
-                places = {n: place[some] for n, place in poses.position.items()}
-                left[some] = wanted[rows[some]] - (self.height(design, places) - level)
-                slope[some] = self._going(car, places, {n: value[some] for n, value in tried.items()})
+            here, slope = self._heights(design, {**others, name: x + step})
+            left = wanted[rows] - (here - level)
             # A step to where the car has no pose, or goes the other way, or is farther off, was too long.
             good = np.isfinite(left / slope) & (slope * way > 0.0) & (np.abs(left) < np.maximum(told, CLOSE))
             x, told = np.where(good, x + step, x), np.where(good, np.abs(left), told)
             step = np.where(good, left / np.where(good, slope, 1.0), 0.5 * step)
             if (good & (told <= CLOSE)).all():
                 break
-        # The last step leaves about the square of CLOSE, by the size of the car: rounding.
+        # The last step leaves a part of CLOSE, as the slope is off by a part of NEAR: rounding.
         far = ~(told <= CLOSE)
         found[rows] = np.where(far, found[rows], x + step)
         travel = f"{TRAVEL}.{self.travel}"
         reasons |= {int(i): f"{travel} = {wanted[i]:.6g} mm is out of reach" for i in rows[far]}
         return found, reasons
 
-    def _going(self, car: CarSlopes, places: Mapping[str, Array], inputs: Mapping[str, Array]) -> Array:
-        """How the height that travels changes with the input that is solved for, (rows,)."""
-        laws = {name: _at_rest(value) for name, value in inputs.items()}
-        return np.asarray(self.height_change(car.scene, places, car.at(places, laws, (PLACES,))[1])[0])
+    def _heights(self, design: Scene, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
+        """How high the point that travels is, and how that changes with the input that is solved for."""
+        name = self.solved_input
+        both = {n: np.concatenate([value, value + NEAR * (n == name)]) for n, value in inputs.items()}
+        here, there = np.split(self.height(design, solve_poses(design, both, TIGHT).position), 2)
+        return here, (there - here) / NEAR
 
     def _begin(self, drawn: Mapping[str, float]) -> tuple[Array, Mapping[int, str]]:
         """Where to look for the inputs of a design first: as far from its drawing as the car as drawn."""
@@ -294,16 +282,46 @@ class Curves:
         centre = places[part.topology.wheel_centre] @ up
         return np.asarray(centre - self.measured.rolling_radius * np.sqrt(1.0 - lean**2))
 
-    def height_change(self, design: Scene, places: Mapping[str, Array], slopes: Slopes) -> Array:
-        """How that changes, (directions, rows)."""
-        part, changes = design.mechanism, slopes[PLACES]
-        up = np.array(part.up)
-        if self.travel != CONTACT:
-            return np.asarray(changes[self.travel] @ up)
-        inner, outer = part.topology.wheel_axis
-        lean, leaning = _share(places[outer] - places[inner], changes[outer] - changes[inner], up)
-        sinking = self.measured.rolling_radius * lean * leaning / np.sqrt(1.0 - lean**2)
-        return np.asarray(changes[part.topology.wheel_centre] @ up + sinking)
+    def slopes(self, amounts: Array, here: Solved, used: Bools) -> Array:
+        """How the used numbers change with each coordinate, (used, free), in our units by mm.
+
+        Args:
+            here: the design that these amounts make, solved.
+        Raises:
+            FitError: a design beside it has no pose there.
+        """
+        roots = here.found.inputs.get(self.solved_input)
+
+        def change(moved: Array, step: float, near: float = 0.0) -> tuple[Array, Array]:
+            sides = (self._at_roots(way * moved + amounts, roots, way * near) for way in (1.0, -1.0))
+            numbers, travel = ((a - b) / (2.0 * step) for a, b in zip(*sides, strict=True))
+            return numbers[used], np.tile(travel, len(self.measured.numbers))[used]
+
+        found = np.empty((int(used.sum()), len(self.free)))
+        by_input, rising = change(np.zeros(len(self.free)), NEAR, NEAR) if roots is not None else (0.0, 1.0)
+        for i, moved in enumerate(STEP * np.eye(len(self.free))):
+            by_drawing, travel = change(moved, STEP)
+            found[:, i] = by_drawing - by_input * travel / rising
+        if not np.isfinite(found).all():
+            lost = int(np.flatnonzero(used)[int(np.argmin(np.isfinite(found).all(axis=1)))])
+            problem = "the car's numbers have no slope there: its pose is next to a singular one"
+            row = self.measured.rows[lost % len(self.measured.rows)]
+            raise FitError(row, problem, "rows away from where the car jams")
+        return found
+
+    def _at_roots(self, amounts: Array, roots: Array | None, more: float) -> tuple[Array, Array]:
+        """Every column of a design, and the travel of its rows at values of the input that reaches it."""
+        count = len(self.measured.rows)
+        if roots is None:
+            return self.at(amounts), np.zeros(count)
+        try:
+            design = self.design(amounts)
+            found = self._by_poses(design, [s.values for s in self.measured.independent], roots + more)
+            home = {n: np.array([v]) for n, v in self.home_inputs(drawn_inputs(design)).items()}
+            level = self.height(design, solve_poses(design, home, TIGHT).position)
+        except PointcoordError:
+            return np.full(len(self.measured.numbers) * count, np.nan), np.full(count, np.nan)
+        return Solved(self, design, found).numbers, self.height(design, found.numbers[PLACES]) - level
 
 
 @dataclass(frozen=True)
@@ -324,109 +342,6 @@ class Solved:
         nothing = np.full(len(self.found.reached), np.nan)
         columns = [ours_of(s, self.found, self.curves.scene)[0] for s in self.curves.measured.numbers]
         return np.concatenate([nothing if c is None else c for c in columns])
-
-    def slopes(self, used: Bools) -> Array:
-        """How the used numbers change with each coordinate, (used, free), in our units by mm.
-
-        Raises:
-            FitError: a pose is so near a singular one that it has none.
-        """
-        curves, rows = self.curves, np.flatnonzero(self.found.reached)
-        free, count = len(curves.free), len(self.found.reached)
-        told = used.reshape(len(curves.measured.numbers), count)
-        asked = [s for s, own in zip(curves.measured.numbers, told, strict=True) if own.any()]
-        places = {name: place[rows] for name, place in self.found.numbers[PLACES].items()}
-        inputs = curves.as_drawn
-        car = CarSlopes(self.design, curves.moves, inputs)
-        wanted = dict.fromkeys((PLACES, *(s.meaning.quantity for s in asked)))
-        by_drawing, by_inputs = car.at(places, self._laws(rows), wanted)
-        along = self._inputs_by_drawing(car, places, by_drawing, by_inputs)
-        found = np.full((len(told), count, free), np.nan)
-        for i, s in enumerate(curves.measured.numbers):
-            if s in asked:
-                change = self._column(s, places, by_drawing)
-                further = self._column(s, places, by_inputs)
-                found[i, rows] = (change + np.einsum("xn,xpn->pn", further, along)).T
-        matrix = found.reshape(-1, free)[used]
-        if not np.isfinite(matrix).all():
-            row = int(np.flatnonzero(used)[int(np.argmin(np.isfinite(matrix).all(axis=1)))]) % count
-            problem = "the car's numbers have no slope there: its pose is next to a singular one"
-            raise FitError(curves.measured.rows[row], problem, "rows away from where the car jams")
-        return matrix
-
-    def _laws(self, rows: NDArray[np.intp]) -> dict[str, Array]:
-        """Value, rate and acceleration of every input at some rows, (rows, 3)."""
-        independent = self.curves.measured.independent[0]
-        if independent.meaning.kind == TIME:
-            times = independent.values[rows]
-            return {name: rates(law, times) for name, law in self.design.inputs.items()}
-        return {name: _at_rest(value[rows]) for name, value in self.found.inputs.items()}
-
-    def _inputs_by_drawing(
-        self, car: CarSlopes, places: Mapping[str, Array], by_drawing: Slopes, by_inputs: Slopes
-    ) -> Array:
-        """How the inputs of a row that the file does not give change, (inputs, free, rows)."""
-        inputs, count = self.curves.as_drawn, len(next(iter(places.values())))
-        found = np.zeros((len(inputs), len(self.curves.free), count))
-        if not inputs:
-            return found
-        drawn = car.drawn()
-        for i, name in enumerate(inputs):
-            found[i] = drawn[name][:, None]
-        if not self.curves.travel:
-            return found
-        solved = inputs.index(self.curves.solved_input)
-        home, by_home = self._home_height(drawn)
-        change = self.curves.height_change(self.design, places, by_drawing)
-        further = self.curves.height_change(self.design, places, by_inputs)
-        others = [i for i in range(len(inputs)) if i != solved]
-        change += np.einsum("xn,xpn->pn", further[others], found[others])
-        found[solved] = -(change - home - by_home) / further[solved]
-        return found
-
-    def _home_height(self, drawn: Mapping[str, Array]) -> tuple[Array, Array]:
-        """How the height from which a travel counts changes: at held inputs, and by those as drawn."""
-        curves, free = self.curves, len(self.curves.free)
-        inputs = curves.home_inputs(drawn_inputs(self.design))
-        going = tuple(name for name in inputs if name not in curves.held)
-        rows = {name: np.array([value]) for name, value in inputs.items()}
-        places = dict(solve_poses(self.design, rows).position)
-        laws = {name: _at_rest(value) for name, value in rows.items()}
-        by_drawing, by_inputs = CarSlopes(self.design, curves.moves, going).at(places, laws, (PLACES,))
-        further = curves.height_change(self.design, places, by_inputs)
-        moved = np.zeros((free, 1))
-        for i, name in enumerate(going):
-            moved += drawn[name][:, None] * further[i]
-        return curves.height_change(self.design, places, by_drawing), moved
-
-    def _column(self, s: Series, places: Mapping[str, Array], slopes: Slopes) -> Array:
-        """Slopes of a column, (directions, rows)."""
-        meaning = s.meaning
-        if s.definition == ARCSINE:
-            angle = angle_of(meaning)
-            assert angle is not None  # the map of columns was checked
-            part = self.design.mechanism
-            axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-            start, end = angle.ends(part.topology)
-            line, changes = places[end] - places[start], slopes[PLACES][end] - slopes[PLACES][start]
-            along = np.array([axes.component(unit, angle.sine) for unit in np.eye(3)])
-            sine, change = _share(line, changes, along)
-            return np.asarray(change / np.sqrt(1.0 - sine**2))
-        found = slopes[meaning.quantity][meaning.name]
-        return found if meaning.axis is None else found[..., meaning.axis]
-
-
-def _share(line: Array, changes: Array, direction: Array) -> tuple[Array, Array]:
-    """The part of lines, (N, 3), along a unit vector, by their length, (N,), and its slopes, (D, N)."""
-    long = np.linalg.norm(line, axis=-1)
-    share = (line @ direction) / long
-    longer = np.einsum("dnk,nk->dn", changes, line) / long
-    return np.asarray(share), np.asarray((changes @ direction - share * longer) / long)
-
-
-def _at_rest(values: Array) -> Array:
-    """Value, rate and acceleration of an input that is what it is, (rows, 3)."""
-    return np.stack([values, np.zeros_like(values), np.zeros_like(values)], axis=-1)
 
 
 def drawn_inputs(scene: Scene) -> Mapping[str, float]:

@@ -336,7 +336,7 @@ class _Search:
 
     def slopes(self, amounts: Array) -> Array:
         """Of the used numbers."""
-        return self._design(amounts).slopes(self.used)
+        return self.curves.slopes(amounts, self._design(amounts), self.used)
 
     def _design(self, amounts: Array) -> Solved:
         key = amounts.tobytes()

@@ -15,8 +15,9 @@ Array = NDArray[np.float64]
 
 # Parts of a combination that are said, of its largest one; all that two decimals show where it is exact.
 SAID, SAID_EXACT = 0.2, 0.005
-# Singular values below this part of the largest are rounding: the slopes are exact to some 1e-13 of theirs.
-NOTHING = 1e-12
+# Singular values below this part of the largest are rounding: differences over 0.02 mm to either side lack
+# (0.02 / L)^2 / 6 of a slope, with lines of L = 60 mm and more.
+NOTHING = 2e-8
 # Times what the digits explain, from which on something else than hardpoints is likelier.
 STRANGE = 5.0
 

@@ -50,12 +50,9 @@ class AbsoluteCoordinates:
         inputs = {name: law for name, law in inputs.items() if name not in part.topology.chassis_motion}
         unit = slow_unit(inputs, chassis)
         origin = near_origin(part)
-        near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
         reading = _Reading(scene.instants, asked, unit, origin, chassis)
         try:
-            model = absolute.suspension_of(part.type)(
-                near, up=part.up, right=part.right, side=part.side, closure=part.closure
-            )
+            model = near_model(part, tuple(scene.inputs), origin)
             _require_the_drawn_car(scene, model)
             solved = absolute.solve(
                 model,
@@ -215,6 +212,17 @@ def extent(part: MechanismPart) -> float:
     corners = np.array(list(part.points.values()))
     with np.errstate(over="ignore"):
         return float((corners.max(axis=0) - corners.min(axis=0)).max())
+
+
+def near_model(part: MechanismPart, driven: Sequence[str], origin: Array) -> absolute.Model:
+    """The mechanism with its points measured from a place near the car, mm.
+
+    Raises:
+        absolute.DescriptionError: the model refuses its description.
+    """
+    plain = part.plain(driven)
+    near = {name: (np.array(point) - origin).tolist() for name, point in plain["points"].items()}
+    return absolute.compile({**plain, "points": near})
 
 
 def near_origin(part: MechanismPart) -> Array:

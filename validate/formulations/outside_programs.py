@@ -52,11 +52,11 @@ class Engine(Protocol):
         ...
 
     def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
-        """Poses at turns of the arm and travels of the rack, (N, 2), each solved from the one before."""
+        """Poses at driven coordinates, (N, drives), each solved from the one before."""
         ...
 
     def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
-        """Their rates, from those of what is driven, each (N, 2)."""
+        """Their rates, from those of what is driven, each (N, drives)."""
         ...
 
 
@@ -66,9 +66,10 @@ def linkage_in(scene: Scene, shift: Mapping[str, Array] | None = None) -> Linkag
     Raises:
         PeerError: its points make no linkage.
     """
-    part = scene.mechanism
-    points = {n: np.array(place) + (0.0 if shift is None else shift[n]) for n, place in part.points.items()}
-    return linkage_of(part.type, points, part.up, part.right, part.closure, part.side)
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    if shift is not None:
+        plain["points"] = {n: np.array(place) + shift[n] for n, place in plain["points"].items()}
+    return linkage_of(plain)
 
 
 def require_the_drawn_car(scene: Scene, linkage: Linkage, closed: Poses) -> None:
@@ -77,10 +78,11 @@ def require_the_drawn_car(scene: Scene, linkage: Linkage, closed: Poses) -> None
     Raises:
         SceneError: a point moves by more than is allowed.
     """
-    if scene.mechanism.topology.puts_in_place:
+    if scene.mechanism.closure != "drawn" or not closed.places:
         return
-    limit = ALLOWED * float(np.max(np.ptp(np.array(list(linkage.drawn.values())), axis=0)))
-    moved = {n: float(np.linalg.norm(place - linkage.drawn[n])) for n, place in closed.places.items()}
+    drawn = linkage.tree.drawn
+    limit = ALLOWED * float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
+    moved = {n: float(np.linalg.norm(place - drawn[n])) for n, place in closed.places.items()}
     point = max(moved, key=lambda name: moved[name])
     if moved[point] > limit:
         raise SceneError(
@@ -143,10 +145,11 @@ class OutsideProgram:
         self, scene: Scene, laws: Mapping[str, Array], numbers: Numbers, last_step: Array
     ) -> Accuracy:
         """How far each number may be off: see the top of this file."""
-        rng, unit = np.random.default_rng(SEED), linkage_in(scene).unit
+        rng = np.random.default_rng(SEED)
+        size = 2.0 * linkage_in(scene).unit  # in units the car is between one and two
         changes = {q: {n: np.zeros(len(last_step)) for n in arrays} for q, arrays in numbers.items()}
         for _ in range(PROBES):
-            shift = {name: SHIFT * unit * rng.standard_normal(3) for name in scene.mechanism.points}
+            shift = {name: SHIFT * size * rng.standard_normal(3) for name in scene.mechanism.points}
             other = linkage_in(scene, shift)
             told = other.inputs(laws)
             off = rng.standard_normal(told.doubt.shape) * told.doubt * (SHIFT / ROUNDING)
@@ -166,7 +169,7 @@ class OutsideProgram:
                 for name, array in arrays.items()
             }
         places = next(q for q in changes if QUANTITIES[q].of == "point" and not per_second(q))
-        return Accuracy(_largest(changes[places]) / unit, claims)
+        return Accuracy(_largest(changes[places]) / size, claims)
 
 
 def _largest(arrays: Mapping[str, Array]) -> Array:

@@ -95,7 +95,7 @@ class PointCoordinates:
     def _takes(self, other: Method) -> bool:
         """Whether another method starts alike: it solves the same mechanism for the same effects."""
         mine = self.method
-        return mine.suspensions == other.suspensions and mine.effects == other.effects
+        return mine.linkage == other.linkage and mine.effects == other.effects
 
     def _partial(self, scene: Scene, error: PointcoordError) -> Solution | None:
         """What was solved before an error, as far as its errors are bounded."""

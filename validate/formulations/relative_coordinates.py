@@ -1,4 +1,4 @@
-"""The relative-coordinate model as a formulation. It gets hardpoints and inputs, and nothing solved."""
+"""The relative-coordinate model as a formulation. It gets a flat mechanism and inputs, and nothing solved."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.closing import ALLOWED
-from pointcoord.scene.scene_file import MechanismPart, Scene
+from pointcoord.scene.scene_file import Scene
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
 from validate.relative.errors import InputError, PoseError, RelativeError
+from validate.spanning_tree.chassis import ChassisMotion
 
 try:
     from validate.relative.follow import Poses
@@ -44,7 +45,7 @@ class RelativeCoordinates:
         inputs = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
         try:
             _require_finite(inputs)
-            model = model_of(scene.mechanism)
+            model = model_of(scene)
             require_the_drawn_car(scene, model)
             reading = _Reading(scene, model, inputs)
             try:
@@ -55,13 +56,13 @@ class RelativeCoordinates:
             raise FormulationError(self.name, error) from error
 
 
-def model_of(part: MechanismPart) -> Model:
-    """The model of a scene's suspension.
+def model_of(scene: Scene) -> Model:
+    """The model of a scene's mechanism.
 
     Raises:
         RelativeError: its hardpoints make no mechanism, or the drawing does not close.
     """
-    return build(part.type, part.points, up=part.up, right=part.right, side=part.side, closure=part.closure)
+    return build(scene.mechanism.plain(tuple(scene.inputs)))
 
 
 def require_the_drawn_car(scene: Scene, model: Model) -> None:
@@ -109,14 +110,17 @@ class _Reading:
         inputs = {name: array[:count] for name, array in self.inputs.items()}
         motion = model.rates(poses, inputs)
         known = model.deviations(poses, motion)
-        numbers, claims = model.numbers(poses, motion), model.claims(poses, motion, known)
-        chassis = _chassis_motion(self.scene.mechanism, inputs)
+        chassis = ChassisMotion.of(self.scene.mechanism.plain(tuple(self.scene.inputs)), inputs)
+        turn = None if chassis is None else chassis.turn[0]
+        numbers, claims = model.numbers(poses, motion, turn), model.claims(poses, motion, known, turn)
+        if chassis is not None:
+            with np.errstate(over="ignore"):  # what is too large has no claim either
+                numbers, claims = chassis.moved(numbers), chassis.bounds(numbers, claims)
         asked = asked_numbers(self.scene)
         found, accuracy = {}, {}
         for quantity, names in asked.items():
-            found[quantity], accuracy[quantity] = _on_chassis(
-                quantity, _of(names, numbers[quantity]), _of(names, claims[quantity]), chassis
-            )
+            found[quantity] = _of(names, numbers[quantity])
+            accuracy[quantity] = _at_least(quantity, found[quantity], _of(names, claims[quantity]))
         return Solution(
             RelativeCoordinates.name,
             self.scene.instants[:count],
@@ -152,35 +156,12 @@ def _of(names: Sequence[str], arrays: Arrays) -> dict[str, Array]:
     return {name: arrays[name] for name in names if name in arrays}
 
 
-def _chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
-    """What the inputs that move the chassis come to, (N, 3, 3), mm and s; None if there are none."""
-    directions = {"up": part.up, "right": part.right}
-    moves = [
-        inputs[name][:, :, None] * np.array(directions[direction])
-        for name, direction in part.topology.chassis_motion.items()
-        if name in inputs
-    ]
-    return np.asarray(sum(moves[1:], moves[0])) if moves else None
+def _at_least(quantity: str, numbers: Arrays, claims: Arrays) -> Arrays:
+    """Claims; of rates of points or bodies EPS of the largest one of its kind at least.
 
-
-def _on_chassis(
-    quantity: str, numbers: Arrays, claims: Arrays, chassis: Array | None
-) -> tuple[Arrays, Arrays]:
-    """Numbers and claims with the chassis' motion.
-
-    A rate of points or bodies is claimed to EPS of the largest one of its kind at least: rounding in one
-    unknown of a system of equations is seen in all (Higham, ch. 9).
+    Rounding in one unknown of a system of equations is seen in all (Higham, ch. 9).
     """
-    order, of = per_second(quantity), QUANTITIES[quantity].of
-    if of == "car":
-        return numbers, claims
-    if of == "point" and chassis is not None:
-        moved = chassis[:, order]
-        with np.errstate(over="ignore"):  # what is too large has no claim either
-            numbers = {name: array + moved for name, array in numbers.items()}
-        added = EPS * np.abs(moved)
-        claims = {name: claim + added + EPS * np.abs(numbers[name]) for name, claim in claims.items()}
-    if order == 0:
-        return numbers, claims
+    if QUANTITIES[quantity].of == "car" or per_second(quantity) == 0 or not numbers:
+        return claims
     least = EPS * np.max([np.abs(rate).max(axis=-1, keepdims=True) for rate in numbers.values()], axis=0)
-    return numbers, {name: np.maximum(claim, least) for name, claim in claims.items()}
+    return {name: np.maximum(claim, least) for name, claim in claims.items()}

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 # right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
 # some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
-# unjudged: the reference could not be proven, which is a failure of the catalogue.
+# unjudged: the reference could not be proven, which is a failure of the catalogue unless the case allows it.
 Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
 
 OURS = "pointcoord"
@@ -59,15 +59,18 @@ class Expected:
 
     Attributes:
         outcomes: those allowed.
-        right_from: for values of the parameter from here up only `right` is allowed.
+        right_from, right_to: for values of the parameter from here up, and from here down, only `right` is
+            allowed.
     """
 
     outcomes: tuple[Outcome, ...]
     right_from: float = float("inf")
+    right_to: float = float("-inf")
 
     def met(self, value: float, outcome: Outcome) -> bool:
         """Whether an outcome is what had to come."""
-        return outcome in (("right",) if value >= self.right_from else self.outcomes)
+        surely = value >= self.right_from or value <= self.right_to
+        return outcome in (("right",) if surely else self.outcomes)
 
 
 @dataclass(frozen=True)
@@ -137,4 +140,6 @@ def wrong_without_warning(trial: Trial) -> tuple[Answer, ...]:
 RIGHT = Expected(("right",))
 RIGHT_OR_REFUSED = Expected(("right", "refused"))
 REFUSED = Expected(("refused",))
+# Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
+IF_ANY = Expected(("right", "refused", "unjudged"))
 FAILS = Expected(("refused", "noted", "wrong"))

@@ -10,8 +10,8 @@ from validate.hard.cases import (
     beside,
     body_rates,
     branches,
+    by_nature,
     cancelling,
-    contradictions,
     dead_points,
     extreme_durations,
     extreme_heave,
@@ -25,6 +25,7 @@ from validate.hard.cases import (
     regressions,
     turned,
 )
+from validate.hard.family import OF_PARTS, SUBJECTS
 
 CASES: tuple[Case, ...] = (
     *dead_points.CASES,
@@ -37,9 +38,9 @@ CASES: tuple[Case, ...] = (
     *extreme_durations.CASES,
     *cancelling.CASES,
     *branches.CASES,
+    *by_nature.CASES,
     *reach.CASES,
     *links.CASES,
-    *contradictions.CASES,
     *numbers.CASES,
     *extreme_heave.CASES,
     *regressions.CASES,
@@ -49,32 +50,26 @@ CASES: tuple[Case, ...] = (
 # Cases with fewer than eight values of their parameter, and why they have no more.
 _WAY = "each value is a whole way up to where it locks, or through a near miss: half a second to three"
 _REFUSAL = "each refusal takes half a second or more"
-_LINKS = "there are no more links"
 _SEARCH = "each value is a search from a thousand starts"
-_SECOND = "the strut is tried at more values; here it is the other suspension, or another car, that counts"
-FEW_VALUES: Mapping[str, str] = {
-    **{
-        case.name: _SECOND
-        for case in CASES
-        if len(case.values) < 8 and case.name.endswith(("-wishbone", "-turned"))
-    },
-    **dict.fromkeys(("strut-points-near", "knuckle-foot-short", "strut-drawn-folded"), _REFUSAL),
-    "long-sine": "each refusal takes two thousand segments",
-    **dict.fromkeys(("link-missing", "link-twice", "link-twice-for-another"), _LINKS),
-    **dict.fromkeys(("link-twice-beside", "link-twice-for-another-beside"), _LINKS),
-    **{f"assemblies-counted-{where}": _SEARCH for where in ("drawing", "rack", "arm", "meeting")},
-    **dict.fromkeys(
-        (
-            "strut-passes-flat",
-            *("branches-nearly-meet", "branches-nearly-meet-beside", "branches-met", "branches-met-beside"),
-            *("whole-range-arm", "whole-range-rack", "far-start-high", "far-start-rack"),
-            *("reach-arm-highest", "reach-arm-lowest", "reach-rack-least", "reach-rack-greatest"),
-            *("reach-slide-runs-out", "reach-upper-arm-locks", "reach-tie-rod-locks-the-arm"),
-            *("start-beyond-upper-arm-locks", "start-beyond-tie-rod-locks-the-arm"),
-            *("upper-arm-locks-held", "upper-arm-locks-moving", "upper-arm-locks-beyond"),
-        ),
-        _WAY,
+_SECOND = "the strut is tried at more values; here it is the other mechanism, or another car, that counts"
+_SUFFIXES = (*(subject.suffix for subject in (*SUBJECTS[1:], *OF_PARTS)), "-turned")
+_BY_REASON: Mapping[str, tuple[str, ...]] = {
+    _REFUSAL: ("strut-points-near", "knuckle-foot-short", "strut-drawn-folded"),
+    "each refusal takes two thousand segments": ("long-sine",),
+    _SEARCH: tuple(f"assemblies-counted-{where}" for where in ("drawing", "rack", "arm", "meeting")),
+    _WAY: (
+        "strut-passes-flat",
+        *("branches-nearly-meet", "branches-nearly-meet-beside", "branches-met", "branches-met-beside"),
+        *("whole-range-arm", "whole-range-rack", "far-start-high", "far-start-rack"),
+        *("reach-arm-highest", "reach-arm-lowest", "reach-rack-least", "reach-rack-greatest"),
+        *("reach-slide-runs-out", "reach-upper-arm-locks", "reach-tie-rod-locks-the-arm"),
+        *("start-beyond-upper-arm-locks", "start-beyond-tie-rod-locks-the-arm"),
+        *("upper-arm-locks-held", "upper-arm-locks-moving", "upper-arm-locks-beyond"),
     ),
+}
+FEW_VALUES: Mapping[str, str] = {
+    **{case.name: _SECOND for case in CASES if len(case.values) < 8 and case.name.endswith(_SUFFIXES)},
+    **{name: reason for reason, names in _BY_REASON.items() for name in names},
 }
 
 

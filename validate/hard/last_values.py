@@ -1,7 +1,7 @@
-"""The last values that inputs can reach, to sixteen digits, from the reference alone.
+"""The last values that inputs can reach, each the fold at which the reference proves that there is no way on.
 
-A pose either is proven to exist or proven not to. Between two values of an input, one of each kind, the
-interval is halved in fractions until it is shorter than 1e-16 of the input's range.
+Drawn anew where the other inputs are held, to many digits, a mechanism is driven by one input alone beyond
+the end that pointcoord sees.
 """
 
 from __future__ import annotations
@@ -10,16 +10,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import Any
 
-import numpy as np
+from pointcoord import Scene
+from pointcoord.drawing_stands import End, reach_of
+from validate.adjudication.reference_solution import reference_instant
+from validate.hard.cars import drawn_at
+from validate.hard.family import Subject
+from validate.reference import Design, InfeasibleError, pose_exists
+from validate.reference.exact import as_fraction
+from validate.reference.route import CLEAR, reached
 
-from validate.cars.input_limits import Linkage
-from validate.hard.cars import CARS
-from validate.reference import InfeasibleError, SingularPoseError, solve_reference
-
-DIGITS = 15  # of the reference: only whether there is a pose counts, which is proven anyhow
-NEAR = 1e-6  # of the range: what the rough end, good to rounding, is off by at most
-HALVED = Fraction(1, 10**16)  # of the range
+NEAR = 1e-6  # of the range: what pointcoord's end is off by at most
+BEYOND = 1e-3  # of the range: how far beyond it the reference is asked
 
 
 @dataclass(frozen=True)
@@ -30,77 +33,85 @@ class LastValue:
         value: rad or mm; poses exist up to here.
         reach: distance from this end to the opposite one, rad or mm.
         ahead: whether it is the upper end.
-        lock: what locks there: `arm`, `tie_rod` or the suspension's `upper_lock`.
     """
 
     value: Fraction
     reach: float
     ahead: bool
-    lock: str
 
     def beyond(self, share: float) -> float:
         """An input beyond this end by a share of the reach, rad or mm."""
         return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
 
 
-def home(car: str, level: bool = True) -> dict[str, float]:
-    """Inputs amid their ranges, from which each is driven: the arm level or as drawn, the rack as drawn."""
-    drawn = Linkage.of(CARS[car]).drawn_angle
-    return {"arm_angle": 0.5 * np.pi if level else drawn, "rack": 0.0}
+def last_value(
+    subject: Subject, driven: str, ahead: bool, held: Mapping[str, float] | None = None
+) -> LastValue:
+    """The end of an input.
+
+    Args:
+        ahead: whether the upper end is wanted.
+        held: all inputs amid their ranges, from where this one is driven; at home if not given.
+    Raises:
+        ValueError: no end is near the place where pointcoord sees it.
+    """
+    there = subject.home if held is None else held
+    return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.kinds))
+
+
+def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
+    """The ends of a mechanism's inputs, the others as drawn: of which, and whether it is the upper one.
+
+    Turns from the drawing have none of their own: they go round, or end where something else locks.
+    """
+    drawn = tuple(subject.drawn[name] for name in subject.kinds)
+    return tuple(
+        (name, bool(ahead))
+        for name, kind in subject.kinds.items()
+        if kind != "turn"
+        for ahead, end in enumerate(_seen(subject, name, drawn))
+        if end.limits
+    )
 
 
 @cache
-def last_value(car: str, driven: str, ahead: bool, level: bool = True) -> LastValue:
-    """The end of an input, the other one at home.
-
-    Args:
-        car: the name of one in `CARS`.
-        driven: `arm_angle` or `rack`.
-        ahead: whether the upper end is wanted.
-        level: see `home`.
-    Raises:
-        ValueError: no end is near the place where plain floating point sees it.
-    """
-    held = home(car, level)
-    linkage = Linkage.of(CARS[car])
-    this, opposite = (linkage.end(held, driven, way) for way in (ahead, not ahead))
-    if this is None or opposite is None:
-        raise ValueError(f"{driven} of the car {car!r} has no end on one of its sides")
-    reach = abs(this[0] - opposite[0])
-    outward = 1 if ahead else -1
-    inside = Fraction(this[0]) - outward * Fraction(NEAR * reach)
-    outside = Fraction(this[0]) + outward * Fraction(NEAR * reach)
-    if not reachable(car, held | {driven: inside}) or reachable(car, held | {driven: outside}):
-        raise ValueError(f"{driven} of the car {car!r} has no end near {this[0]!r}")
-    while abs(outside - inside) > HALVED * Fraction(reach):
-        middle = (inside + outside) / 2
-        if reachable(car, held | {driven: middle}):
-            inside = middle
-        else:
-            outside = middle
-    return LastValue(inside, reach, ahead, this[1])
+def _last_value(subject: Subject, driven: str, ahead: bool, values: tuple[float, ...]) -> LastValue:
+    held: dict[str, Fraction | float] = dict(zip(subject.kinds, values, strict=True))
+    low, high = _seen(subject, driven, values)
+    reach, seen = high.value - low.value, high.value if ahead else low.value
+    outward = reach if ahead else -reach
+    beyond = held | {driven: Fraction(seen) + Fraction(BEYOND * outward)}
+    design = _drawn_at(subject, held)
+    try:
+        reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in beyond.items()}))
+    except InfeasibleError as fold:
+        end = as_fraction(fold.inputs[driven], driven)
+        if abs(end - Fraction(seen)) <= Fraction(NEAR * reach):
+            return LastValue(end, reach, ahead)
+    raise ValueError(f"{driven} of {subject.name!r} has no end near {seen!r}")
 
 
-def reachable(car: str, values: Mapping[str, Fraction | float]) -> bool:
+def _drawn_at(subject: Subject, held: Mapping[str, Any]) -> Design:
+    """The mechanism drawn at a pose, to many digits, so that one input alone leads from there to its end."""
+    scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.kinds, 0.0)))
+    plain = scene.mechanism.plain(tuple(subject.kinds))
+    if held != subject.drawn:
+        pose = reference_instant(scene, {name: (value, 0, 0) for name, value in held.items()})
+        plain["points"] = {name: pose.position[name] for name in plain["points"]}
+    return Design.from_plain(plain)
+
+
+@cache
+def _seen(subject: Subject, driven: str, values: tuple[float, ...]) -> tuple[End, End]:
+    """Both ends of an input as pointcoord sees them, the others held at these values."""
+    held = dict(zip(subject.kinds, values, strict=True))
+    there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
+    return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)
+
+
+def reachable(subject: Subject, values: Mapping[str, Fraction | float]) -> bool:
     """Whether a pose exists at these values of the inputs, which is proven.
 
     A pose that is singular to 400 digits counts as existing: it is the end itself.
     """
-    there = CARS[car]
-    inputs = {name: (value, 0, 0) for name, value in values.items()}
-    try:
-        solve_reference(
-            there.points,
-            inputs,
-            up=there.up,
-            right=there.right,
-            side=there.side,
-            closure=there.closure,
-            suspension=there.suspension,
-            digits=DIGITS,
-        )
-    except InfeasibleError:
-        return False
-    except SingularPoseError:
-        return True
-    return True
+    return pose_exists(_drawn_at(subject, subject.drawn), {n: (value, 0, 0) for n, value in values.items()})

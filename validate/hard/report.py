@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from validate.hard.case import OURS, Answer, Case, Expected, Outcome
 from validate.hard.run import MAP, Examined, as_expected, counts, refusals
-from validate.output.terminal import Part, Table, text_of
+from validate.output.table import Part, Table, text_of
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
@@ -163,15 +163,24 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     wrong = sum(len(result.wrong) for result in results)
     other = [result for result in results if result.unexpected or result.wrong]
     if as_expected(results):
-        lines.append(
-            "All as expected: but for the formulas as printed, no number is wrong without a warning."
-        )
+        verdict = "All as expected: but for the formulas as printed, no number is wrong without a warning"
     else:
-        lines.append(
+        verdict = (
             f"NOT as expected: {numbered(sum(len(r.unexpected) for r in other), 'answer')}, "
-            f"{wrong} wrong without a warning, in {', '.join(result.case.name for result in other)}."
+            f"{wrong} wrong without a warning, in {', '.join(result.case.name for result in other)}"
         )
+    lines.append(f"{verdict}{_not_judged(results)}.")
     return tuple(lines)
+
+
+def _not_judged(results: Sequence[Examined]) -> str:
+    """The end of the verdict where some answers could not be held to a reference."""
+    found = {
+        result.case.name: sum(a.outcome == "unjudged" for trial in result.trials for a in trial.answers)
+        for result in results
+    }
+    cases = [name for name, count in found.items() if count]
+    return f"; {numbered(sum(found.values()), 'answer')} not judged, in {', '.join(cases)}" if cases else ""
 
 
 def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
@@ -218,7 +227,7 @@ def _case_data(result: Examined) -> dict[str, Any]:
 
 
 def _expected_data(expected: Expected) -> dict[str, Any]:
-    return {"outcomes": list(expected.outcomes), "right_from": expected.right_from}
+    return asdict(expected)
 
 
 def _answer_data(answer: Answer) -> dict[str, Any]:

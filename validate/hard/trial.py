@@ -45,6 +45,8 @@ class Tried:
 
 Measure = Callable[[Tried], Facts]
 
+NOT_ASKED = NoReferenceError("not asked, as all refuse")
+
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
 
@@ -61,6 +63,7 @@ def scene_case(
     behaviour: str,
     measure: Measure | None = None,
     also_answered: tuple[float, ...] = (),
+    proven: bool = True,
 ) -> Case:
     """A case whose trial is one scene.
 
@@ -69,10 +72,11 @@ def scene_case(
         expected: by name of a formulation; these are tried.
         measure: what else is measured on the solutions.
         also_answered: see `Case`.
+        proven: see `try_scene`.
     """
 
     def examine(value: float) -> Trial:
-        return try_scene(value, scene(value), tuple(expected), measure)
+        return try_scene(value, scene(value), tuple(expected), measure, proven)
 
     return Case(
         name,
@@ -90,12 +94,19 @@ def scene_case(
 
 
 def try_scene(
-    value: float, content: Mapping[str, Any], formulations: Sequence[str], measure: Measure | None = None
+    value: float,
+    content: Mapping[str, Any],
+    formulations: Sequence[str],
+    measure: Measure | None = None,
+    proven: bool = True,
 ) -> Trial:
     """Solve a scene by each formulation and hold the answers to the reference.
 
     A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. The
     drawings of hard cases are exact, so that the reference takes an unclear side from exact products.
+
+    Args:
+        proven: whether the reference is asked even if all refuse, when nothing is to be held to it.
     """
     try:
         scene = Scene.from_mapping(content)
@@ -105,7 +116,7 @@ def try_scene(
     start = _started(scene) if OURS in formulations else None
     tried = {name: solved(name, scene, start) for name in formulations}
     solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
-    reference = _reference(scene)
+    reference = _reference(scene) if proven or solutions else NOT_ASKED
     answers = tuple(_held(scene, name, one, reference) for name, one in tried.items())
     said = _told(reference) if isinstance(reference, Exception) else "answers"
     facts: dict[str, float | str] = {"reference": said}

@@ -16,7 +16,7 @@ from math import cos, radians, sin
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pointcoord.scene.scene_text import read_file
+from pointcoord.toml_text import read_file
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,

@@ -20,7 +20,7 @@ from validate.hardpoint_files.contents import Contents, HardpointFileError, plai
 from validate.hardpoint_files.vocabulary import Vocabulary
 
 FORMATS = Path(__file__).parent / "formats"
-FORMS: Mapping[str, Callable[[str, str], Contents]] = {
+FORMS: Mapping[str, Callable[..., Contents]] = {
     "lotus_report": lotus_report.read,
     "columns": columns.read,
     "chrono_json": chrono_json.read,
@@ -70,8 +70,7 @@ class Format:
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        endings, beginnings: sides and axles by what a point's name ends or begins with. beside: the same of
-            letters that mean so only where names with another letter, by which they stand here, are there.
+        endings, beginnings: sides and axles by what a point's name ends or begins with.
         vocabulary: other words for those of its names; None if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
@@ -90,7 +89,6 @@ class Format:
     axes_told_by: str
     endings: Mapping[str, Mapping[str, str]]
     beginnings: Mapping[str, Mapping[str, str]]
-    beside: Mapping[str, Mapping[str, Mapping[str, str]]]
     vocabulary: Vocabulary | None
     refused: str
     refused_words: str
@@ -118,13 +116,17 @@ class Format:
             for kind, words in self.suspensions.items()
         )
 
-    def read(self, text: str, source: str) -> Contents:
+    def read(self, text: str, source: str, said: Mapping[str, str | int]) -> Contents:
         """What a file of this format holds.
 
+        Args:
+            said: which columns the user means, of a table.
         Raises:
             HardpointFileError: it is not written as it must be.
         """
-        return FORMS[self.form](text, source)
+        if said and self.form != "columns":
+            raise HardpointFileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
+        return FORMS[self.form](text, source, said) if said else FORMS[self.form](text, source)
 
     def holds_nothing(self, name: str) -> bool:
         """Whether a point of this name is known and not needed."""
@@ -150,7 +152,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
         axes_told_by=table.get("axes_told_by", ""),
         endings=_senses(table.get("endings", {})),
         beginnings=_senses(table.get("beginnings", {})),
-        beside={plain(letter): _senses(senses) for letter, senses in table.get("beside", {}).items()},
         vocabulary=Vocabulary.of(table["vocabulary"], table["idle"]["words"])
         if "vocabulary" in table
         else None,

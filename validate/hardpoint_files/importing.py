@@ -17,8 +17,8 @@ from pathlib import Path
 from pointcoord import Scene
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
-from pointcoord.scene.scene_text import read_file
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.toml_text import read_file
 from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, UNITS, Axes, axes_seen
 from validate.hardpoint_files.contents import (
     Contents,
@@ -33,6 +33,7 @@ from validate.hardpoint_files.contents import (
 from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import Format, Names, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
+from validate.hardpoint_files.names_to_fill_in import names_to_fill_in
 from validate.hardpoint_files.slips import slips
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
@@ -123,12 +124,31 @@ def import_hardpoints(
     text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
     own_names = NO_NAMES if names is None else read_names(names)
     found = format_of(text, format, source)
-    return _Import(source, choices, found, found.read(text, source), own_names).result()
+    return _Import(source, choices, found, found.read(text, source, own_names.table), own_names).result()
+
+
+def names_of(path: str | Path, format: str | None = None, suspension: str | None = None) -> str:
+    """A file of names (TOML) for a file of hardpoints, ready to be filled in.
+
+    Raises:
+        SceneError, HardpointFileError, UnknownName: as `import_hardpoints`.
+    """
+    choices = Choices(format, suspension)
+    _known_choices(choices)
+    source = str(path)
+    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
+    found = format_of(text, format, source)
+    try:
+        contents = found.read(text, source, {})
+    except HardpointFileError:
+        # Such as a table whose columns are not known: they can be said in the same file.
+        contents = Contents(())
+    return _Import(source, choices, found, contents, NO_NAMES).to_fill_in()
 
 
 def _known_choices(choices: Choices) -> None:
     allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
-        ("suspension", choices.suspension, SUSPENSIONS),
+        ("suspension", choices.suspension, shipped()),
         ("side", choices.side, SIDES),
         ("unit", choices.unit, UNITS),
     )
@@ -168,7 +188,12 @@ class _Import:
     def result(self) -> Imported:
         kind = self.suspension()
         words = self.format.suspensions.get(kind, Names({}, {}, {}))
-        topology = SUSPENSIONS[kind].closures["drawn"]
+        topology = mechanism_file(kind).topology()
+        if not (topology.wheel_axis and topology.inboard):
+            raise self.refuse(
+                f"is read as {kind}, whose file names no wheel: the roles wheel_axis and inboard",
+                "a suspension of one wheel; else a scene written by hand (pointcoord new)",
+            )
         ours, others, part, side_said = self.chosen(kind)
         axis = self.spin_axis(part)
         values = self.values(part, side_said)
@@ -211,6 +236,15 @@ class _Import:
             doubts=tuple(doubts),
         )
 
+    def to_fill_in(self) -> str:
+        """A file of names, with the points that are known."""
+        least = self.closest()
+        kind = self.choices.suspension or least[0]
+        known, others = self.named(kind)
+        topology = mechanism_file(kind).topology()
+        needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
+        return names_to_fill_in(self.source, kind, needed, dict(known), others)
+
     # Which suspension, and which of the file's points are which of ours.
 
     def suspension(self) -> str:
@@ -228,24 +262,27 @@ class _Import:
                 f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
                 f"{self.format.known_suspensions}; a like one by another name: say so with --suspension",
             )
-        missing = {
-            kind: len(self.missing(SUSPENSIONS[kind].closures["drawn"], self.named(kind)[0]))
-            for kind in self.format.suspensions
-        }
-        least = min(missing.values())
-        best = [kind for kind, count in missing.items() if count == least]
+        best = self.closest()
         if len(best) > 1:
             raise self.refuse(
                 f"could be a {' or a '.join(best)}", f"--suspension {' or --suspension '.join(best)}"
             )
         return best[0]
 
+    def closest(self) -> list[str]:
+        """The suspensions of which the file lacks the fewest points."""
+        missing = {
+            kind: len(self.missing(mechanism_file(kind).topology(), self.named(kind)[0]))
+            for kind in self.format.suspensions
+        }
+        return [kind for kind, count in missing.items() if count == min(missing.values())]
+
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
         words = self.format.suspensions.get(kind, Names({}, {}, {})).names
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
-            ours |= {plain(name): name for name in SUSPENSIONS[kind].points}
+            ours |= {plain(name): name for name in mechanism_file(kind).points}
         # What the user says goes before what the format says, of this point and of that name.
         said = {plain(their): our for our, their in self.own.names.items()}
         taken = self.own.names.keys() | self.own.points.keys()
@@ -257,16 +294,17 @@ class _Import:
         def known(name: str) -> str:
             return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
 
-        meant = self.meant_letters(known)
+        # Beside names with a lonely f an r may be rear as well as right.
+        every = [plain(point.name).split() for point in self.contents.points]
+        parted = [part for name in every for part in ((name[:1], name[1:]), (name[-1:], name[:-1]))]
+        doubtful = any(edge == ["f"] and known(" ".join(rest)) for edge, rest in parted)
 
         def found(point: FilePoint) -> tuple[str, FilePoint]:
             for base, begins, ends in self.readings(point.name):
                 if our := known(base):
-                    senses = [meant.get(begins, self.format.beginnings.get(begins, {}))] if begins else []
-                    senses += [meant.get(ends, self.format.endings.get(ends, {}))] if ends else []
-                    if not all(senses):
+                    if doubtful and "r" in (begins, ends):
                         return "", point
-                    for sense in senses:
+                    for sense in (self.format.beginnings.get(begins, {}), self.format.endings.get(ends, {})):
                         if point.side and sense.get("side", point.side) != point.side:
                             raise self.refuse(
                                 f"has {short(point.name)} for the {point.side} wheel", "one side", point.line
@@ -282,10 +320,7 @@ class _Import:
     def readings(self, name: str) -> Iterator[tuple[str, str, str]]:
         """A name whole, and without the words of a wheel that it begins or ends with, and these words."""
         yield name, "", ""
-        begins, ends = (
-            self.format.beginnings.keys() | self.format.beside,
-            self.format.endings.keys() | self.format.beside,
-        )
+        begins, ends = self.format.beginnings, self.format.endings
         words = re.findall(r"[^\W_]+", name)
         for ahead, behind in ((0, 1), (2, 0), (1, 0), (2, 1), (1, 1)):
             base = words[ahead : len(words) - behind]
@@ -296,22 +331,6 @@ class _Import:
     def holds_nothing(self, point: FilePoint) -> bool:
         """Whether a point is known and not needed, whatever tells its wheel."""
         return any(self.format.holds_nothing(base) for base, _, _ in self.readings(point.name))
-
-    def meant_letters(self, known: Callable[[str], str]) -> Mapping[str, Mapping[str, str]]:
-        """What letters mean that other letters decide; nothing for those that are in doubt."""
-        there = {
-            edge
-            for point in self.contents.points
-            for base, *edges in self.readings(point.name)
-            if known(base)
-            for edge in edges
-        }
-        meant: dict[str, Mapping[str, str]] = {}
-        for letter, senses in self.format.beside.items():
-            if letter in there:
-                others = {edge for edge in there if len(edge) == 1} - senses.keys()
-                meant |= {edge: ({} if others else sense) for edge, sense in senses.items()}
-        return meant
 
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names, and the others."""
@@ -421,7 +440,8 @@ class _Import:
         ]
         unknown = [point for point in others if not self.holds_nothing(point)]
         listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
-        advice = f'a file of names (--names) with {lost[0]} = "its name" or {lost[0]} = [x, y, z]'
+        advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
+        advice += f" or {lost[0]} = [x, y, z]"
         if any(name in words.derived and words.derived[name].rule == "spin axis" for name in lost):
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
         raise self.refuse(
@@ -485,18 +505,20 @@ class _Import:
             for wheel in [_seen_side(one, outboard)]
             if wheel == (self.choices.side or side or wheel)
         ]
-        wrong = self.slipped(topology, ours, lambda other: other is not None and other != seen)
-        mended = "a mended point; else " if wrong else ""
-        raise self.refuse(
-            f"{told}{wrong}", f"{mended}{' or '.join(ways)}, as {words} lie; or others, if they are so"
-        )
+        raise self.refuse(told, f"{' or '.join(ways)}, as {words} lie; or others, if they are so")
 
     def seen(self, topology: Topology, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
-        """The axes in which a car's points lie as these, where outboard is, and what shows it."""
+        """The axes in which a car's points lie as these, where outboard is, and what shows it.
+
+        There are none where the mechanism does not say which points lie so.
+        """
+        outboard = _difference(ours[topology.wheel_centre].place, ours[topology.inboard].place)
+        if not (topology.front_and_rear and topology.steering_axis):
+            return None, outboard, ""
         (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
-        pairs = ((front, rear), (topology.wheel_centre, topology.inboard), (high, low))
-        ends = [(ours[one].place, ours[other].place) for one, other in pairs]
-        forward, outboard, upward = (_difference(one, other) for one, other in ends)
+        forward, upward = (
+            _difference(ours[one].place, ours[other].place) for one, other in ((front, rear), (high, low))
+        )
         return axes_seen(forward, upward), outboard, f"{front} seen from {rear} and {high} from {low}"
 
     def is_our_own(self, ours: str, point: FilePoint) -> bool:
@@ -528,36 +550,24 @@ class _Import:
         if seen is None or _same_but_for_left(axes, seen):
             return []
         told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
-        wrong = self.slipped(
-            topology, ours, lambda other: other is not None and _same_but_for_left(axes, other)
-        )
+        told += self.slipped(topology, ours, axes)
         if self.choices.axes is not None:
-            return [f"{told}{wrong}: are these the right axes and names?"]
+            return [f"{told}: are these the right axes and names?"]
         # Which way is left no point shows: it decides which wheel this is.
         ways = [
             f"--axes {one.option} of a {_seen_side(one, outboard)} wheel" for one in (seen, seen.other_handed)
         ]
-        mended = "a mended point; else " if wrong else ""
-        raise self.refuse(
-            f"{told}{wrong}",
-            f"{mended}{' or '.join(ways)} if that is so, --axes {axes.option} if not",
-        )
+        allowed = f"{' or '.join(ways)} if that is so, --axes {axes.option} if not"
+        raise self.refuse(told, allowed)
 
-    def slipped(
-        self, topology: Topology, ours: Mapping[str, FilePoint], fits: Callable[[Axes | None], bool]
-    ) -> str:
-        """The points by which the axes are seen that one slip puts apart from all others, as a question.
-
-        Args:
-            fits: whether the axes are right that are seen without the slip.
-        """
+    def slipped(self, topology: Topology, ours: Mapping[str, FilePoint], axes: Axes) -> str:
+        """The points that one slip puts apart from all others, and without it the axes fit, as a question."""
         places = {name: point.place for name, point in ours.items()}
-        telling = (*topology.front_and_rear, *topology.steering_axis)
-        found = [
-            f"{short(ours[slip.name].name)} on line {ours[slip.name].line} ({slip.words} would fit)"
-            for slip in slips(places, telling)
-            if fits(self.seen(topology, {**ours, slip.name: replace(ours[slip.name], place=slip.place)})[0])
-        ]
+        found = []
+        for name, place, words in slips(places, (*topology.front_and_rear, *topology.steering_axis)):
+            seen = self.seen(topology, {**ours, name: replace(ours[name], place=place)})[0]
+            if seen is not None and _same_but_for_left(axes, seen):
+                found.append(f"{short(ours[name].name)} on line {ours[name].line} ({words} would fit)")
         return f" (or is one of these wrong: {', '.join(found)}?)" if found else ""
 
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:

@@ -3,6 +3,13 @@
 [names]
 wheel_centre = "Hub centre"             # our name = the file's name
 wheel_axis_inner = [0.0, 658.0, 210.0]  # or x, y and z in the file's own axes and unit
+
+[table]                                 # of a table whose titles are not understood
+name = "Punkt"                          # the title of a column, or its number from 1
+x = "Hoch"
+y = "Quer"
+z = "Laengs"
+corner = 6                              # only if there is one
 """
 
 from __future__ import annotations
@@ -15,10 +22,11 @@ from decimal import Decimal, DecimalException
 from typing import Any
 
 from pointcoord.errors import UnknownName
-from pointcoord.scene.scene_text import read_file
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.toml_text import read_file
 from validate.hardpoint_files.contents import FilePoint, HardpointFileError, finite, short
 
+COLUMNS = ("name", "x", "y", "z")
 FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z]'
 
 
@@ -28,13 +36,15 @@ class NamesFile:
 
     Attributes:
         names: the other file's name of our points. points: those that are given here.
+        table: titles or numbers of the columns name, x, y, z and corner.
     """
 
     names: Mapping[str, str]
     points: Mapping[str, FilePoint]
+    table: Mapping[str, str | int]
 
 
-NO_NAMES = NamesFile({}, {})
+NO_NAMES = NamesFile({}, {}, {})
 
 
 def read_names(path: str) -> NamesFile:
@@ -52,21 +62,28 @@ def read_names(path: str) -> NamesFile:
     except (ValueError, RecursionError, DecimalException) as error:
         found = re.search(r"at line (\d+)", str(error))
         raise HardpointFileError(path, int(found[1]) if found else 0, f"is not TOML: {error}", FORM) from None
-    table = data.pop("names", None)
-    if data or not isinstance(table, dict):
+    columns, table = data.pop("table", {}), data.pop("names", None)
+    if data or not isinstance(table, dict | None) or (table is None and not columns):
         told = f"has the key {short(next(iter(data)))}" if data else "has no table [names]"
         raise HardpointFileError(path, 0, told, FORM)
-    ours = tuple(dict.fromkeys(point for kind in SUSPENSIONS.values() for point in kind.points))
+    if columns and (
+        not isinstance(columns, dict)
+        or not {*COLUMNS} <= columns.keys() <= {*COLUMNS, "corner"}
+        or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in columns.values())
+    ):
+        told = f"[table] is {short(str(columns))}"
+        raise HardpointFileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
+    ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
     names: dict[str, str] = {}
     points: dict[str, FilePoint] = {}
-    for name, value in table.items():
+    for name, value in (table or {}).items():
         if name not in ours:
             raise UnknownName(f"point of ours in {path}", name, ours)
         if isinstance(value, str):
             names[name] = value
         else:
             points[name] = FilePoint(f"given in {path}", _place(value, path, name), 0)
-    return NamesFile(names, points)
+    return NamesFile(names, points, columns)
 
 
 def _place(value: Any, path: str, name: str) -> tuple[Decimal, Decimal, Decimal]:

@@ -1,12 +1,8 @@
-"""A point that lies apart from all the others, and would not but for one slip of the pen.
-
-A slip is a wrong sign of one coordinate, or a point ten times too large or too small.
-"""
+"""A point that lies apart from all the others, and would not but for one slip of the pen."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from decimal import Decimal
 
 from validate.hardpoint_files.contents import Place
@@ -14,47 +10,30 @@ from validate.hardpoint_files.contents import Place
 # How far a point must lie off the others, in sizes of the box around them, and which part of that may be left
 # without the slip: the top of a strut lies off the others as it is drawn.
 APART, LEFT = Decimal("0.1"), Decimal("0.5")
-TEN = Decimal(10)
+SLIPS: Mapping[str, tuple[Decimal | int, Decimal | int, Decimal | int]] = {
+    "x of the other sign": (-1, 1, 1),
+    "y of the other sign": (1, -1, 1),
+    "z of the other sign": (1, 1, -1),
+    "ten times as much": (10, 10, 10),
+    "a tenth as much": (Decimal("0.1"), Decimal("0.1"), Decimal("0.1")),
+}
 
 
-@dataclass(frozen=True)
-class Slip:
-    """A slip that may have been made.
-
-    Attributes:
-        name: of the point, ours. place: where it lies without the slip. words: what undoes it.
-    """
-
-    name: str
-    place: Place
-    words: str
-
-
-def slips(places: Mapping[str, Place], names: Iterable[str]) -> Iterator[Slip]:
-    """The slips of points of these names that bring them back among the others."""
+def slips(places: Mapping[str, Place], names: Iterable[str]) -> Iterator[tuple[str, Place, str]]:
+    """Points of these names that a slip brings back among the others: the name, the place, what undoes it."""
     for name in names:
-        others = [place for other, place in places.items() if other != name]
+        others = [*zip(*(place for other, place in places.items() if other != name), strict=True)]
         apart = _apart(places[name], others)
-        if apart <= APART:
-            continue
-        for slip in _undone(name, places[name]):
-            if _apart(slip.place, others) < LEFT * apart:
-                yield slip
+        for words, (a, b, c) in SLIPS.items() if apart > APART else ():
+            x, y, z = places[name]
+            if _apart(place := (a * x, b * y, c * z), others) < LEFT * apart:
+                yield name, place, words
 
 
-def _undone(name: str, place: Place) -> Iterator[Slip]:
-    x, y, z = place
-    yield Slip(name, (-x, y, z), "x of the other sign")
-    yield Slip(name, (x, -y, z), "y of the other sign")
-    yield Slip(name, (x, y, -z), "z of the other sign")
-    yield Slip(name, (x * TEN, y * TEN, z * TEN), "ten times as much")
-    yield Slip(name, (x / TEN, y / TEN, z / TEN), "a tenth as much")
-
-
-def _apart(place: Place, others: Iterable[Place]) -> Decimal:
+def _apart(place: Place, others: Iterable[tuple[Decimal, ...]]) -> Decimal:
     """How far a place lies off the box around others, in its sizes, all coordinates together."""
     apart = Decimal(0)
-    for value, column in zip(place, zip(*others, strict=True), strict=True):
+    for value, column in zip(place, others, strict=True):
         low, high = min(column), max(column)
         if high > low:
             apart += max(low - value, value - high, Decimal(0)) / (high - low)

@@ -75,7 +75,7 @@ def _left_open(places: Mapping[str, Place], unit: Decimal, topology: Topology) -
     """
     largest = 0.0
     for ends in (topology.wheel_axis, topology.steering_axis):
-        if all(name in places for name in ends):
+        if ends and all(name in places for name in ends):
             one, other = (places[name] for name in ends)
             length = sum(float(a - b) ** 2 for a, b in zip(one, other, strict=True)) ** 0.5
             half = max(_half_a_digit(number) for number in (*one, *other))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import floor
@@ -11,10 +10,11 @@ from typing import Any
 
 from pointcoord import Scene, standing
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.mechanism import mechanism_file
 from pointcoord.results.closing import Closing
-from pointcoord.suspensions import SUSPENSIONS
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
+from validate.toml_written import value_of
 
 # Part of the way from the drawing to the nearer end of the driven input that the bounce takes: far from where
 # links lie in line, and still some 50 mm of wheel travel of a road car.
@@ -89,7 +89,7 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
         "inputs": {},
         "time": {"start": 0.0, "stop": 0.0, "samples": 1},
     }
-    topology = SUSPENSIONS[kind].closures["drawn"]
+    topology = mechanism_file(kind).topology()
     content["inputs"] = {name: {"constant": 1.0} for name in topology.required_inputs}
     scene = Scene.from_mapping(content, source)
     part = scene.mechanism
@@ -138,20 +138,20 @@ def scene_text(
     lines = [
         f"# Imported from {shown(Path(source).name)}, a {format_words}.",
         *(f"# {shown(fact)}." for fact in facts),
-        f"title = {_quoted(drawn.title)}",
-        f"effects = [{', '.join(map(_quoted, drawn.effects))}]",
+        f"title = {value_of(drawn.title)}",
+        f"effects = [{', '.join(map(value_of, drawn.effects))}]",
         f"tolerance = {drawn.tolerance:g}",
         "",
         "[mechanism]",
-        f"type = {_quoted(part.type)}",
-        f"side = {_quoted(part.side)}",
+        f"type = {value_of(part.name)}",
+        f"side = {value_of(part.side)}",
         "",
         "[mechanism.points]    # mm",
         *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
         *(f"# not used: {shown(point.name)}, line {point.line}" for point in others),
         "",
         "[inputs]",
-        *(f"{name} = {_table(law)}    # {bounce.words[name]}" for name, law in bounce.inputs.items()),
+        *(f"{name} = {value_of(law)}    # {bounce.words[name]}" for name, law in bounce.inputs.items()),
         "",
         "[time]    # s",
         "start = 0.0",
@@ -159,16 +159,3 @@ def scene_text(
         f"samples = {SAMPLES}",
     ]
     return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    """A string of TOML: of characters that print, JSON's is one."""
-    return json.dumps(text, ensure_ascii=False)
-
-
-def _table(law: Mapping[str, Any]) -> str:
-    told = (
-        f"{key} = {_table(value) if isinstance(value, Mapping) else repr(value)}"
-        for key, value in law.items()
-    )
-    return f"{{ {', '.join(told)} }}"

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, fields
 
 from validate.comparison.compare import Comparison
-from validate.cost.tables import csv_text as cost_csv
 from validate.html.hard_cases import HardCases
 from validate.html.run import Run
 from validate.output.document import json_text
+from validate.output.table import csv_of
 from validate.published.tables import Published
 
 RESULTS, COMPARISONS = "results.json", "comparisons.csv"
@@ -43,12 +41,12 @@ def data_files(run: Run) -> Mapping[str, str]:
         return {}
     files = {RESULTS: json_text(run.document)}
     if run.told:
-        files[COMPARISONS] = _text(_head(Comparison), _comparisons(run))
+        files[COMPARISONS] = csv_of(_head(Comparison), _comparisons(run))
     if run.files:
         names = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
-        files[NUMBERS] = _text(names, _numbers(run))
+        files[NUMBERS] = csv_of(names, _numbers(run))
     if run.published:
-        files[PUBLISHED] = _text(
+        files[PUBLISHED] = csv_of(
             ("table", "over", "at", "quantity", "name", "unit", "printed", "computed"),
             _published(run.published),
         )
@@ -56,24 +54,15 @@ def data_files(run: Run) -> Mapping[str, str]:
         if run.head.kind != "hard":
             files[HARD_JSON] = json_text(run.hard.document)
         head = ("case", "value", "formulation", "outcome", "error", "bound", "unit", "reason")
-        files[HARD_CSV] = _text(head, _hard(run.hard))
+        files[HARD_CSV] = csv_of(head, _hard(run.hard))
     if run.cost is not None:
         files[COST_JSON] = json_text(run.cost.data())
-        files[COST_CSV] = cost_csv(run.cost.rows)
+        files[COST_CSV] = run.cost.csv()
     return files
 
 
 def _head(kind: type) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
-
-
-def _text(head: Iterable[str], lines: Iterable[Iterable[object]]) -> str:
-    """Lines as CSV; numbers give their bits back, a missing one is empty."""
-    stream = io.StringIO()
-    writer = csv.writer(stream)
-    writer.writerow(head)
-    writer.writerows(["" if value != value else value for value in line] for line in lines)
-    return stream.getvalue()
 
 
 def _comparisons(run: Run) -> Iterator[Iterable[object]]:

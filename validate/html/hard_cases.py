@@ -116,10 +116,12 @@ class HardCases:
         count, scenes = len(self.cases), sum(len({a.value for a in one.answers}) for one in self.cases)
         noun = "case" if count == 1 else "cases"
         told = f"{count} hard {noun} at {scenes} values held to the many-digit reference: "
+        unjudged = [one.name for one in self.cases if any(a.outcome == "unjudged" for a in one.answers)]
+        end = f"; some answers not judged: {', '.join(unjudged[:10])}" if unjudged else ""
         if self.status is ExitStatus.AGREE:
-            return told + "all as expected"
+            return f"{told}all as expected{end}"
         other = [one.name for one in self.cases if one.unexpected]
-        return f"{told}disagrees, not as expected{': ' if other else ''}{', '.join(other[:10])}"
+        return f"{told}disagrees, not as expected{': ' if other else ''}{', '.join(other[:10])}{end}"
 
 
 def _case(data: Mapping[str, Any]) -> Case:

@@ -30,11 +30,13 @@ class Panel:
     Attributes:
         words: what is drawn, for people who see the page and for those who hear it.
         traces, layout: as plotly has them.
+        rem: height of one that is as wide as the page; 0 of one that stands beside others.
     """
 
     words: str
     traces: tuple[Mapping[str, Any], ...]
     layout: Mapping[str, Any]
+    rem: float = 0.0
 
     @property
     def json(self) -> str:

@@ -40,36 +40,13 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Cell:
-    """What a table says at one place: a word or a number, and small print below it.
-
-    Attributes:
-        verdict: the word of a verdict that gives the cell its colour; the text says it too.
-    """
-
-    text: str
-    detail: str = ""
-    verdict: str = ""
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A table; the first cell of a row is its name."""
-
-    template: ClassVar[str] = "grid.html"
-    scripts: ClassVar[tuple[str, ...]] = ("grid.js",)
-    caption: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-
-
-@dataclass(frozen=True)
 class Section:
     """A part of the page with a heading.
 
     Attributes:
         name: anchor on the page. title: heading.
         place: sections stand in the order of these numbers.
+        folded: whether it is seen only by who opens it.
         blocks: what it is made of; a section that has nothing to show of a run makes none and is left out.
     """
 
@@ -77,6 +54,7 @@ class Section:
     title: str
     place: int
     blocks: Callable[[Run], Sequence[Block]]
+    folded: bool = False
 
 
 def which(run: Run) -> list[Block]:

@@ -17,7 +17,9 @@ point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `s
 what that makes of the number at that pose, with the worst signs: see `validate.solvers.held`. A travel in
 full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
 are not tested. Where S alone is as wide as half of the whole range that the quantity
-has in the file, no number of it could tell its curve from a level line: it is not tested. Nor is a number of
+has in the file, no number of it could tell its curve from a level line: it is not tested. Independent columns
+in even steps are set values, h_x = 0. Where nobody says how another one is rounded, and T is more than ten
+times what it is without that part of S, what agrees only within that is not tested either. Nor is a number of
 the car that agrees where fewer than half of what the file gives of it can be compared: the others would be as
 little tested in a file of them alone.
 """
@@ -43,11 +45,12 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.errors import ResultsError
-from validate.measured.mapping import ARCSINE, CONTACT, TIME, TRAVEL, Measured, Series, angle_of
+from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import SPEED, Found, Numbers, Poses, asked_scene, poses_of
 from validate.measured.supposed import in_reach, likely
 from validate.measured.units import named
 from validate.plain_text import shown
+from validate.toml_written import key_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -64,6 +67,8 @@ TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
 NO_NUMBERS = "no row has a number of it that can be held to anything"
+# A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
+WIDER = 10.0
 # Rows out of reach, or columns, that are named one by one.
 NAMED = 3
 
@@ -75,6 +80,7 @@ class Held:
     Attributes:
         ours, tolerance: (N,), NaN where there is nothing to compare.
         swing: the part of the tolerance that the independent columns' rounding makes, (N,).
+        supposed: the part of that which is the rounding of columns whose last digit no map says, (N,).
         bound: the part that is our own proven bound, (N,).
         unknown: why ours are not known, in words.
     """
@@ -83,8 +89,14 @@ class Held:
     ours: Array
     tolerance: Array
     swing: Array
+    supposed: Array
     bound: Array
     unknown: str = ""
+
+    @property
+    def close(self) -> Array:
+        """The tolerance, at most WIDER times what it is without what is supposed, (N,)."""
+        return np.asarray(np.minimum(self.tolerance, WIDER * (self.tolerance - self.supposed)))
 
     @property
     def gap(self) -> Array:
@@ -363,7 +375,7 @@ def _explained(
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
         units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
         theirs={row: unit for row, columns in whole.items() if (unit := _given_in(columns))},
-        known={} if over_time else {n: a[told] for n, a in ours.numbers[_PLACES].items()},
+        known={} if over_time else {n: a[told] for n, a in ours.numbers[PLACES].items()},
     )
     try:
         return explain_evidence(evidence)
@@ -420,7 +432,7 @@ def _held(
     stated = _taken_for_granted(measured, scene, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
-    around: list[tuple[Found, Found]] = []
+    around: list[tuple[bool, Found, Found]] = []
     for i, s in enumerate((*measured.independent, *measured.rates)):
         off = s.off + poses.extra(s)
         if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
@@ -428,7 +440,7 @@ def _held(
         if off.any():
             ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
             sides = [poses.at(end[:first], end[first:]) for end in ends]
-            around.append((sides[0], sides[1]))
+            around.append((not s.said and bool(s.off.any()), sides[0], sides[1]))
     found, unknown = [], []
     largest: dict[tuple[str, str], float] = {}
     for s in measured.numbers:
@@ -438,14 +450,15 @@ def _held(
         mine, bound = ours_of(s, here, scene)
         if mine is None or bound is None:
             unknown.append(s)
-        swing = np.zeros(len(values[0]))
-        for pair in around:
+        swing, supposed = np.zeros(len(values[0])), np.zeros(len(values[0]))
+        for unstated, *pair in around:
             change = [np.zeros_like(swing)]
             for side in pair:
                 there = ours_of(s, side, scene)[0]
                 if there is not None and mine is not None:
                     change.append(np.nan_to_num(_turned(np.abs(there - mine), s)))
             swing = swing + np.max(change, axis=0)
+            supposed = supposed + unstated * np.max(change, axis=0)
         ours = np.full(len(swing), np.nan) if mine is None else mine
         own_accuracy = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
         rounding = 4.0 * EPS * largest[s.meaning.quantity, s.meaning.per]
@@ -453,7 +466,7 @@ def _held(
         allowed = allowed + sum(0.0 if part is None else part for part in (own_accuracy, bound))
         own = np.zeros(len(swing)) if bound is None else np.asarray(bound)
         why = "" if mine is not None else here.unrated or NO_NUMBERS
-        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, own, why))
+        found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, supposed, own, why))
     if unknown:
         names = ", ".join(shown(s.column) for s in unknown)
         notes.append(f"{names} is not tested: {here.unrated or NO_NUMBERS}")
@@ -500,7 +513,7 @@ def _stated(asked: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
     from validate.solvers.held import accuracy_at
 
     rows = here.reached
-    places = {name: place[rows] for name, place in here.numbers[_PLACES].items()}
+    places = {name: place[rows] for name, place in here.numbers[PLACES].items()}
     stated = accuracy_at(asked, asked.tolerance, places, laws)
     blind = np.zeros(int(rows.sum()), dtype=bool) if stated.blind is None else stated.blind
     found: Numbers = {}
@@ -552,8 +565,8 @@ def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, A
 def _arcsine(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
     """An angle as the arcsine of a component of its line, not as that of a projection of it."""
     angle = angle_of(series.meaning)
-    (positions,) = (part for quantity, part in found.numbers.items() if quantity == _PLACES)
-    bounds = found.bounds.get(_PLACES, {})
+    (positions,) = (part for quantity, part in found.numbers.items() if quantity == PLACES)
+    bounds = found.bounds.get(PLACES, {})
     assert angle is not None  # the map of columns was checked
     part = scene.mechanism
     axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
@@ -585,7 +598,7 @@ def _derivative(series: Series, found: Found, scene: Scene) -> tuple[Array | Non
     axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
     start, end = angle.ends(part.topology)
     parts, offs = [], []
-    for places, bounds in ((found.numbers[_PLACES], found.bounds[_PLACES]), (slopes.places, slopes.bounds)):
+    for places, bounds in ((found.numbers[PLACES], found.bounds[PLACES]), (slopes.places, slopes.bounds)):
         line = places[end] - places[start]
         parts += [axes.component(line, angle.sine), axes.component(line, angle.cosine)]
         # Each end may be off by that along each axis.
@@ -601,9 +614,6 @@ def _derivative(series: Series, found: Found, scene: Scene) -> tuple[Array | Non
     return np.asarray(value), np.asarray(bound)
 
 
-_PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
-
-
 def _out_of_reach(measured: Measured, found: Found) -> list[str]:
     lost = sorted(found.reasons)
     notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
@@ -615,17 +625,21 @@ def _out_of_reach(measured: Measured, found: Found) -> list[str]:
 
 
 def _widened(measured: Measured, held: Sequence[Held]) -> list[str]:
-    """Which columns are held more loosely by the independent one's rounding than by their own digits."""
-    wide = [h for h in held if np.nanmax(h.swing, initial=0.0) > np.nanmax(h.series.off, initial=0.0) > 0.0]
+    """Which columns have a wider tolerance by an independent one's rounding than by their own digits."""
+    wide = [h for h in held if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
     if not wide:
         return []
     names = ", ".join(shown(h.series.column) for h in wide[:NAMED])
     more = f" and {len(wide) - NAMED} more" if len(wide) > NAMED else ""
-    over = " and ".join(shown(s.column) for s in measured.independent)
-    return [
-        f"{names}{more}: held more widely by how {over} is rounded than by their own digits; if its values "
-        "are exact as written, say printed = 0 of it in a map"
-    ]
+    return [f"{names}{more}: tolerance widened because {_rounded(measured)}"]
+
+
+def _rounded(measured: Measured) -> str:
+    """Which independent columns are taken as rounded without a word of the user, and what to say of them."""
+    some = [s for s in measured.independent if not s.said and s.off.any()]
+    given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
+    lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
+    return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
 
 
 def _solution(measured: Measured, held: Sequence[Held], who: str) -> Solution:
@@ -692,6 +706,9 @@ def _row(
         verdict = "disagrees"
     elif all(h.blind for h in columns):
         verdict, why = "not tested", TOO_COARSE
+    elif (compared & (gaps > factor * np.stack([h.close for h in columns]))).any():
+        verdict = "not tested"
+        why = f"it agrees only because {_rounded(measured)} (= 1 and the like if it is rounded so)"
     elif few := [h.counts for h in columns if h.few]:
         verdict, why = "not tested", "only {} of its {} numbers can be compared".format(*min(few))
     return Comparison(

@@ -38,6 +38,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -47,8 +48,8 @@ from pointcoord import Scene, SceneError
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.angle import Angle, WheelAngles
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
-from pointcoord.scene.messages import meant
-from pointcoord.scene.scene_text import parsed, read_file
+from pointcoord.toml_text import parsed, read_file
+from pointcoord.wording import meant
 from validate.measured.errors import ResultsError
 from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
 from validate.measured.units import allowed_units, below_of, factor_of, is_unit
@@ -60,12 +61,16 @@ AXES = "xyz"
 BELOW = {"mm": "a length", "rad": "an angle", "s": "a time"}
 # d(toe)/d(bump), or dtoe/dbump.
 _DERIVATIVE = re.compile(r"d\(?(.+?)\)?/d\(?(.+?)\)?")
-_PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
+PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
 TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
 RATES = ("rate", "acceleration")
 PROJECTED, ARCSINE = "projected", "arcsine"
 DEFINITIONS = (PROJECTED, ARCSINE)
 KEYS = ("independent", "rolling_radius", "solve_for", "held", "columns")
+# Values in even steps that are taken as set exactly: two always are.
+FEWEST = 3
+# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number.
+FARTHEST = 1e12
 COLUMN_KEYS = ("is", "unit", "sign", "offset", "definition", "printed", "accuracy")
 
 
@@ -117,6 +122,7 @@ class Series:
         off: how far what was rounded may be from what is written, half a unit of the last digit, (N,).
         definition: of an angle.
         factor: how many of ours its unit is. accuracy: that a map says, in its unit; None if it says none.
+        said: whether a map says what its last digit is.
     """
 
     column: str
@@ -126,6 +132,17 @@ class Series:
     definition: str = PROJECTED
     factor: float = 1.0
     accuracy: float | None = None
+    said: bool = False
+
+    @property
+    def even(self) -> bool:
+        """Whether its values go in even steps, as those do that are set and not measured.
+
+        Digits that are cut off come out even by chance only, and less and less so the more there are.
+        """
+        values = np.unique(self.values[np.isfinite(self.values)])
+        # Reading rounds far below the last digit.
+        return len(values) >= FEWEST and bool(np.ptp(np.diff(values)) <= 1e-3 * np.min(self.off))
 
     def taken(self, rows: NDArray[np.bool_]) -> Series:
         """Some of its rows."""
@@ -197,6 +214,8 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     map = _Map(where, content, columns, scene)
     found = map.series()
     independent = map.independent(found)
+    even = [s for s in independent if not s.said and s.off.any() and s.even]
+    independent = tuple(replace(s, off=0.0 * s.off) if s in even else s for s in independent)
     over_time = independent[0].meaning.kind == TIME
     rates = () if over_time else tuple(s for s in found if s.meaning.kind == "rate")
     taken = {s.column for s in (*independent, *rates)}
@@ -207,6 +226,9 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         )
     beside = [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]
     notes = list(map.ignored)
+    if even:
+        names = " and ".join(map_shown(s.column for s in even))
+        notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
     if beside:
         over = " and ".join(s.column for s in independent)
         notes.append(f"{', '.join(map_shown(beside))} is not compared: rows are taken by {shown(over)}")
@@ -214,7 +236,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         lacking = int(np.isnan(s.values).sum())
         if lacking:
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    printed = [s.column for s in numbers if s.column in columns.fixed and not map.says_printed(s.column)]
+    printed = [s.column for s in numbers if s.column in columns.fixed and not s.said]
     if printed:
         places = columns.fixed[printed[0]]
         notes.append(
@@ -237,6 +259,27 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     )
 
 
+@dataclass(frozen=True)
+class KnownColumns:
+    """What is known of a file's columns without a map.
+
+    Attributes:
+        columns: by name, what each is in words and its unit, empty where that is not known.
+        names: of what can be compared.
+    """
+
+    columns: Mapping[str, tuple[str, str]]
+    names: tuple[str, ...]
+
+
+def known_columns(columns: Columns, scene: Scene) -> KnownColumns:
+    """What columns are by their own names and units."""
+    map = _Map("", {}, columns, scene)
+    meanings = {name: map._meaning(name) for name in columns.names}
+    words = {name: "" if one is None else one.words for name, one in meanings.items()}
+    return KnownColumns({name: (words[name], map._unit_of(name)) for name in columns.names}, map.known)
+
+
 def map_shown(names: Iterable[str]) -> list[str]:
     """Names of a file that can be shown."""
     return [shown(name) for name in names]
@@ -253,46 +296,60 @@ class _Map:
 
     def __post_init__(self) -> None:
         self._require_keys("", self.content, KEYS)
-        for name, part in self._part("columns").items():
-            if name in self.columns.no_numbers:
-                problem = (
-                    f"column {shown(name)!r} of {self.columns.source} holds {self.columns.no_numbers[name]}"
-                )
-                if isinstance(part, Mapping) and part.get("is") == IGNORE:
-                    continue
-                raise ResultsError(self.where, "columns", problem, f'columns of numbers, or is = "{IGNORE}"')
+        for name, part in self._parts.items():
+            held = self.columns.no_numbers.get(name)
+            if held is not None:
+                if not (isinstance(part, Mapping) and part.get("is") == IGNORE):
+                    problem = f"column {shown(name)!r} of {self.columns.source} holds {held}"
+                    raise self._wrong("columns", problem, f'columns of numbers, or is = "{IGNORE}"')
+                continue
             if name not in self.columns.names:
                 hint = meant(name, self.columns.names)
                 problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
-                raise ResultsError(self.where, "columns", problem, ", ".join(self.columns.names))
+                raise self._wrong("columns", problem, ", ".join(self.columns.names))
             if not isinstance(part, Mapping):
-                raise self._wrong(f"columns.{name}", part, "a table such as { is = 'wheel.camber' }")
+                raise self._is(f"columns.{name}", part, "a table such as { is = 'wheel.camber' }")
             self._require_keys(f"columns.{name}", part, COLUMN_KEYS)
 
     def _require_keys(self, place: str, part: Mapping[str, Any], known: tuple[str, ...]) -> None:
         for key in part:
             if key not in known:
-                problem = f"no key is called {shown(key)!r}{meant(key, known)}"
-                raise ResultsError(self.where, place, problem, ", ".join(known))
+                raise self._wrong(
+                    place, f"no key is called {shown(key)!r}{meant(key, known)}", ", ".join(known)
+                )
 
     def _part(self, key: str) -> Mapping[str, Any]:
         part = self.content.get(key, {})
         if not isinstance(part, Mapping):
-            raise self._wrong(key, part, "a table")
+            raise self._is(key, part, "a table")
         return part
 
-    def _wrong(self, place: str, value: object, allowed: str) -> ResultsError:
-        return ResultsError(self.where, place, f"is {shown(repr(value))}", allowed)
+    @property
+    def _parts(self) -> Mapping[str, Any]:
+        """What is said of columns, by their names."""
+        return self._part("columns")
+
+    def _wrong(self, place: str, problem: str, allowed: str) -> ResultsError:
+        """The map is at fault."""
+        return ResultsError(self.where, place, problem, allowed)
+
+    def _is(self, place: str, value: object, allowed: str) -> ResultsError:
+        return self._wrong(place, f"is {shown(repr(value))}", allowed)
+
+    def _column(self, column: str, problem: str, allowed: str) -> ResultsError:
+        """A column of the file is at fault."""
+        return ResultsError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
 
     def number_at(
         self, key: str, default: float, part: Mapping[str, Any] | None = None, at: str = ""
     ) -> float:
         """A finite number of the map."""
-        value = (self.content if part is None else part).get(key, default)
+        said = self.content if part is None else part
+        value = said.get(key, default)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._wrong(f"{at}{key}", value, "a number")
-        if key in (self.content if part is None else part) and not math.isfinite(value):
-            raise self._wrong(f"{at}{key}", value, "a finite number")
+            raise self._is(f"{at}{key}", value, "a number")
+        if key in said and not math.isfinite(value):
+            raise self._is(f"{at}{key}", value, "a finite number")
         return float(value)
 
     @property
@@ -300,50 +357,43 @@ class _Map:
         """The input that a travel is reached by."""
         value, inputs = self.content.get("solve_for", ""), self.scene.mechanism.topology.required_inputs
         if value and value not in inputs:
-            raise self._wrong("solve_for", value, ", ".join(inputs))
+            raise self._is("solve_for", value, ", ".join(inputs))
         return str(value)
 
     @property
     def held(self) -> dict[str, float]:
         """Inputs and travels that every row has, by their names here: input.NAME and travel.POINT."""
         found, part = {}, self._part("held")
+        whole = tuple(words for words, one in self.meanings.items() if one.kind in (TRAVEL, "rate"))
+        every = (*self.scene.mechanism.topology.inputs, *whole)
         for name in part:
-            rates = tuple(words for words, one in self.meanings.items() if one.kind == "rate")
-            every = (*self.scene.mechanism.topology.inputs, *self._travels, *rates)
             if name not in every:
                 problem = f"no input or travel is called {shown(name)!r}{meant(name, every)}"
-                raise ResultsError(self.where, "held", problem, ", ".join(every))
-            key = name if name in (*self._travels, *rates) else f"{INPUT}.{name}"
+                raise self._wrong("held", problem, ", ".join(every))
+            key = name if name in whole else f"{INPUT}.{name}"
             found[key] = self.number_at(name, 0.0, part, "held.")
         return found
 
-    @property
-    def _travels(self) -> tuple[str, ...]:
-        topology = self.scene.mechanism.topology
-        return tuple(f"{TRAVEL}.{n}" for n in (CONTACT, *topology.moving, *topology.carried))
-
-    @property
+    @cached_property
     def meanings(self) -> dict[str, Meaning]:
         """Everything that a column can be, by its whole name."""
         topology = self.scene.mechanism.topology
-        found = {TIME: Meaning("time", TIME, "s")}
-        for name, unit in topology.input_units.items():
-            found[f"{INPUT}.{name}"] = Meaning("input", name, unit)
-        for name in self._travels:
-            found[name] = Meaning("travel", name.partition(".")[2], "mm")
-        for whole, one in [*found.items()]:
-            for order in (1, 2) if one.kind != TIME else ():
-                unit = f"{one.unit}/{'s' if order == 1 else 's^2'}"
-                rate = Meaning("rate", whole, unit, order=order)
+        every = [Meaning("input", name, unit) for name, unit in topology.input_units.items()]
+        contact = (CONTACT,) if topology.wheel_axis else ()
+        every += [Meaning("travel", n, "mm") for n in (*contact, *topology.moving, *topology.carried)]
+        found = {TIME: Meaning("time", TIME, "s")} | {one.words: one for one in every}
+        for one in every:
+            for order, per in ((1, "s"), (2, "s^2")):
+                rate = Meaning("rate", one.words, f"{one.unit}/{per}", order=order)
                 found[rate.words] = rate
-        every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
+        names_of = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
         for effect in (*ALWAYS, *EFFECTS.values()):
             for quantity, names in effect.gives_numbers.items():
                 unit, of = QUANTITIES[quantity].unit, QUANTITIES[quantity].of
-                for name in every[of] if names is None else names:
+                for name in names_of[of] if names is None else names:
                     for axis in (None,) if of == "car" else (0, 1, 2):
-                        one = Meaning("number", name, unit, quantity, axis)
-                        found[one.words] = one
+                        number = Meaning("number", name, unit, quantity, axis)
+                        found[number.words] = number
         return found
 
     @property
@@ -352,21 +402,14 @@ class _Map:
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
 
-    def says_printed(self, column: str) -> bool:
-        """Whether the map says what the last digit of a column is."""
-        return "printed" in self._part("columns").get(column, {})
-
     @property
     def ignored(self) -> tuple[str, ...]:
         """Columns that are left out, in words."""
-        out = [name for name in self.columns.names if self._meaning(name) is None]
-        told = self._part("columns")
+        out, told = [name for name in self.columns.names if self._meaning(name) is None], self._parts
         unnamed = [name for name in out if told and name not in told]
         known = [name for name in out if name not in unnamed]
-        notes = []
-        for name, what in self.columns.no_numbers.items():
-            if what != NOTHING_AT_ALL:
-                notes.append(f"left out: {shown(name)}, which holds {what} and no numbers")
+        holding = {n: what for n, what in self.columns.no_numbers.items() if what != NOTHING_AT_ALL}
+        notes = [f"left out: {shown(n)}, which holds {what} and no numbers" for n, what in holding.items()]
         if known:
             notes.append(f"left out as nothing that we know: {', '.join(map_shown(known))}")
         if unnamed:
@@ -380,41 +423,33 @@ class _Map:
         Raises:
             ResultsError: the map gives it a name that there is not.
         """
-        part = self._part("columns").get(column)
+        part = self._parts.get(column)
         if part is None or "is" not in part:
             found = self._named(column) or self._named(_without_unit(column))
-            if part is None and self._part("columns"):
+            if part is None and self._parts:
                 return found if column in self.meanings or self._goes_along(column, found) else None
             return found
         named = part["is"]
         if named == IGNORE:
             return None
-        found = self._named(named) if isinstance(named, str) else None
+        if not isinstance(named, str):
+            raise self._is(f"columns.{column}.is", named, "a name")
+        found = self._named(named)
         if found is None:
-            place = f"columns.{column}.is"
-            if not isinstance(named, str):
-                raise self._wrong(place, named, "a name")
             every = (*self.meanings, IGNORE)
-            ends = {name.partition(".")[2]: name for name in every if "." in name}
-            hint = meant(named, (*every, *ends))
-            raise ResultsError(
-                self.where,
-                place,
-                f"nothing is called {shown(named)!r}{hint}",
+            hint = meant(named, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
+            allowed = (
                 f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
-                f"{', '.join(self.known[:5])}, or {IGNORE}",
             )
+            allowed += f"{', '.join(self.known[:5])}, or {IGNORE}"
+            raise self._wrong(f"columns.{column}.is", f"nothing is called {shown(named)!r}{hint}", allowed)
         return found
 
     def _goes_along(self, column: str, found: Meaning | None) -> bool:
         """Whether a column that a map does not name is a number of ours beside those that it names."""
-        if found is None or found.kind != "number":
-            return False
-        said = [part.get("is", name) for name, part in self._part("columns").items()]
-        if any(self._named(name) == found for name in said if isinstance(name, str)):
-            return False
-        unit = self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
-        return bool(unit)
+        said = [part.get("is", name) for name, part in self._parts.items()]
+        taken = any(self._named(name) == found for name in said if isinstance(name, str))
+        return found is not None and found.kind == "number" and not taken and bool(self._unit_of(column))
 
     def _named(self, name: str) -> Meaning | None:
         """By its whole name, or by an end of it that nothing else has; a derivative by what it is of."""
@@ -425,7 +460,7 @@ class _Map:
         if name in meanings:
             return meanings[name]
         ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
-        ends = [one for one in ends if one.kind != "travel" and not one.name.startswith(f"{TRAVEL}.")]
+        ends = [one for one in ends if one.kind != TRAVEL and not one.name.startswith(f"{TRAVEL}.")]
         if not ends and name != name.lower():
             return self._named(name.lower())
         return ends[0] if len(ends) == 1 else None
@@ -435,58 +470,47 @@ class _Map:
         found: dict[str, Series] = {}
         meant_by = {column: self._meaning(column) for column in self.columns.names}
         by_column = {column: one for column, one in meant_by.items() if one is not None}
-        slopes = [column for column, one in by_column.items() if self._is_slope(column, one)]
+        slopes = [
+            column
+            for column, one in by_column.items()
+            if one.kind == "number" and (one.per or below_of(self._unit_of(column), one.unit))
+        ]
         for column in sorted(by_column, key=lambda column: column in slopes):
-            i, meaning = self.columns.names.index(column), by_column[column]
+            meaning = by_column[column]
             if column in slopes:
                 meaning = self._derivative(column, meaning, self.independent([*found.values()]))
             if meaning.words in found:
                 first = found[meaning.words].column
                 problem = f"columns {shown(first)!r} and {shown(column)!r} are both {meaning.words}"
-                raise ResultsError(self.where, "columns", problem, "one column for each")
-            found[meaning.words] = self._one(i, column, meaning)
+                raise self._wrong("columns", problem, "one column for each")
+            found[meaning.words] = self._one(column, meaning)
         if not found:
-            names = ", ".join(map_shown(self.columns.names))
             near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
-            raise ResultsError(
-                self.columns.source,
-                "names of the columns",
-                f"none of {names} is a name that we know{near}",
-                f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)",
-            )
+            problem = f"none of {', '.join(map_shown(self.columns.names))} is a name that we know{near}"
+            allowed = f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)"
+            raise ResultsError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
     def _unit_of(self, column: str) -> str:
         """The unit of a column as the map or the file says it; empty where neither does."""
-        said = self._part("columns").get(column, {}).get("unit")
+        said = self._parts.get(column, {}).get("unit")
         if said is not None and not isinstance(said, str):
             return ""
         return said or self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
 
-    def _is_slope(self, column: str, meaning: Meaning) -> bool:
-        """Whether a column is a derivative by the independent one: by its name, or by its unit."""
-        return meaning.kind == "number" and bool(meaning.per or below_of(self._unit_of(column), meaning.unit))
-
     def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
         """What a derivative is by, of the columns that rows are taken by."""
-        place, unit = f"column {shown(column)!r}", self._unit_of(column)
-        if "/" in meaning.unit or (meaning.quantity != _PLACES and angle_of(meaning) is None):
-            problem = f"is a derivative of {replace(meaning, per='').words}"
-            raise ResultsError(
-                self.columns.source, place, problem, "one of a coordinate or an angle of a line"
-            )
+        unit, of = self._unit_of(column), replace(meaning, per="")
+        if "/" in meaning.unit or (meaning.quantity != PLACES and angle_of(meaning) is None):
+            problem, allowed = f"is a derivative of {of.words}", "one of a coordinate or an angle of a line"
+            raise self._column(column, problem, allowed)
         below = below_of(unit, meaning.unit)
         over = " and ".join(f"{shown(s.column)} [{s.meaning.unit}]" for s in independent)
         every = ", ".join(f"{meaning.unit}/{s.meaning.unit}" for s in independent)
         if not below:
-            problem = f"{shown(unit)!r} is no unit of a derivative of {replace(meaning, per='').words}"
+            problem = f"{shown(unit)!r} is no unit of a derivative of {of.words}"
             problem = problem if unit else "its unit is not said, neither behind its name nor in a map"
-            raise ResultsError(
-                self.columns.source,
-                place,
-                problem,
-                f"{every}, or deg/m and the like: rows are taken by {over}",
-            )
+            raise self._column(column, problem, f"{every}, or deg/m and the like: rows are taken by {over}")
         named = [
             s
             for s in independent
@@ -494,105 +518,95 @@ class _Map:
         ]
         if not named:
             problem = f"is a derivative by {shown(meaning.per)!r}, and rows are taken by {over}"
-            allowed = ", ".join(map_shown(s.column for s in independent))
-            raise ResultsError(self.columns.source, place, problem, allowed)
+            raise self._column(column, problem, ", ".join(map_shown(s.column for s in independent)))
         chosen = [s for s in named if s.meaning.unit == below]
         if not chosen:
             problem = f"{shown(unit)!r} is by {BELOW[below]}, and rows are taken by {over}"
-            raise ResultsError(self.columns.source, place, problem, f"{every}, or what stands for these")
+            raise self._column(column, problem, f"{every}, or what stands for these")
         if len(chosen) > 1:
-            name = replace(meaning, per="").words
             problem = f"{shown(unit)!r} may be by {' or by '.join(map_shown(s.column for s in chosen))}"
-            allowed = f'is = "d({name})/d({shown(chosen[0].column)})" in a map'
-            raise ResultsError(self.columns.source, place, problem, allowed)
-        of = chosen[0].meaning
-        return replace(meaning, per=of.words, unit=f"{meaning.unit}/{of.unit}")
+            raise self._column(column, problem, f'is = "d({of.words})/d({shown(chosen[0].column)})" in a map')
+        by = chosen[0].meaning
+        return replace(meaning, per=by.words, unit=f"{meaning.unit}/{by.unit}")
 
     def _sign_of(self, words: str) -> float:
         """The sign that the map gives to the column of a meaning."""
-        for column, part in self._part("columns").items():
+        for column, part in self._parts.items():
             named = self._meaning(column)
             if named is not None and named.words == words:
                 return self.number_at("sign", 1.0, part, f"columns.{column}.")
         return 1.0
 
-    def _one(self, i: int, column: str, meaning: Meaning) -> Series:
-        part, place = self._part("columns").get(column, {}), f"columns.{column}."
-        factor = self._factor(i, column, meaning, part)
+    def _one(self, column: str, meaning: Meaning) -> Series:
+        i, part, place = self.columns.names.index(column), self._parts.get(column, {}), f"columns.{column}."
+        factor = self._factor(column, meaning, part)
         sign = self.number_at("sign", 1.0, part, place)
         if abs(sign) != 1.0:
-            raise self._wrong(f"{place}sign", part["sign"], "1 or -1")
+            raise self._is(f"{place}sign", part["sign"], "1 or -1")
         if meaning.per:
             # By their own column, which goes the other way than ours where the map says so.
             sign *= self._sign_of(meaning.per)
         offset = self.number_at("offset", 0.0, part, place)
-        values = factor * (sign * self.columns.values[i] + offset)
-        steps = self.columns.steps[i]
-        if "printed" in part:
-            printed = self.number_at("printed", 0.0, part, place)
-            if printed < 0.0:
-                raise self._wrong(f"{place}printed", part["printed"], "0 or a number above")
-            steps = np.full(len(values), printed)
+        theirs, steps = self.columns.values[i], self.columns.steps[i]
+        with np.errstate(over="ignore"):
+            values = factor * (sign * theirs + offset)
+        for row in np.flatnonzero(np.abs(values) > FARTHEST)[:1].tolist():
+            where = f"{self.columns.rows[row]}, column {shown(column)!r}"
+            problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
+            allowed = f"at most {FARTHEST:g} {meaning.unit}, or nothing or nan for none"
+            raise ResultsError(self.columns.source, where, problem, allowed)
+        least = {key: self.number_at(key, 0.0, part, place) for key in ("printed", "accuracy") if key in part}
+        for key, value in least.items():
+            if value < 0.0:
+                raise self._is(f"{place}{key}", part[key], "0 or a number above")
         definition = part.get("definition", PROJECTED)
         if definition not in DEFINITIONS:
-            raise self._wrong(f"{place}definition", definition, ", ".join(DEFINITIONS))
+            raise self._is(f"{place}definition", definition, ", ".join(DEFINITIONS))
         if definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
             allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
-            raise self._wrong(f"{place}definition", definition, allowed)
-        accuracy = self.number_at("accuracy", 0.0, part, place) if "accuracy" in part else None
-        if accuracy is not None and accuracy < 0.0:
-            raise self._wrong(f"{place}accuracy", accuracy, "0 or a number above")
-        return Series(column, meaning, values, 0.5 * factor * steps, definition, factor, accuracy)
+            raise self._is(f"{place}definition", definition, allowed)
+        off = 0.5 * factor * np.broadcast_to(least.get("printed", steps), values.shape)
+        accuracy = least.get("accuracy")
+        return Series(column, meaning, values, off, definition, factor, accuracy, "printed" in least)
 
-    def _factor(self, i: int, column: str, meaning: Meaning, part: Mapping[str, Any]) -> float:
-        said = part.get("unit", self.columns.units[i] or _unit_at_the_end(column))
+    def _factor(self, column: str, meaning: Meaning, part: Mapping[str, Any]) -> float:
         allowed = allowed_units(meaning.unit)
-        if not isinstance(said, str):
-            raise self._wrong(f"columns.{column}.unit", said, allowed)
-        where = (
-            (self.where, f"columns.{column}.unit")
-            if "unit" in part
-            else (self.columns.source, f"column {shown(column)!r}")
-        )
-        if not said:
-            raise ResultsError(*where, "its unit is not said, neither behind its name nor in a map", allowed)
-        factor = factor_of(said, meaning.unit)
+        if not isinstance(part.get("unit", ""), str):
+            raise self._is(f"columns.{column}.unit", part["unit"], allowed)
+        said = part["unit"] if "unit" in part else self._unit_of(column)
+        factor = factor_of(said, meaning.unit) if said else None
         if factor is None:
-            raise ResultsError(*where, f"{shown(said)!r} is no unit of {meaning.words}", allowed)
+            problem = f"{shown(said)!r} is no unit of {meaning.words}"
+            problem = problem if said else "its unit is not said, neither behind its name nor in a map"
+            if "unit" in part:
+                raise self._wrong(f"columns.{column}.unit", problem, allowed)
+            raise self._column(column, problem, allowed)
         return factor
 
     def independent(self, found: list[Series]) -> tuple[Series, ...]:
         """What the rows are taken by: as the map says it, or time, or a travel and inputs, or inputs."""
         said = self.content.get("independent")
-        if said is not None:
-            chosen = [s for s in found if s.column == said or s.meaning.words == said]
-            if not chosen:
-                every = [s.column for s in found]
-                hint = meant(str(said), every)
-                problem = f"no column that we know is called {shown(str(said))!r}{hint}"
-                raise ResultsError(self.where, "independent", problem, ", ".join(map_shown(every)))
-            if chosen[0].meaning.kind == "number":
-                raise ResultsError(
-                    self.where,
-                    "independent",
-                    f"{shown(str(said))!r} is {chosen[0].meaning.words}",
-                    "a time, an input or a travel",
-                )
-        else:
+        chosen = [s for s in found if said in (s.column, s.meaning.words)]
+        if said is None:
             chosen = [s for s in found if s.meaning.kind == TIME]
+        elif not chosen:
+            every = [s.column for s in found]
+            problem = f"no column that we know is called {shown(str(said))!r}{meant(str(said), every)}"
+            raise self._wrong("independent", problem, ", ".join(map_shown(every)))
+        elif chosen[0].meaning.kind == "number":
+            problem = f"{shown(str(said))!r} is {chosen[0].meaning.words}"
+            raise self._wrong("independent", problem, "a time, an input or a travel")
         if chosen and chosen[0].meaning.kind == TIME:
             return tuple(chosen)
-        travels = chosen if said is not None else [s for s in found if s.meaning.kind == TRAVEL]
+        travels = [s for s in found if s.meaning.kind == TRAVEL] if said is None else chosen
         if len([s for s in travels if s.meaning.kind == TRAVEL]) > 1:
-            both = ", ".join(map_shown(s.column for s in travels))
-            raise ResultsError(
-                self.where, "independent", f"{both} could each be it", "independent = NAME in a map"
-            )
+            problem = f"{', '.join(map_shown(s.column for s in travels))} could each be it"
+            raise self._wrong("independent", problem, "independent = NAME in a map")
         inputs = [s for s in found if s.meaning.kind == INPUT and s not in travels]
         if not travels and not inputs:
             names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
-            problem = "no column says at which pose a row is"
             allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
+            problem = "no column says at which pose a row is"
             raise ResultsError(self.columns.source, "names of the columns", problem, allowed)
         return (*travels, *inputs)
 

@@ -236,6 +236,10 @@ class Plan:
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise ResultsError(measured.source, "", problem, "one travel, given or held")
+        if CONTACT in travels and not topology.wheel_axis:
+            problem = f"{TRAVEL}.{CONTACT} needs the role wheel_axis, which {topology.name!r} does not have"
+            allowed = f"{TRAVEL}.POINT, or wheel_axis under [roles] of the mechanism"
+            raise ResultsError(measured.source, "", problem, allowed)
         if CONTACT in travels and not measured.rolling_radius > 0.0:
             problem = f"{TRAVEL}.{CONTACT} needs the wheel's rolling radius"
             raise ResultsError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
@@ -386,7 +390,7 @@ class OverMap:
             reasons[int(i)] = f"{told} is out of the car's reach: {self._why(here)}"
         if not covered.any():
             return Found({}, {}, covered, reasons)
-        moved = {n: inputs[n] for n in self.map.mechanism.topology.chassis_motion if n in inputs}
+        moved = {n: inputs[n] for n in self.map.mechanism.topology.chassis_inputs if n in inputs}
         mine = {n: np.asarray(v[covered]) for n, v in (free | moved).items()}
         given = dict(zip(self.rated, (rate[covered] for rate in rates), strict=True))
         laws, unrated = self._laws(mine, given)

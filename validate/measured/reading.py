@@ -13,9 +13,7 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 import re
-import stat
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
@@ -24,7 +22,9 @@ from importlib import import_module
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import SceneError
 from pointcoord.data_classes import dataclass
+from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
 from validate.measured.errors import ResultsError
 from validate.measured.units import is_unit
@@ -32,7 +32,6 @@ from validate.plain_text import shown
 
 Array = NDArray[np.float64]
 
-LARGEST = 256_000_000  # bytes
 COMMENTS = ("#", "%", "//", "!")
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 NOTHING_AT_ALL = "nothing"
@@ -42,6 +41,9 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?")
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
 _WORDS = re.compile(r'"[^"]*"|\S+')
+
+Row = tuple[int, list[str]]
+"""The number of a line, and its cells."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,12 @@ class Columns:
     fixed: Mapping[str, int] = field(default_factory=dict)
     no_numbers: Mapping[str, str] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        (name, count), *_ = Counter(self.names).most_common(1)
+        if count > 1:
+            problem, allowed = f"{shown(name)!r} is there {count} times", "each name once; rename one of them"
+            raise ResultsError(self.source, "names of the columns", problem, allowed)
+
 
 def read_columns(path: str) -> Columns:
     """Read a file: Parquet by its first bytes or its ending, anything else as text.
@@ -76,39 +84,24 @@ def read_columns(path: str) -> Columns:
         ResultsError: it cannot be read, is empty, or holds what is no table of numbers.
         MissingPackage: Parquet needs pyarrow.
     """
-    source, data = shown(path), _bytes(path)
-    if data[:4] == b"PAR1" or path.endswith(".parquet"):
-        return _parquet(path, source)
-    return columns_of_text(_text(data, source), source)
-
-
-def _bytes(path: str) -> bytes:
     source = shown(path)
     try:
-        if not os.path.isdir(path) and not stat.S_ISREG(os.stat(path).st_mode):
-            raise ResultsError(source, "", "is a device, a pipe or a socket", "a regular file")
-        with open(path, "rb") as stream:
-            data = stream.read(LARGEST + 1)
-    except (OSError, ValueError) as error:
-        if isinstance(error, ResultsError):
-            raise
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ResultsError(source, "", f"cannot be read ({reason})", "the path of a table") from None
-    if len(data) > LARGEST:
-        raise ResultsError(source, "", "is larger than 256 MB", "at most 256 MB")
-    return data
-
-
-def _text(data: bytes, source: str) -> str:
+        data = b"PAR1" if path.endswith(".parquet") else read_file(path, "the path of a table")
+    except SceneError as error:
+        raise ResultsError(
+            source, "", error.problem, error.allowed or "a table; larger ones as Parquet"
+        ) from None
+    if data[:4] == b"PAR1":
+        return _parquet(path, source)
+    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    if b"\0" in data and not wide:
+        raise ResultsError(source, "", "holds bytes that are no text", "text, or Parquet")
     try:
-        if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            return data.decode("utf-16")
-        if b"\0" in data:
-            raise ResultsError(source, "", "holds bytes that are no text", "text, or Parquet")
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
         # What spreadsheets of Western Europe write; only names and units have such letters.
-        return data.decode("cp1252", "replace")
+        text = data.decode("cp1252", "replace")
+    return columns_of_text(text, source)
 
 
 def _parquet(path: str, source: str) -> Columns:
@@ -118,43 +111,34 @@ def _parquet(path: str, source: str) -> Columns:
         raise MissingPackage(".parquet", error, "parquet") from None
     try:
         table = parquet.read_table(path)
-        found = {name: table.column(i).to_numpy() for i, name in enumerate(table.column_names)}
+        found = {
+            _name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)
+        }
     # pyarrow's errors have no family of their own.
     except Exception as error:
-        said = " ".join(str(error).split())
-        raise ResultsError(
-            source, "", f"is no Parquet that can be read ({said})", "Parquet, or text"
-        ) from None
-    if not found or not len(next(iter(found.values()))):
-        raise ResultsError(source, "", "has no rows", "a column for each quantity, and at least one row")
-    values, steps = [], []
-    others = {name: str(column.dtype) for name, column in found.items() if column.dtype.kind not in "iuf"}
-    found = {name: column for name, column in found.items() if name not in others}
-    if not found:
-        names = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
-        raise ResultsError(source, "", f"has no column of numbers: {names}", "columns of numbers")
-    for column in found.values():
-        full = column.astype(float)
-        values.append(full)
-        # Single precision rounds to half of the distance to the next number.
-        coarse = np.spacing(np.abs(column)) if column.dtype.itemsize < 8 and column.dtype.kind == "f" else 0.0
-        steps.append(np.broadcast_to(np.asarray(coarse, dtype=float), full.shape))
-    _require_finite(np.stack(values), source, tuple(found))
-    named = [_name_and_unit(name) for name in found]
-    heads, units = tuple(name for name, _ in named), tuple(unit for _, unit in named)
-    rows = tuple(f"row {i + 1}" for i in range(len(values[0])))
-    unnamed = {_name_and_unit(name)[0]: kind for name, kind in others.items()}
-    return _checked(
-        Columns(source, heads, units, np.stack(values), np.stack(steps), rows, no_numbers=unnamed)
-    )
-
-
-def _require_finite(values: Array, source: str, names: Sequence[str]) -> None:
-    wrong = np.argwhere(np.isinf(values))
-    if len(wrong):
-        column, row = (int(i) for i in wrong[0])
-        place = f"row {row + 1}, column {shown(names[column])!r}"
+        problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
+        raise ResultsError(source, "", problem, "Parquet, or text") from None
+    others = {
+        name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"
+    }
+    found = {head: column for head, column in found.items() if head[0] not in others}
+    if not found or not table.num_rows:
+        holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
+        problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
+        raise ResultsError(source, "", problem, "a column of numbers for each quantity, and at least one row")
+    values = np.stack([column.astype(float) for column in found.values()])
+    for column, row in np.argwhere(np.isinf(values))[:1].tolist():
+        place = f"row {row + 1}, column {shown([*found][column][0])!r}"
         raise ResultsError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
+    # Single precision rounds to half of the distance to the next number.
+    coarse = [c.dtype.kind == "f" and c.dtype.itemsize < 8 for c in found.values()]
+    steps = [
+        np.spacing(np.abs(c)).astype(float) if rounded else np.zeros(len(c))
+        for c, rounded in zip(found.values(), coarse, strict=True)
+    ]
+    names, units = zip(*found, strict=True)
+    rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
+    return Columns(source, names, units, values, np.stack(steps), rows, no_numbers=others)
 
 
 def columns_of_text(text: str, source: str) -> Columns:
@@ -163,56 +147,56 @@ def columns_of_text(text: str, source: str) -> Columns:
     Raises:
         ResultsError: see `read_columns`.
     """
-    lines = [
-        (number, line.rstrip())
-        for number, line in enumerate(text.replace("\N{MINUS SIGN}", "-").splitlines(), 1)
-        if line.strip()
-    ]
+    every = enumerate(text.replace("\N{MINUS SIGN}", "-").splitlines(), 1)
+    lines = [(number, line.rstrip()) for number, line in every if line.strip()]
     body = [(number, line) for number, line in lines if not line.lstrip().startswith(COMMENTS)]
     if not body:
         raise ResultsError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
-    delimiter = _delimiter([line for _, line in body])
-    cells = [(number, _cells(line, delimiter)) for number, line in body]
-    first = next((i for i, (_, row) in enumerate(cells) if _numeric(row, delimiter)), None)
+    mark = _delimiter([line for _, line in body])
+    cells = [(number, _cells(line, mark)) for number, line in body]
+    first = next((i for i, (_, row) in enumerate(cells) if _numeric(row)), None)
     if first is None:
         raise ResultsError(source, "", "has no line of numbers", "a line of numbers for each pose")
     head, rows = [row for _, row in cells[:first]], cells[first:]
     count = _width(rows, head)
     if not head:
         # As numpy and gnuplot write names: in the last comment before the numbers.
-        before = [line for number, line in lines if number < rows[0][0]]
-        named = [_cells(line.lstrip().lstrip("#%/! "), delimiter) for line in before]
-        head = [row for row in named[-1:] if len(_joined(row)) == count]
+        before = [
+            _cells(line.lstrip().lstrip("#%/! "), mark) for number, line in lines if number < rows[0][0]
+        ]
+        head = [row for row in before[-1:] if len(_joined(row)) == count]
     names, units = _names(head, count, source)
-    words = _words(names, rows, delimiter)
-    names = tuple(name or _number_of(i) for i, name in enumerate(names))
-    kept = [i for i, name in enumerate(names) if name not in words]
-    if words and kept:
-        rows = [(n, [row[i] for i in kept] if len(row) == count else row) for n, row in rows]
-        names, units = tuple(names[i] for i in kept), tuple(units[i] for i in kept)
-        count = len(kept)
-    numbers = _Numbers(source, names, delimiter)
-    values, steps, fixed = numbers.of([(number, row) for number, row in rows], count)
-    lines_of = tuple(f"line {number}" for number, _ in rows)
-    return _checked(Columns(source, names, units, values, steps, lines_of, fixed, words))
+    unsaid = [not name for name in names]
+    names = tuple(name or f"column {i + 1}" for i, name in enumerate(names))
+    for line, row in rows:
+        if len(row) < count or any(row[count:]):
+            allowed = f"{count}, one for each of {', '.join(names)}"
+            raise ResultsError(source, f"line {line}", f"has {len(row)} cells", allowed)
+    words = {i: said for i in range(count) if (said := _words([row[i] for _, row in rows], unsaid[i]))}
+    kept = [i for i in range(count) if i not in words] or [*range(count)]
+    told = {names[i]: said for i, said in words.items() if i not in kept}
+    rows = [(line, [row[i] for i in kept]) for line, row in rows]
+    names, units = tuple(names[i] for i in kept), tuple(units[i] for i in kept)
+    read = [[_number(row[j], source, line, names[j]) for line, row in rows] for j in range(len(kept))]
+    values, decimals, digits = np.moveaxis(np.array(read, dtype=float), -1, 0)
+    with np.errstate(over="ignore"):
+        steps = np.where(np.isfinite(values) & (digits.max() < DOUBLE), 10.0**-decimals, 0.0)
+    fixed: dict[str, int] = {}
+    for j, name in enumerate(names) if digits.max() >= DOUBLE else ():
+        # What looks printed beside others in full: of the same decimals, with zeros at the end.
+        same = {*decimals[j][np.isfinite(values[j])].tolist()}
+        if digits[j].max() < DOUBLE and len(same) == 1 and max(same) > 1:
+            fixed |= {name: int(max(same))} if any(row[j].endswith("0") for _, row in rows) else {}
+    places = tuple(f"line {line}" for line, _ in rows)
+    return Columns(source, names, units, values, steps, places, fixed, told)
 
 
-def _words(names: Sequence[str], rows: Sequence[tuple[int, Sequence[str]]], delimiter: str) -> dict[str, str]:
-    """Columns of a text in which no line has a number, and what they hold."""
-    found = {}
-    whole = [row for _, row in rows if len(row) == len(names)]
-    for i, name in enumerate(names) if whole else ():
-        cells = [row[i] for row in whole if row[i].lower() not in NOTHING]
-        if cells and not any(_NUMBER.fullmatch(_plain(cell, delimiter)) for cell in cells):
-            found[name or _number_of(i)] = f"{shown(cells[0])!r} and the like"
-        elif not name and not cells:
-            found[_number_of(i)] = NOTHING_AT_ALL
-    return found
-
-
-def _number_of(i: int) -> str:
-    """What to call a column without a name, as spreadsheets' indices are."""
-    return f"column {i + 1}"
+def _words(cells: Sequence[str], unnamed: bool) -> str:
+    """What a column holds in which no line has a number; empty of another one, and of an empty one."""
+    some = [cell for cell in cells if cell.lower() not in NOTHING]
+    if not some:
+        return NOTHING_AT_ALL if unnamed else ""
+    return "" if any(map(_NUMBER.fullmatch, some)) else f"{shown(some[0])!r} and the like"
 
 
 def _delimiter(lines: Sequence[str]) -> str:
@@ -223,15 +207,17 @@ def _delimiter(lines: Sequence[str]) -> str:
     words = [word for line in lines for word in line.split() if len(line.split()) > 1]
     commas = sum(bool(_DECIMAL_COMMA.fullmatch(word)) for word in words)
     numbers = commas + sum(bool(_NUMBER.fullmatch(word)) for word in words)
-    if any("," in line for line in lines) and not commas * 2 > numbers:
-        return "," if sum("," in line for line in lines) * 2 > len(lines) else ""
-    return ""
+    often = sum("," in line for line in lines) * 2 > len(lines)
+    return "," if often and not commas * 2 > numbers else ""
 
 
-def _cells(line: str, delimiter: str) -> list[str]:
-    if not delimiter:
-        return [word.strip('"') for word in _WORDS.findall(line)]
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))]
+def _cells(line: str, mark: str) -> list[str]:
+    """The cells of a line, decimal commas as points."""
+    if mark == ",":
+        return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True)) if mark else _WORDS.findall(line)
+    plain = (cell.strip() if mark else cell.strip('"') for cell in cells)
+    return [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in plain]
 
 
 def _joined(row: Sequence[str]) -> list[str]:
@@ -245,21 +231,13 @@ def _joined(row: Sequence[str]) -> list[str]:
     return found
 
 
-def _plain(cell: str, delimiter: str) -> str:
-    if delimiter != "," and _DECIMAL_COMMA.fullmatch(cell):
-        return cell.replace(",", ".")
-    return cell
-
-
-def _numeric(row: Sequence[str], delimiter: str) -> bool:
+def _numeric(row: Sequence[str]) -> bool:
     """Whether a line is one of numbers: as many of its cells are as are not."""
     told = [cell for cell in row if cell.lower() not in NOTHING]
-    return bool(told) and sum(bool(_NUMBER.fullmatch(_plain(cell, delimiter))) for cell in told) * 2 >= len(
-        told
-    )
+    return bool(told) and sum(bool(_NUMBER.fullmatch(cell)) for cell in told) * 2 >= len(told)
 
 
-def _width(rows: Sequence[tuple[int, Sequence[str]]], head: Sequence[Sequence[str]]) -> int:
+def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
     """How many columns there are, without the empty one behind a delimiter at the end of every line."""
     widths = Counter(len(row) for _, row in rows)
     named = {len(row) for row in head} | {len(_joined(row)) for row in head}
@@ -271,35 +249,23 @@ def _width(rows: Sequence[tuple[int, Sequence[str]]], head: Sequence[Sequence[st
 
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines above the numbers; a title of another width is passed over."""
-    wide = [
-        row if len(row) == count else _joined(row)
-        for row in (_without_empty_end(row, count) for row in head)
-        if count in (len(row), len(_joined(row)))
-    ]
+    short = [row if any(row[count:]) else row[:count] for row in head]
+    wide = [row if len(row) == count else _joined(row) for row in short]
+    wide = [row for row in wide if len(row) == count]
     if not wide:
         if head:
-            cells = len(_joined(head[-1]))
-            problem = f"has {count} columns of numbers under {cells} names"
+            problem = f"has {count} columns of numbers under {len(_joined(head[-1]))} names"
             raise ResultsError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
-    names, units = (list(part) for part in zip(*(_name_and_unit(cell) for cell in wide[0]), strict=True))
+    names, units = (list(part) for part in zip(*map(_name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
         told = [cell.strip("[]() ") for cell in row]
-        if all(cell in ("", "-", "1") or is_unit(cell) for cell in told):
-            units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, told, strict=True)]
-        else:
-            cell = next(c for c in told if c not in ("", "-", "1") and not is_unit(c))
-            raise ResultsError(
-                source,
-                "line of units",
-                f"holds {shown(cell)!r}, which is no unit",
-                "mm, deg, rad, s and so on",
-            )
+        wrong = [cell for cell in told if cell not in ("", "-", "1") and not is_unit(cell)]
+        if wrong:
+            problem = f"holds {shown(wrong[0])!r}, which is no unit"
+            raise ResultsError(source, "line of units", problem, "mm, deg, rad, s and so on")
+        units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, told, strict=True)]
     return tuple(names), tuple(units)
-
-
-def _without_empty_end(row: Sequence[str], count: int) -> Sequence[str]:
-    return row[:count] if len(row) > count and not any(row[count:]) else row
 
 
 def _name_and_unit(cell: str) -> tuple[str, str]:
@@ -312,79 +278,15 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
     return cell.strip(), ""
 
 
-@dataclass(frozen=True)
-class _Numbers:
-    """The cells of a table as numbers."""
-
-    source: str
-    names: tuple[str, ...]
-    delimiter: str
-
-    def of(
-        self, rows: Sequence[tuple[int, Sequence[str]]], count: int
-    ) -> tuple[Array, Array, Mapping[str, int]]:
-        values = np.full((count, len(rows)), np.nan)
-        decimals, digits = np.zeros(values.shape), np.zeros(values.shape)
-        for i, (line, row) in enumerate(rows):
-            if len(_without_empty_end(row, count)) != count:
-                problem = f"has {len(row)} cells"
-                raise ResultsError(
-                    self.source, f"line {line}", problem, f"{count}, one for each of {', '.join(self.names)}"
-                )
-            for j, cell in enumerate(row[:count]):
-                if cell.lower() not in NOTHING:
-                    values[j, i], decimals[j, i], digits[j, i] = self._number(cell, line, j)
-        return values, _steps(values, decimals, digits), self._fixed(rows, values, decimals, digits)
-
-    def _fixed(
-        self,
-        rows: Sequence[tuple[int, Sequence[str]]],
-        values: Array,
-        decimals: Array,
-        digits: Array,
-    ) -> dict[str, int]:
-        """Columns that look printed beside others in full: of the same decimals, with zeros at the end."""
-        found = {}
-        for j, name in enumerate(self.names) if digits.max() >= DOUBLE else ():
-            told = decimals[j][np.isfinite(values[j])]
-            zeros = any(_plain(row[j], self.delimiter).endswith("0") for _, row in rows)
-            if digits[j].max() < DOUBLE and len({*told.tolist()}) == 1 and told[0] > 1 and zeros:
-                found[name] = int(told[0])
-        return found
-
-    def _number(self, cell: str, line: int, column: int) -> tuple[float, int, int]:
-        """A number, and how many decimals and significant digits it is written with."""
-        plain = _plain(cell, self.delimiter)
-        found = _NUMBER.fullmatch(plain)
-        value = float(plain.replace("d", "e").replace("D", "e")) if found else math.inf
-        if found is None or not math.isfinite(value):
-            place = f"line {line}, column {shown(self.names[column])!r}"
-            problem = f"{shown(cell)!r} is no finite number"
-            raise ResultsError(self.source, place, problem, "a number, or nothing, - or nan for none")
-        mantissa, power = found.group(1), int(found.group(2) or 0)
-        whole, _, part = mantissa.partition(".")
-        return value, len(part) - power, max(len((whole + part).lstrip("0")), 1)
-
-
-def _steps(values: Array, decimals: Array, digits: Array) -> Array:
-    """The unit of the last digit of every number, (columns, rows)."""
-    if digits.max() >= DOUBLE:
-        return np.zeros_like(values)
-    with np.errstate(over="ignore"):
-        return np.where(np.isfinite(values), 10.0**-decimals, 0.0)
-
-
-def _checked(columns: Columns) -> Columns:
-    counts = Counter(columns.names)
-    name, count = counts.most_common(1)[0]
-    if count > 1:
-        raise ResultsError(
-            columns.source,
-            "names of the columns",
-            f"{shown(name)!r} is there {count} times",
-            "each name once; rename one of them, or take it out",
-        )
-    if "" in counts:
-        number = columns.names.index("") + 1
-        raise ResultsError(columns.source, f"column {number}", "has no name", "a name for each column")
-    return columns
+def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, int]:
+    """A number, and how many decimals and significant digits it is written with."""
+    if cell.lower() in NOTHING:
+        return math.nan, 0, 0
+    found = _NUMBER.fullmatch(cell)
+    value = float(re.sub("[dD]", "e", cell)) if found else math.inf
+    if found is None or not math.isfinite(value):
+        problem = f"{shown(cell)!r} is no finite number"
+        allowed = "a number, or nothing, - or nan for none"
+        raise ResultsError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
+    whole, _, part = found.group(1).partition(".")
+    return value, len(part) - int(found.group(2) or 0), max(len((whole + part).lstrip("0")), 1)

@@ -22,7 +22,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.simulation import scene_mechanism
-from validate.measured.mapping import ARCSINE, INPUT, TIME, TRAVEL, Measured, Series, angle_of
+from validate.measured.mapping import ARCSINE, INPUT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import OverMap, Plan, Poses, sensible, widest
 from validate.measured.units import KINDS
 from validate.plain_text import shown
@@ -301,7 +301,7 @@ class _Trial:
             found = replace(self.poses, sloped=(), rated=()).at(values)
             nothing = np.full((count, 3), np.nan)
             topology = self.scene.mechanism.topology
-            return dict(found.numbers.get(_PLACES, dict.fromkeys(topology.points, nothing)))
+            return dict(found.numbers.get(PLACES, dict.fromkeys(topology.points, nothing)))
         inputs = {name: np.full(count, value) for name, value in self.plan.held.items()}
         inputs |= {s.meaning.name: v for s, v in zip(self.measured.independent, values, strict=True)}
         told = np.ones(count, dtype=bool)
@@ -322,9 +322,6 @@ class _Trial:
             wide, drawn = widest(mechanism, name), self.plan.drawn[name]
             found[name] = sensible(mechanism, name, (drawn - wide, drawn + wide))
         return found
-
-
-_PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
 
 
 def _unit_of(s: Series) -> str:

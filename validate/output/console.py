@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 
 from validate.output.files import OutputError, unwritable
-from validate.output.lines import PAUSE, Lines
-from validate.output.terminal import Part, Working, laid_out, rich_for, text_of
+from validate.output.progress import Line, Lines
+from validate.output.table import Part, is_terminal, laid_out, text_of
 from validate.plain_text import one_line
 
 STANDARD_OUTPUT = "standard output"
@@ -22,6 +21,7 @@ class Console:
     Attributes:
         quiet: whether only results that were asked for and errors are said.
         mute: whether standard output belongs to a result, so that nothing else is said there.
+        progress: what says how far the run is, while something does.
         written: the files that the run has written, in words, for the one who interrupts it.
     """
 
@@ -31,9 +31,7 @@ class Console:
         self.mute = False
         self.written: list[str] = []
         self._reader_gone = False
-        self._in_progress = False
-        self._working: Working | None = None
-        self._lines: Lines | None = None
+        self.progress: Line | Lines | None = None
 
     def require(self, what_else: str) -> None:
         """Refuse a closed standard output, before anything is solved.
@@ -60,11 +58,10 @@ class Console:
         Raises:
             OutputError: standard output does not take them.
         """
-        laid = None if self.quiet or self.mute else laid_out(parts, sys.stdout)
-        if laid is None:
+        if self.quiet or self.mute or not is_terminal(sys.stdout):
             self.say(text_of(parts))
         else:
-            self.write(laid)
+            self.write(laid_out(parts, sys.stdout))
             self.flush()
 
     def write(self, text: str) -> int:
@@ -76,8 +73,8 @@ class Console:
         Raises:
             OutputError: standard output does not take it.
         """
-        if self._working is not None:
-            self._working.pause()
+        if self.progress is not None:
+            self.progress.pause()
         if not self._reader_gone:
             try:
                 code = getattr(sys.stdout, "encoding", None) or "utf-8"
@@ -98,8 +95,8 @@ class Console:
             return
         try:
             sys.stdout.flush()
-            if self._working is not None:
-                self._working.resume()
+            if self.progress is not None:
+                self.progress.resume()
         except BrokenPipeError:
             self._leave_standard_output()
         except (OSError, ValueError) as error:
@@ -121,63 +118,14 @@ class Console:
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
-        self.end_progress()
-        if self._working is not None:
-            self._working.pause()
+        if self.progress is not None:
+            self.progress.pause()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
                 print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
-        if self._working is not None:
-            self._working.resume()
-
-    @contextmanager
-    def working(
-        self, message: str, total: int | None = None, lines: bool = False, first: float = PAUSE
-    ) -> Iterator[Callable[..., None]]:
-        """A terminal's standard error says how far the block is, once it takes over two seconds.
-
-        It does so where `rich` is installed; a quiet run says nothing anywhere.
-
-        Args:
-            lines: whether a plain line says it now and then where standard error is no terminal, the first
-                one after so many seconds.
-        Yields:
-            What tells it what is being done and how much of the total is; and of another total, if it is one.
-        """
-        told: Working | Lines | None = None
-        if self._lines is not None:
-            # Who says already what is being done says this as well.
-            self._lines.told(message, 0, total or 0)
-            yield self._lines.told
-            return
-        if not self.quiet and sys.stderr is not None:
-            if (rich := rich_for(sys.stderr)) is not None:
-                told = self._working = Working(message, total, sys.stderr, rich)
-            elif lines and not sys.stderr.isatty():
-                told = self._lines = Lines(self.note, message, total, first)
-        try:
-            yield (lambda message, done, total=None: None) if told is None else told.told
-        finally:
-            self._working = self._lines = None
-            if told is not None:
-                told.end()
-
-    def progress(self, message: str) -> None:
-        """A line on a terminal's standard error, in the place of the one before; nothing elsewhere."""
-        if not self.quiet and sys.stderr is not None and sys.stderr.isatty():
-            width = max(shutil.get_terminal_size().columns - 1, 20)
-            with suppress(OSError, ValueError):
-                print(f"\r{one_line(message)[:width].ljust(width)}", end="", file=sys.stderr, flush=True)
-                self._in_progress = True
-
-    def end_progress(self) -> None:
-        """Take the line of progress away."""
-        if self._in_progress:
-            self._in_progress = False
-            width = max(shutil.get_terminal_size().columns - 1, 20)
-            with suppress(OSError, ValueError):
-                print("\r" + " " * width, end="\r", file=sys.stderr, flush=True)
+        if self.progress is not None:
+            self.progress.resume()
 
     def note(self, message: str) -> None:
         """One line on standard error of what was taken for granted; nothing if the run is quiet."""

@@ -22,7 +22,7 @@ from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.files import require_writable, write_whole
 
 # Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -45,13 +45,14 @@ def _version(distribution: str) -> str | None:
 
 
 def code_digest(places: Sequence[str]) -> str:
-    """A digest of the code in files and folders of this distribution, such as `validate/cost`."""
+    """A digest of code and mechanisms: files and folders of this distribution, such as `validate/cost`."""
     import hashlib
 
     root, digest = Path(__file__).parents[2], hashlib.sha256()
     for place in places:
         top = root / place
-        for file in sorted([top] if top.is_file() else top.rglob("*.py")):
+        files = [top] if top.is_file() else (f for f in top.rglob("*") if f.suffix in (".py", ".toml"))
+        for file in sorted(files):
             digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()[:12]
 
@@ -86,7 +87,8 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, random, bounds, cost, sweep or fit.
+        kind: which command's results follow: validate, hard, hard-list, random, bounds, claims, cost, sweep
+            or fit.
         command: the command line, word by word.
         started: UTC; None in a run whose results say nothing of times, so that the same run gives the same
             bytes.
@@ -100,6 +102,11 @@ class Head:
     def of(cls, kind: str, command: Sequence[str], timed: bool = False) -> Head:
         """The head of a run that begins now."""
         return cls(kind, tuple(command), now() if timed else None)
+
+    def verdict(self, status: ExitStatus) -> str:
+        """A status in words; times are neither right nor wrong."""
+        compared = self.kind != "cost" or status is not ExitStatus.AGREE
+        return status.verdict if compared else "nothing compared"
 
     def document(
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
@@ -118,7 +125,7 @@ class Head:
             "machine": machine(),
             "complete": complete,
             "exit_status": None if status is None else status.value,
-            "verdict": None if status is None else status.verdict,
+            "verdict": None if status is None else self.verdict(status),
             **results,
         }
 

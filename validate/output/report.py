@@ -1,64 +1,65 @@
-"""Results as text for people and as plain data for machines."""
+"""Results as tables and lines for people, and as plain data for machines."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
-from validate.diagnosis import Explanation
-from validate.output.terminal import Part, Table, text_of
+from validate.output.table import Cell, Part, Table, text_of
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
+from validate.plain_text import shown
+
+if TYPE_CHECKING:  # most runs compare no file
+    from validate.measured.comparing import DataOutcome
 
 MOST_EXPLANATIONS = 3  # that are printed
 
 # "most used": the largest part of its tolerance that any number of the quantity uses; above 1 it disagrees.
 HEAD = ("quantity", "where", "largest difference", "held to", "at", "most used", "resting on", "verdict")
+FILE_HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
 
 # Verdicts from the one that tells least of a quantity to the one that tells most.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
 OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Columns of text: words to the left, numbers to the right."""
-    return _table(head, rows).text
+def with_unit(value: float, unit: str, digits: int = 1) -> str:
+    """Two significant digits, or more, as tolerances deserve."""
+    return f"{value:.{digits}e} {unit}".rstrip() if math.isfinite(value) else "not a number"
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    return Table(tuple(head), tuple(tuple(row) for row in rows))
+def in_degrees(value: float, unit: str) -> str:
+    """The same with angles in degrees, as users read them; a dash where there is no number."""
+    if math.isnan(value):
+        return "-"
+    if unit.startswith("rad"):
+        value, unit = math.degrees(value), unit.replace("rad", "deg", 1)
+    return f"{value:.1e} {unit}"
 
 
-def _with_unit(value: float, unit: str) -> str:
-    """Two significant digits, as tolerances deserve."""
-    return f"{value:.1e} {unit}" if math.isfinite(value) else "not a number"
+def used(share: float) -> str:
+    """How much of its tolerance a number uses: 37% of its tolerance, 18,000 times its tolerance."""
+    told = share_of(share)
+    return (
+        f"{told} {'of its tolerance' if told.endswith('%') else 'its tolerance'}"
+        if math.isfinite(share)
+        else told
+    )
 
 
-def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
-    """A quantity's line: its largest difference, with where and what it is held to; the most of a tolerance
-    that any of its numbers uses, which may be another number; and the verdict of the worst.
-
-    Args:
-        rows: all of the quantity. worst: the one of them that `worst_rows` tells.
-    """
-    given = [row for row in rows if row.verdict != "not given"]
-    largest = max(given, key=lambda row: row.difference, default=worst)
-    name = "" if _of_the_car(largest) else largest.name
-    verdict = verdict_of(worst)
-    if worst.verdict in ("disagrees", "not tested") and worst is not largest:
-        verdict += f": {worst.name}"
-    if not given:
-        return name, "-", "-", "-", "-", "-", verdict
-    # The unit is that of the difference beside it.
-    tolerance = _with_unit(largest.tolerance, "").rstrip()
-    used = _with_unit(max(row.share for row in given), "").rstrip()
-    difference = _with_unit(largest.difference, largest.unit)
-    return name, difference, tolerance, when(largest, 4), used, largest.rests_on, verdict
+def share_of(share: float) -> str:
+    """The same without the words: 37%, 18,000 times."""
+    if not math.isfinite(share):
+        return "not a number"
+    if share <= 1.0:
+        return f"{100.0 * share:.0f}%" if share >= 0.005 else "<1%"
+    return f"{f'{share:.3g}' if share < 100.0 else f'{share:,.0f}' if share < 1e6 else f'{share:.1e}'} times"
 
 
 def when(row: Comparison, digits: int = 9) -> str:
@@ -69,6 +70,17 @@ def when(row: Comparison, digits: int = 9) -> str:
 def heading(quantity: str, name: str) -> str:
     """Under which quantity a number stands in a table; each number of the whole car is one of its own."""
     return name if QUANTITIES[quantity].of == "car" else QUANTITIES[quantity].words
+
+
+def about(quantity: str, name: str) -> str:
+    """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
+    kind = QUANTITIES[quantity]
+    return name if kind.of == "car" else f"{kind.words} of {name}"
+
+
+def pair_of(outcome: Outcome) -> str:
+    """Which two formulations are compared."""
+    return " and ".join(solution.formulation for solution in outcome.solutions)
 
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
@@ -83,17 +95,6 @@ def worst_rows(outcome: Outcome) -> list[Comparison]:
     return list(worst.values())
 
 
-def _of_the_car(row: Comparison) -> bool:
-    """Whether a row is about a number that the whole car has, such as an angle of the wheel."""
-    return QUANTITIES[row.quantity].of == "car"
-
-
-def about(quantity: str, name: str) -> str:
-    """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
-    kind = QUANTITIES[quantity]
-    return name if kind.of == "car" else f"{kind.words} of {name}"
-
-
 def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
@@ -103,41 +104,6 @@ def held_to(factor: float) -> str:
     if factor == 1.0:
         return "held to the derived tolerance"
     return f"held to {factor!r} times the derived tolerance, which is no longer the derived one"
-
-
-def outcome_text(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> str:
-    """The agreement table of one scene and pair, what its tolerances rest on, what would explain it."""
-    return text_of(outcome_parts(outcome, explanations))
-
-
-def outcome_parts(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> tuple[Part, ...]:
-    """The same with its table apart."""
-    first, second = (s.formulation for s in outcome.solutions)
-    of_one: dict[str, list[Comparison]] = {}
-    for row in outcome.rows:
-        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
-    worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
-    rows = [(words, *_told(mine, worst[words])) for words, mine in of_one.items()]
-    factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
-    instants = counted_as(len(outcome.solutions[0].times), "instant")
-    lines: list[Part] = [
-        f"{outcome.scene}: {first} and {second}, {instants}{factor}",
-        _table(HEAD, rows),
-    ]
-    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
-    return (
-        *lines,
-        *verdict_lines(outcome),
-        *(f"  note: {note}" for note in told),
-        *explained_lines(explanations),
-    )
-
-
-def verdict_of(row: Comparison) -> str:
-    """The verdict of a row in a table, and how far beyond its tolerance one lies that disagrees."""
-    if row.verdict != "disagrees":
-        return row.verdict
-    return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
 
 
 def counted_as(count: int, noun: str) -> str:
@@ -150,46 +116,123 @@ def agreeing(agreed: int, count: int) -> str:
     return f"{agreed} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
 
 
-def verdict_lines(outcome: Outcome) -> list[str]:
-    """What cannot be used, and why there is no verdict where the rows do not say it."""
-    why = [f"  no verdict: {outcome.why_no_verdict}"] if outcome.why_no_verdict else []
-    return [*why, *(f"  cannot be used: {fault}" for fault in outcome.faults)]
+def verdict_of(row: Comparison) -> str:
+    """The verdict of a row in a table, and how far beyond its tolerance one lies that disagrees."""
+    if row.verdict != "disagrees":
+        return row.verdict
+    return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
 
 
-def explained_lines(explanations: Sequence[Explanation]) -> list[str]:
-    """What would explain a disagreement, the likeliest first."""
-    return [f"  what would explain it: {one.words}" for one in explanations[:MOST_EXPLANATIONS]]
+def outcome_text(outcome: Outcome) -> str:
+    """The agreement table of one scene and pair, what its tolerances rest on, what would explain it."""
+    return text_of(outcome_parts(outcome))
 
 
-def agreement_line(outcome: Outcome) -> str:
-    """One line for a pair that agrees: how much of its tolerance a difference uses at most."""
-    first, second = (s.formulation for s in outcome.solutions)
-    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
+def outcome_parts(outcome: Outcome) -> tuple[Part, ...]:
+    """The same with its table apart."""
+    of_one: dict[str, list[Comparison]] = {}
+    for row in outcome.rows:
+        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
+    worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
+    rows = tuple((words, *_told(mine, worst[words])) for words, mine in of_one.items())
+    factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
+    instants = counted_as(len(outcome.solutions[0].times), "instant")
     return (
-        f"{outcome.scene}: {first} and {second} agree in all {len(outcome.rows)} comparisons; no difference "
-        f"uses more than {worst.share:.1e} of its tolerance ({about(worst.quantity, worst.name)})"
-        + (f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else "")
+        f"{outcome.scene}: {pair_of(outcome)}, {instants}{factor}",
+        Table(HEAD, rows),
+        *lines_below(outcome),
     )
 
 
-def findings_parts(findings: Sequence[Finding], scenes: Sequence[str]) -> tuple[Part, ...]:
+def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
+    """A quantity's line: its largest difference, with where and what it is held to; the most of a tolerance
+    that any of its numbers uses, which may be another number; and the verdict of the worst.
+
+    Args:
+        rows: all of the quantity. worst: the one of them that `worst_rows` tells.
+    """
+    given = [row for row in rows if row.verdict != "not given"]
+    largest = max(given, key=lambda row: row.difference, default=worst)
+    name = "" if QUANTITIES[largest.quantity].of == "car" else largest.name
+    verdict = verdict_of(worst)
+    if worst.verdict in ("disagrees", "not tested") and worst is not largest:
+        verdict += f": {worst.name}"
+    if not given:
+        return name, "-", "-", "-", "-", "-", verdict
+    # The unit is that of the difference beside it.
+    tolerance, share = with_unit(largest.tolerance, ""), with_unit(max(row.share for row in given), "")
+    difference = with_unit(largest.difference, largest.unit)
+    return name, difference, tolerance, when(largest, 4), share, largest.rests_on, verdict
+
+
+def file_parts(found: DataOutcome) -> tuple[Part, ...]:
+    """The table of a file of results: of each quantity the worst, and a row for what it does not give."""
+    outcome = found.outcome
+    rows = []
+    for row in worst_rows(outcome):
+        quantity = QUANTITIES[row.quantity]
+        name = (row.name, "") if quantity.of == "car" else (quantity.words, row.name)
+        numbers = in_degrees(row.difference, row.unit), in_degrees(row.tolerance, row.unit)
+        rows.append((*name, *numbers, row.place, verdict_of(row)))
+    rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
+    verdicts = [row.verdict for row in outcome.rows]
+    counts = (f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
+    instants = counted_as(len(outcome.solutions[0].times), "row")
+    return (
+        f"{outcome.scene}: {pair_of(outcome)}, {instants} over {shown(found.over)}",
+        Table(FILE_HEAD, tuple(rows)),
+        *lines_below(outcome),
+        f"{counted_as(len(verdicts), 'number')} compared: {', '.join(counts)}.",
+    )
+
+
+def agreement_line(outcome: Outcome) -> str:
+    """One line for a further pair that agrees, whose table would say nearly the same."""
+    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
+    what = f"{used(worst.share)}, {about(worst.quantity, worst.name)}"
+    count = counted_as(len(outcome.rows), "comparison")
+    return f"{outcome.scene}: {pair_of(outcome)} agree in {count}; the largest share: {what}"
+
+
+def lines_below(outcome: Outcome) -> Iterator[str]:
+    """Why there is no verdict where the rows do not say it, what cannot be used, notes, explanations."""
+    yield from silent_lines(outcome)
+    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
+    yield from (f"  note: {note}" for note in told)
+    yield from explained_lines(outcome)
+
+
+def silent_lines(outcome: Outcome) -> Iterator[str]:
+    """Why there is no verdict where the rows do not say it, and what cannot be used."""
+    if outcome.why_no_verdict:
+        yield f"  no verdict: {outcome.why_no_verdict}"
+    yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
+
+
+def explained_lines(outcome: Outcome) -> Iterator[str]:
+    """What would explain a disagreement, the likeliest first."""
+    yield from (f"  what would explain it: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
+
+
+def findings_table(findings: Sequence[Finding]) -> Table:
     """What the printed formulas get wrong, each beside its erratum."""
-    if not findings:
-        return (f"The paper's printed formulas agree in {', '.join(scenes)}.",)
-    rows = [
-        (f.scene, QUANTITIES[f.quantity].words, _with_unit(f.worst.difference, f.worst.unit), f.erratum)
+    rows = tuple(
+        (
+            f.scene,
+            QUANTITIES[f.quantity].words,
+            Cell(with_unit(f.worst.difference, f.worst.unit), f.worst.name),
+            f.erratum,
+        )
         for f in findings
-    ]
+    )
     head = ("scene", "wrong quantity", "largest difference", "erratum")
-    return "The paper's formulas as printed, against the mended ones:", _table(head, rows)
+    return Table(head, rows, caption="The paper's formulas as printed, against the mended ones.")
 
 
-def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
+def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
     """Tables 2 and 3, printed and computed."""
-    parts: list[Part] = ["The paper's printed tables, row by row. " + WHY_NOT_EQUAL]
-    for number_of_table, label in ((2, "theta [deg]"), (3, "S [mm]")):
-        mine = [row for row in rows if row.printed.table == number_of_table]
-        lines = [
+    for number, label in ((2, "theta [deg]"), (3, "S [mm]")):
+        lines = tuple(
             (
                 f"{row.printed.time:.2f}",
                 f"{row.printed.input:g}",
@@ -201,35 +244,35 @@ def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
                 f"{row.alpha_gap:.2f}",
                 row.printed.slip,
             )
-            for row in mine
-        ]
-        head = (
-            "t [s]",
-            label,
-            "ours",
-            "wheel centre, printed",
-            "ours [mm]",
-            "apart",
-            "omega apart",
-            "alpha apart",
-            "slip of print",
+            for row in rows
+            if row.printed.table == number
         )
-        parts += [f"Table {number_of_table}", _table(head, lines)]
-    parts.append(f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate.")
-    return tuple(parts)
+        centre = ("wheel centre, printed", "ours [mm]", "apart")
+        head = ("t [s]", label, "ours", *centre, "omega apart", "alpha apart", "slip of print")
+        yield Table(head, lines, caption=f"Table {number}, printed and computed.")
+
+
+def paper_sentence(rows: Sequence[PaperRow]) -> str:
+    """How far the printed tables are from what the paper's own hardpoints give."""
+    return f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate."
+
+
+def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
+    """Both tables with what there is to know of them."""
+    tables = [part for table in paper_tables(rows) for part in (table.caption, table)]
+    return f"The paper's printed tables, row by row. {WHY_NOT_EQUAL}", *tables, paper_sentence(rows)
 
 
 def _vector(vector: Sequence[float], form: str) -> str:
     return "(" + ", ".join(form.format(component) for component in vector) + ")"
 
 
-def examined_data(examined: Examined, explanations: Sequence[Sequence[Explanation]] = ()) -> dict[str, Any]:
+def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[str, Any]:
     """One scene as plain data: its verdict, every comparison, and every reason why there is none.
 
     Args:
-        explanations: of each comparison, what would explain that it disagrees.
+        file: of results that the scene's car is held to.
     """
-    told = explanations or [()] * len(examined.outcomes)
     return {
         "scene": examined.name,
         "title": examined.title,
@@ -240,43 +283,42 @@ def examined_data(examined: Examined, explanations: Sequence[Sequence[Explanatio
         "closing": examined.closing,
         "defaults": list(examined.defaults),
         "solved_by": list(examined.solved),
-        "comparisons": [
-            outcome_data(outcome, why) for outcome, why in zip(examined.outcomes, told, strict=True)
-        ],
+        "comparisons": [file_data(file)] if file else [*map(outcome_data, examined.outcomes)],
         "refusals": [asdict(refusal) for refusal in examined.refusals],
         "failures": [asdict(failure) for failure in examined.failures],
         "refusal_of_printed_formulas": None if examined.unprinted is None else asdict(examined.unprinted),
     }
 
 
-def outcome_data(outcome: Outcome, explanations: Sequence[Explanation] = ()) -> dict[str, Any]:
+def outcome_data(outcome: Outcome) -> dict[str, Any]:
     """One comparison as plain data."""
+    stated = (s.accuracy.stated for s in outcome.solutions)
     return {
         "scene": outcome.scene,
         "formulations": [s.formulation for s in outcome.solutions],
         "instants": len(outcome.solutions[0].times),
         "agreed": outcome.passed,
         "tolerance_factor": outcome.factor,
-        "accuracy": next(
-            (s.accuracy.stated for s in outcome.solutions if s.accuracy.stated is not None), None
-        ),
+        "accuracy": next((accuracy for accuracy in stated if accuracy is not None), None),
         "rows": [asdict(row) for row in outcome.rows],
         "missing": list(outcome.missing),
         "notes": list(outcome.notes),
         "unusable": list(outcome.faults),
         "why_no_verdict": outcome.why_no_verdict,
-        "explanations": [asdict(one) for one in explanations],
+        "explanations": [asdict(one) for one in outcome.explanations],
     }
+
+
+def file_data(found: DataOutcome) -> dict[str, Any]:
+    """The comparison of a file as plain data; rows say where in the file they are worst."""
+    more = {"accuracy": found.accuracy, "over": found.over, "not_given": list(found.absent)}
+    return outcome_data(found.outcome) | more
 
 
 def finding_data(finding: Finding) -> dict[str, Any]:
     """A wrong printed quantity as plain data."""
-    return {
-        "scene": finding.scene,
-        "quantity": finding.quantity,
-        "worst": asdict(finding.worst),
-        "erratum": finding.erratum,
-    }
+    kept = {"scene": finding.scene, "quantity": finding.quantity, "erratum": finding.erratum}
+    return kept | {"worst": asdict(finding.worst)}
 
 
 def paper_data(rows: Sequence[PaperRow]) -> dict[str, Any]:

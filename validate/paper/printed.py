@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, Edges, States
 from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism import mechanism_file
 from pointcoord.method import Method
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.pointwise import square_velocity_term
-from pointcoord.suspensions.macpherson import COLLINEAR, MACPHERSON
-from pointcoord.suspensions.suspension import Suspension
 from validate.paper.printed_parallel import PrintedParallel
 
 Array = NDArray[np.float64]
@@ -35,16 +35,28 @@ _ROWS = (
     PrintedParallel("lower_ball_joint", "strut_lower", "strut_top", "strut_rod_end"),  # (8), (9)
     PrintedParallel("strut_top", "strut_lower", "strut_top", "strut_rod_end"),  # (10), (11)
 )
-_FIRST = [isinstance(constraint, OnLine) for constraint in COLLINEAR.constraints].index(True)
-_OTHERS = tuple(constraint for constraint in COLLINEAR.constraints if not isinstance(constraint, OnLine))
 
-TOPOLOGY = replace(
-    COLLINEAR,
-    name="macpherson, as printed",
-    constraints=(*_OTHERS[:_FIRST], *_ROWS, *_OTHERS[_FIRST:]),
-)
-"""The paper's strut with its cross-product rows (8)-(11)."""
 
+_PAPERS = mechanism_file("macpherson").topology("collinear")
+
+
+def as_printed(topology: Topology) -> Topology | None:
+    """The paper's strut with its cross-product rows (8)-(11), and no coordinates of sliding points.
+
+    None of any other linkage: one whose points slide on other lines, or that has other points.
+    """
+    sliding = [constraint for constraint in topology.constraints if isinstance(constraint, OnLine)]
+    own = [constraint for constraint in _PAPERS.constraints if isinstance(constraint, OnLine)]
+    if topology.moving != _PAPERS.moving or sliding != own:
+        return None
+    first = topology.constraints.index(sliding[0])
+    others = tuple(one for one in topology.constraints if one not in sliding)
+    rows = (*others[:first], *_ROWS, *others[first:])
+    return replace(topology, name="macpherson, as printed", constraints=rows)
+
+
+TOPOLOGY = as_printed(_PAPERS)
+assert TOPOLOGY is not None  # it is the paper's
 _PARALLEL = [i for i, label in enumerate(TOPOLOGY.labels) if "parallel" in label]
 
 
@@ -104,8 +116,8 @@ def _quotient(a: Array, b: Array, r: Array) -> Array:
 
 PRINTED = Method(
     name="printed",
-    suspensions={MACPHERSON.type: Suspension(MACPHERSON.type, {"collinear": TOPOLOGY})},
-    only="the paper prints the strut with its ball joint on the strut axis",
+    linkage=as_printed,
+    only="the strut that the paper prints, type = macpherson with closure = collinear",
     square_velocity_term=printed_square_velocity_term,
     effects={KNUCKLE_RATES.name: replace(KNUCKLE_RATES, formula=PrintedQuotients())},
 )

@@ -1,6 +1,8 @@
 """The built-in scenes that `validate` takes without a name."""
 
+from pointcoord import built_in_scenes
+
 # The paper's examples, and the chassis motion that is its third degree of freedom; the paper's formulas as
 # printed are tried on them alone.
 PAPER_SCENES = ("bounce", "steer", "bounce-and-steer", "bounce-on-a-heaving-chassis")
-DEFAULT_SCENES = (*PAPER_SCENES, "off-axis-strut", "double-wishbone")
+DEFAULT_SCENES = (*PAPER_SCENES, *(name for name in built_in_scenes() if name not in PAPER_SCENES))

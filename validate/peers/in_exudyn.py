@@ -1,10 +1,11 @@
-"""A suspension in Exudyn: a kinematic tree, whose loops are closed by its spherical joints.
+"""A mechanism in Exudyn: a kinematic tree, whose loops are closed by its spherical joints.
 
 Exudyn's constraints are algebraic equations. Its static solver gives them and their Jacobian, and its sensors
 tell how any point of the tree moves (see `program` for what is done with both). A ball joint of the tree is
-three turns in a row about axes at right angles as drawn; the middle one, which must not come to a quarter
-turn, leans the knuckle across the arm's axis and the steering axis. The tie rod's ball joint has two turns
-across the rod: it may turn about itself, which changes nothing.
+three turns in a row, about the car's axes right, forward and up as drawn; the middle one, a body's camber,
+must not come to a quarter turn. A rod's ball joint has two turns across the rod, for it may turn about
+itself, which changes nothing: the first as nearly as it can about the mechanism's first hinge that is not
+along the rod, since bodies turn farthest about hinges.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import MissingPackage
-from validate.peers.linkage import CHASSIS, DRIVEN, KNUCKLE, TIE_ROD, Joint, Linkage, axes_along
+from validate.peers.linkage import Linkage, axes_along
 from validate.peers.program import Program
+from validate.spanning_tree.cut import CHASSIS, Joint, Place, car_directions
 
 Array = NDArray[np.float64]
 
@@ -42,18 +44,22 @@ class InExudyn(Program):
         self.system = system = self.container.AddSystem()
         self.links = _links(linkage)
         tree = _tree(system, self.links)
-        self.places_of = [self._sensor(tree, *linkage.points[name], "Position") for name in linkage.points]
+        points = linkage.points.values()
+        self.places_of = [self._sensor(tree, place, "Position") for place in points]
+        bodies = [Place(body, self.links.origin(body)) for body in linkage.bodies.values()]
         self.moves_of = [
-            [self._sensor(tree, *place, what) for place in linkage.points.values()] for what in MOVES[:2]
+            [
+                *(self._sensor(tree, place, of_point) for place in points),
+                *(self._sensor(tree, place, of_body) for place in bodies),
+            ]
+            for of_point, of_body in zip(MOVES[:2], MOVES[2:], strict=True)
         ]
-        on_knuckle = next(place for place in linkage.points.values() if place[0] == KNUCKLE)
-        self.turns_of = [self._sensor(tree, *on_knuckle, what) for what in MOVES[2:]]
         self.ends = []
         for loop in linkage.loops:
-            sides = ((loop.body, loop.place), (loop.other, loop.other_place))
-            markers = [self._marker(tree, *side) for side in sides]
+            sides = (loop.first, loop.second)
+            markers = [self._marker(tree, side) for side in sides]
             system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
-            self.ends.append([self._sensor(tree, *side, "Acceleration") for side in sides])
+            self.ends.append([self._sensor(tree, side, "Acceleration") for side in sides])
         system.Assemble()
         self.solver, self.settings = exudyn.MainSolverStatic(), exudyn.SimulationSettings()
         self.settings.solution.file.write = False
@@ -61,7 +67,7 @@ class InExudyn(Program):
         self.solver.InitializeSolver(system, self.settings)
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
-        self.driven = np.array([self.links.last[body] for body in DRIVEN])
+        self.driven = np.array([self.links.last[driven.body] for driven in linkage.driven])
         self.unknown = np.array([i for i in range(self.size) if i not in self.driven])
 
     @property
@@ -81,10 +87,7 @@ class InExudyn(Program):
 
     def put_as_drawn(self) -> None:
         """Set all joints as the car is drawn."""
-        coordinates = np.zeros(self.size)
-        for joint in self.linkage.joints:
-            coordinates[self.links.last[joint.child]] = joint.drawn
-        self.put(coordinates)
+        self.put(np.zeros(self.size))
 
     def move(self, step: Array) -> None:
         """Move all joints."""
@@ -113,11 +116,9 @@ class InExudyn(Program):
         return np.concatenate([self._read([two])[0] - self._read([one])[0] for one, two in self.ends])
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations of the points and of the knuckle's turn."""
+        """Rates and accelerations of the points and of the reported bodies' turns."""
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
-        first, second = (
-            self._read([*points, turn]) for points, turn in zip(self.moves_of, self.turns_of, strict=True)
-        )
+        first, second = (self._read(sensors) for sensors in self.moves_of)
         return first, second
 
     def _read(self, sensors: Sequence[int | None]) -> Array:
@@ -125,25 +126,29 @@ class InExudyn(Program):
         system, still = self.system, np.zeros(3)
         return np.array([still if s is None else system.GetSensorValues(s) for s in sensors])
 
-    def _sensor(self, tree: int, body: str, place: Array, what: str) -> int | None:
+    def _sensor(self, tree: int, place: Place, what: str) -> int | None:
         """A sensor of a place of a body; of the chassis none."""
-        if body == CHASSIS:
+        if place.body == CHASSIS:
             return None
         sensor = items.SensorKinematicTree(
             objectNumber=tree,
-            linkNumber=self.links.last[body],
-            localPosition=self.links.local(body, place),
+            linkNumber=self.links.last[place.body],
+            localPosition=self.links.local(place),
             outputVariableType=getattr(exudyn.OutputVariableType, what),
             writeToFile=False,
         )
         return int(self.system.AddSensor(sensor))
 
-    def _marker(self, tree: int, body: str, place: Array) -> int:
-        if body == CHASSIS:
+    def _marker(self, tree: int, place: Place) -> int:
+        if place.body == CHASSIS:
             ground = self.system.AddObject(items.ObjectGround())
-            return int(self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=place)))
+            return int(
+                self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=place.at))
+            )
         marker = items.MarkerKinematicTreeRigid(
-            objectNumber=tree, linkNumber=self.links.last[body], localPosition=self.links.local(body, place)
+            objectNumber=tree,
+            linkNumber=self.links.last[place.body],
+            localPosition=self.links.local(place),
         )
         return int(self.system.AddMarker(marker))
 
@@ -164,10 +169,14 @@ class _Links:
         self.offsets: list[Array] = []
         self._frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
 
-    def local(self, body: str, place: Array) -> Array:
+    def origin(self, body: str) -> Array:
+        """Where a body's frame is drawn."""
+        return self._frames[body][0]
+
+    def local(self, place: Place) -> Array:
         """A drawn place of a body in the body's frame."""
-        origin, axes = self._frames[body]
-        return np.asarray(axes.T @ (place - origin))
+        origin, axes = self._frames[place.body]
+        return np.asarray(axes.T @ (place.at - origin))
 
     def hang(self, joint: Joint, axes: Array, kinds: Sequence[object]) -> None:
         """Add a body with a link for each kind of joint, its frame's axes as columns."""
@@ -175,27 +184,36 @@ class _Links:
         parent = self.last.get(joint.parent, -1)
         for number, kind in enumerate(kinds):
             self.turns.append(parent_axes.T @ axes if number == 0 else np.eye(3))
-            self.offsets.append(parent_axes.T @ (joint.on_parent - origin) if number == 0 else np.zeros(3))
+            self.offsets.append(parent_axes.T @ (joint.at - origin) if number == 0 else np.zeros(3))
             self.parents.append(parent)
             self.kinds.append(kind)
             parent = len(self.kinds) - 1
-        self.last[joint.child] = parent
-        self._frames[joint.child] = (joint.on_child, axes)
+        self.last[joint.body] = parent
+        self._frames[joint.body] = (joint.at, axes)
 
 
 def _links(linkage: Linkage) -> _Links:
-    links = _Links()
-    steering = linkage.drawn[linkage.kingpin[1]] - linkage.drawn[linkage.kingpin[0]]
+    links, car = _Links(), car_directions(linkage.plain)
+    upright = np.stack([car["right"], car["forward"], car["up"]], axis=-1)
     for joint in linkage.joints:
-        if joint.kind == "ball" and joint.child != TIE_ROD:
-            # The arm's axis first, the steering axis last.
-            links.hang(joint, np.roll(axes_along(joint.axis, steering), 1, axis=1), TURNS)
+        if joint.body in linkage.rods:
+            links.hang(joint, _rod_axes(linkage, linkage.rods[joint.body]), TURNS[:2])
         elif joint.kind == "ball":
-            links.hang(joint, axes_along(joint.axis), TURNS[:2])
+            links.hang(joint, upright, TURNS)
         else:
             kind = TURNS[2] if joint.kind == "hinge" else exudyn.JointType.PrismaticZ
             links.hang(joint, axes_along(joint.axis), (kind,))
     return links
+
+
+def _rod_axes(linkage: Linkage, rod: Array) -> Array:
+    """Axes of a rod's turns as columns, the rod the third."""
+    for joint in linkage.joints:
+        beside = joint.axis - float(joint.axis @ rod) * rod
+        if joint.kind == "hinge" and np.linalg.norm(beside) > 0.5:
+            first = beside / np.linalg.norm(beside)
+            return np.stack([first, np.cross(rod, first), rod], axis=-1)
+    return axes_along(rod)
 
 
 def _tree(system: Any, links: _Links) -> int:

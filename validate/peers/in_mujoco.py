@@ -1,4 +1,4 @@
-"""A suspension in MuJoCo.
+"""A mechanism in MuJoCo.
 
 MuJoCo's equality constraints are soft: its own solver lets them drift by what its forces need. But it gives
 what each `connect` misses, `efc_pos`, and the Jacobian of that, `efc_J`, to rounding, and that is all that
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import MissingPackage
-from validate.peers.linkage import CHASSIS, DRIVEN, KNUCKLE, TIE_ROD, Linkage, axes_along
+from validate.peers.linkage import Linkage, axes_along
 from validate.peers.program import Program
+from validate.spanning_tree.cut import CHASSIS, Place
 
 try:
     import mujoco
@@ -37,14 +38,16 @@ class InMujoco(Program):
         self.model = model = _model(linkage)
         self.data = mujoco.MjData(model)
         self.sites = [model.site(name).id for name in linkage.points]
-        self.ends = [tuple(model.site(f"{loop.name} {end}").id for end in "ab") for loop in linkage.loops]
-        self.on_knuckle = [body for body, _ in linkage.points.values()].index(KNUCKLE)
-        driven = [model.joint(body) for body in DRIVEN]
+        self.turns = [model.site(f"body {body}").id for body in linkage.bodies.values()]
+        self.ends = [
+            tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(linkage.loops))
+        ]
+        driven = [model.joint(driven.body) for driven in linkage.driven]
         self.driven_places = np.array([joint.qposadr[0] for joint in driven])
         self.driven = np.array([joint.dofadr[0] for joint in driven])
-        # The tie rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
-        idle = model.joint(TIE_ROD).dofadr[0] + 2
-        self.unknown = np.array([dof for dof in range(model.nv) if dof not in (*self.driven, idle)])
+        # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
+        idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.rods]
+        self.unknown = np.array([dof for dof in range(model.nv) if dof not in (*self.driven, *idle)])
 
     @property
     def coordinates(self) -> Array:
@@ -62,9 +65,6 @@ class InMujoco(Program):
     def put_as_drawn(self) -> None:
         """Set all joints as the car is drawn."""
         mujoco.mj_resetData(self.model, self.data)
-        for joint in self.linkage.joints:
-            if joint.kind == "slide":
-                self.data.joint(joint.child).qpos[0] = joint.drawn
 
     def move(self, step: Array) -> None:
         """Move all joints."""
@@ -95,15 +95,13 @@ class InMujoco(Program):
         return np.concatenate(parts)
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations of the points and of the knuckle's turn."""
+        """Rates and accelerations of the points and of the reported bodies' turns."""
         self._accelerate(accelerations)
-        first = [self._velocity(site) for site in self.sites]
-        second = [self._acceleration(site) for site in self.sites]
-        turns = self.on_knuckle
-        return (
-            np.array([*(rate[3:] for rate in first), first[turns][:3]]),
-            np.array([*(rate[3:] for rate in second), second[turns][:3]]),
+        first, second = (
+            [*(of(site)[3:] for site in self.sites), *(of(site)[:3] for site in self.turns)]
+            for of in (self._velocity, self._acceleration)
         )
+        return np.array(first), np.array(second)
 
     def _accelerate(self, accelerations: Array) -> None:
         self.data.qacc[:] = accelerations
@@ -132,38 +130,37 @@ def _model(linkage: Linkage) -> mujoco.MjModel:
     frames = {CHASSIS: (np.zeros(3), np.eye(3))}
     for joint in linkage.joints:
         place, turn = frames[joint.parent]
-        own = axes_along(joint.axis) if joint.child == TIE_ROD else np.eye(3)
+        own = axes_along(linkage.rods[joint.body]) if joint.body in linkage.rods else turn
         quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, own.ravel())
-        bodies[joint.child] = body = bodies[joint.parent].add_body(
-            name=joint.child,
-            pos=turn.T @ (joint.on_parent - place),
+        mujoco.mju_mat2Quat(quaternion, (turn.T @ own).ravel())
+        bodies[joint.body] = body = bodies[joint.parent].add_body(
+            name=joint.body,
+            pos=turn.T @ (joint.at - place),
             quat=quaternion,
             mass=1.0,
             inertia=[1.0, 1.0, 1.0],
             explicitinertial=True,
         )
-        body.add_joint(name=joint.child, type=KINDS[joint.kind], axis=own.T @ joint.axis)
-        frames[joint.child] = (joint.on_child, own)
+        body.add_joint(name=joint.body, type=KINDS[joint.kind], axis=own.T @ joint.axis)
+        frames[joint.body] = (joint.at, own)
 
-    def site(name: str, body: str, at: Array) -> None:
-        place, turn = frames[body]
-        bodies[body].add_site(name=name, pos=turn.T @ (at - place))
+    def site(name: str, at: Place) -> None:
+        place, turn = frames[at.body]
+        bodies[at.body].add_site(name=name, pos=turn.T @ (at.at - place))
 
-    for name, (body_name, at) in linkage.points.items():
-        site(name, body_name, at)
-    for loop in linkage.loops:
-        ends = (
-            (loop.name + " a", loop.body, loop.place),
-            (loop.name + " b", loop.other, loop.other_place),
-        )
-        for end in ends:
-            site(*end)
+    for name, at in linkage.points.items():
+        site(name, at)
+    for body in dict.fromkeys(linkage.bodies.values()):
+        site(f"body {body}", Place(body, frames[body][0]))
+    for number, loop in enumerate(linkage.loops):
+        names = [f"loop {number} {end}" for end in "ab"]
+        for name, at in zip(names, (loop.first, loop.second), strict=True):
+            site(name, at)
         spec.add_equality(
             type=mujoco.mjtEq.mjEQ_CONNECT,
             objtype=mujoco.mjtObj.mjOBJ_SITE,
-            name1=ends[0][0],
-            name2=ends[1][0],
+            name1=names[0],
+            name2=names[1],
             active=True,
         )
     return spec.compile()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.peers.linkage import Linkage
+from validate.spanning_tree.chassis import ChassisMotion
 
 Array = NDArray[np.float64]
 
@@ -18,7 +19,7 @@ class Poses:
     """Poses of a linkage, in its unit and from its origin.
 
     Attributes:
-        driven: turn of the arm and travel of the rack, (N, 2).
+        driven: driven coordinates, (N, drives).
         coordinates: the program's own, (N, ...).
         places: of every moving point, (N, 3).
         last_step: the last correction of Newton's method, rad and car sizes, (N,).
@@ -38,55 +39,32 @@ class Rates:
 
     Attributes:
         velocity, acceleration: of every moving point, (N, 3).
-        spin, spin_rate: angular velocity and acceleration of the knuckle, (N, 3), in the car's axes.
+        spin, spin_rate: angular velocity and acceleration of the bodies that are reported, (N, 3).
     """
 
     velocity: Mapping[str, Array]
     acceleration: Mapping[str, Array]
-    spin: Array
-    spin_rate: Array
+    spin: Mapping[str, Array]
+    spin_rate: Mapping[str, Array]
 
 
 def numbers(
-    linkage: Linkage, chassis: Array, poses: Poses, rates: Rates | None = None
+    linkage: Linkage, chassis: ChassisMotion | None, poses: Poses, rates: Rates | None = None
 ) -> dict[str, dict[str, Array]]:
-    """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad.
-
-    Args:
-        chassis: its displacement and two time derivatives, (N, 3, 3), mm.
-    """
-    near, unit = linkage.with_chassis(poses.places), linkage.unit
-    shift = linkage.origin + chassis[:, 0]
-    found = {
-        "position": {name: place * unit + shift for name, place in near.items()},
-        "wheel": angles(linkage, near),
+    """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad."""
+    tree, unit, still = linkage.tree, linkage.unit, np.zeros((len(poses.driven), 3))
+    near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
+    lines = {name: near[angle.end] - near[angle.start] for name, angle in linkage.wheel.items()}
+    found: dict[str, dict[str, Array]] = {
+        "position": {name: place * unit + tree.origin for name, place in near.items()}
     }
-    if rates is None:
-        return found
-    for order, (quantity, moving) in enumerate(
-        (("velocity", rates.velocity), ("acceleration", rates.acceleration)), 1
-    ):
-        found[quantity] = {
-            name: moving[name] * unit + chassis[:, order] if name in moving else chassis[:, order]
-            for name in near
-        }
-    found["angular_velocity"] = {"knuckle": rates.spin}
-    found["angular_acceleration"] = {"knuckle": rates.spin_rate}
+    if rates is not None:
+        for quantity, moving in (("velocity", rates.velocity), ("acceleration", rates.acceleration)):
+            found[quantity] = {name: moving.get(name, still) * unit for name in near}
+        found["angular_velocity"] = dict(rates.spin)
+        found["angular_acceleration"] = dict(rates.spin_rate)
+    if chassis is not None:
+        found = chassis.moved(found)
+        lines = {name: chassis.directions(line) for name, line in lines.items()}
+    found["wheel"] = {name: angle.of(lines[name]) for name, angle in linkage.wheel.items()}
     return found
-
-
-def angles(linkage: Linkage, places: Mapping[str, Array]) -> dict[str, Array]:
-    """Camber, kingpin, toe and caster by their definitions, (N,), rad, from places of any size.
-
-    With n along the wheel's axis outboard, k along the steering axis upward, and o, u, r outboard, up and
-    rearward: atan2(-n.u, n.o), atan2(-k.o, k.u), atan2(-n.r, n.o) and atan2(k.r, k.u).
-    """
-    n, k = (places[end] - places[start] for start, end in (linkage.spin_axis, linkage.leaning))
-    o, u = linkage.outboard, linkage.up
-    r = np.cross(linkage.right, u)
-    return {
-        "camber": np.arctan2(-n @ u, n @ o),
-        "kingpin": np.arctan2(-k @ o, k @ u),
-        "toe": np.arctan2(-n @ r, n @ o),
-        "caster": np.arctan2(k @ r, k @ u),
-    }

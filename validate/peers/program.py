@@ -6,7 +6,8 @@ apart, r, and the Jacobian J of that by the joints' rates. With u the unknown an
     J_u dq = -r,    J_u v_u = -J_d v_d,    J_u a_u = -J_d a_d - (dJ/dt) v.
 
 The last two terms are how the sides of the loops accelerate apart while the unknown joints do not, which
-programs tell of any point.
+programs tell of any point. Rows of J_u that depend on others in the drawing are left out, and what they miss
+is looked at in every pose. Two assemblies meet where det J_u is zero, so its sign stays that of the drawing.
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
 
 from validate.peers.linkage import Linkage, PeerError
 from validate.peers.motion import Poses, Rates
+from validate.spanning_tree.determined import independent_rows
 
 Array = NDArray[np.float64]
 
@@ -25,12 +28,12 @@ Array = NDArray[np.float64]
 LIMIT = 12
 # rad and car sizes: a step that is longer may lead to another assembly, and the way is halved.
 LONGEST_STEP = 0.25
-HALVINGS = 12
-# Where that did lead to another assembly, or nowhere, it is tried with steps that are so much shorter.
-SHORTER = 0.125
-SHORTEST_STEP = 1e-3
-# Poses whose sides are checked at once.
-TOGETHER = 32
+# The same where the second step is more than this part of the first: then a pose nearby is not sure.
+CONTRACTED = 0.25
+HALVINGS = 40
+# Car sizes. What depends on other rows is missed by the square of the last step, and by rounding raised by
+# the condition number, some 1e-13 of the car.
+HELD = 1e-11
 # Below the root of the rounding unit a step that does not halve is rounding.
 ROUNDING_STEP = 1e-8
 
@@ -39,12 +42,15 @@ class Program(ABC):
     """A linkage in a program, which keeps the pose that was computed last; not for two threads.
 
     Attributes:
-        driven, unknown: places among the joints' rates, of the arm and the rack, and of all that are free.
+        driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
+        rows: that are solved. sign: of det J_u in the drawing.
     """
 
     linkage: Linkage
     driven: NDArray[np.intp]
     unknown: NDArray[np.intp]
+    rows: slice | NDArray[np.int64] = slice(None)
+    sign: float = 0.0
 
     @property
     @abstractmethod
@@ -57,7 +63,7 @@ class Program(ABC):
 
     @abstractmethod
     def drive(self, driven: Array) -> None:
-        """Set the driven joints, (2,)."""
+        """Set the driven joints, (drives,)."""
 
     @abstractmethod
     def put_as_drawn(self) -> None:
@@ -85,8 +91,8 @@ class Program(ABC):
 
     @abstractmethod
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations with these of the joints: of all points and at last of the knuckle's turn,
-        (points + 1, 3) each.
+        """Rates and accelerations with these of the joints: of all points, and then of the reported bodies'
+        turns, (points + bodies, 3) each.
         """
 
     def closed(self, tolerance: float) -> Poses:
@@ -100,88 +106,63 @@ class Program(ABC):
         counted = _Count()
         self.put_as_drawn()
         driven = self.linkage.drawn_inputs
+        self.drive(driven)
+        jacobian = self.misses()[1][:, self.unknown]
+        count = jacobian.shape[1]
+        rows = independent_rows(jacobian, 0)
+        if len(rows) < count:
+            raise PeerError(f"the drawing is free to move: {len(rows)} independent rows for {count} unknowns")
+        self.rows = slice(None) if len(rows) == len(jacobian) else rows
+        self.sign = float(np.linalg.slogdet(jacobian[self.rows])[0])
         step = self._newton(driven, tolerance, LONGEST_STEP, counted, shorten=True)
         if step is None:
-            raise PeerError("the drawing cannot be closed")
+            raise PeerError("the drawing cannot be closed as the assembly that is drawn")
         here, places = self.coordinates[None], self.places()[None]
-        poses = self._named(driven[None], here, places, np.array([step]), counted)
-        if self._on_other_side(places).any():
-            raise PeerError("closing the drawing leads to another assembly than is drawn")
-        return poses
+        return self._named(driven[None], here, places, np.array([step]), counted)
 
     def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
         """Solve at driven inputs, each pose from the one before.
 
         Args:
-            driven: turn of the arm and travel of the rack, (N, 2).
+            driven: driven coordinates, (N, drives).
             tolerance: see `closed`.
             start: whose last pose the first one is solved from.
         Raises:
-            PeerError: a pose is not reached, or is one of another assembly.
+            PeerError: a pose is not reached without meeting another assembly.
         """
         counted, count = _Count(), len(driven)
         coordinates = np.empty((count, start.coordinates.shape[1]))
         places = np.empty((count, len(self.linkage.points), 3))
         steps = np.empty(count)
-
-        def before(i: int) -> tuple[Array, Array]:
-            """Inputs and coordinates of the pose before another one."""
-            return (driven[i - 1], coordinates[i - 1]) if i else (start.driven[-1], start.coordinates[-1])
-
-        done = 0
-        while done < count:
-            here, pose = before(done)
-            self.put(pose)
-            stop = reached = min(done + TOGETHER, count)
-            for i in range(done, stop):
-                step = self._go(here, driven[i], tolerance, LONGEST_STEP, counted)
-                if step is None:
-                    reached = i
-                    break
-                here, steps[i], places[i], coordinates[i] = driven[i], step, self.places(), self.coordinates
-            other = self._on_other_side(places[done:reached])
-            done = done + int(np.argmax(other)) if other.any() else reached
-            if done < stop:
-                steps[done] = self._go_by_sides(*before(done), driven[done], tolerance, counted, done)
-                places[done], coordinates[done] = self.places(), self.coordinates
-                done += 1
+        here = start.driven[-1]
+        self.put(start.coordinates[-1])
+        for i in range(count):
+            step = self._go(here, driven[i], tolerance, counted)
+            if step is None:
+                raise PeerError("no pose is reached from the one before", i)
+            here, steps[i], places[i], coordinates[i] = driven[i], step, self.places(), self.coordinates
+            if not isinstance(self.rows, slice):
+                missed = float(np.abs(self.misses()[0]).max())
+                if not missed <= HELD + step**2:
+                    raise PeerError(
+                        f"closures that depend on others in the drawing miss by {missed:.3g} here", i
+                    )
         return self._named(driven, coordinates, places, steps, counted)
-
-    def _go_by_sides(
-        self, start: Array, pose: Array, goal: Array, tolerance: float, counted: _Count, i: int
-    ) -> float:
-        """Go from a pose to a goal by ever shorter steps until it is on the drawing's side; the last step."""
-        longest, elsewhere = LONGEST_STEP, False
-        while longest > SHORTEST_STEP:
-            self.put(pose)
-            step = self._go(start, goal, tolerance, longest, counted)
-            if step is not None:
-                if not self._on_other_side(self.places()[None]).any():
-                    return step
-                elsewhere = True
-            longest *= SHORTER
-        if elsewhere:
-            raise PeerError("Newton's method came to another assembly than is drawn", i)
-        raise PeerError("no pose is reached from the one before", i)
-
-    def _on_other_side(self, places: Array) -> NDArray[np.bool_]:
-        """Which poses, by the places of their points, (N, points, 3), are not of the drawing's assembly."""
-        named = {name: places[:, k] for k, name in enumerate(self.linkage.points)}
-        return self.linkage.on_other_side(self.linkage.with_chassis(named))
 
     def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
         """Velocities and accelerations of poses.
 
         Args:
-            rate, bend: first and second time derivative of what is driven, (N, 2), per s and s^2.
+            rate, bend: first and second time derivative of what is driven, (N, drives), per s and s^2.
         Raises:
             PeerError: the rates are not determined at a pose.
         """
         count, names = len(rate), list(self.linkage.points)
-        first, second = (np.empty((count, len(names) + 1, 3)) for _ in range(2))
+        bodies = list(self.linkage.bodies)
+        first, second = (np.empty((count, len(names) + len(bodies), 3)) for _ in range(2))
         for i in range(count):
             self.put(poses.coordinates[i])
-            _, jacobian = self.misses()
+            jacobian = self.misses()[1][self.rows]
             velocity, acceleration = (np.zeros(jacobian.shape[1]) for _ in range(2))
             velocity[self.driven], acceleration[self.driven] = rate[i], bend[i]
             try:
@@ -190,22 +171,23 @@ class Program(ABC):
                 raise PeerError("the pose is where two assemblies meet", i) from None
             velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ rate[i])
             self.set_rates(velocity)
-            acceleration[self.unknown] = -inverse @ self.apart(acceleration)
+            acceleration[self.unknown] = -inverse @ self.apart(acceleration)[self.rows]
             first[i], second[i] = self.moving(acceleration)
         velocities, accelerations = (
             {name: array[:, k] for k, name in enumerate(names)} for array in (first, second)
         )
-        return Rates(velocities, accelerations, first[:, -1], second[:, -1])
+        spins, rates = (
+            {name: array[:, k] for k, name in enumerate(bodies, len(names))} for array in (first, second)
+        )
+        return Rates(velocities, accelerations, spins, rates)
 
-    def _go(
-        self, start: Array, goal: Array, tolerance: float, longest: float, counted: _Count
-    ) -> float | None:
+    def _go(self, start: Array, goal: Array, tolerance: float, counted: _Count) -> float | None:
         """Follow the inputs to a goal, by halves where Newton's method would step too far; its last step."""
         done, share, step = 0.0, 1.0, None
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
-            step = self._newton(there, tolerance, longest, counted)
+            step = self._newton(there, tolerance, LONGEST_STEP, counted)
             if step is None:
                 self.put(kept)
                 share *= 0.5
@@ -213,6 +195,7 @@ class Program(ABC):
                     return None
             else:
                 done += share
+                share *= 2.0
         return step
 
     def _newton(
@@ -227,24 +210,26 @@ class Program(ABC):
         self.drive(driven)
         unknown, previous = self.unknown, np.inf
         step: Array | None = None
-        for _ in range(LIMIT):
+        for number in range(LIMIT):
             missed, jacobian = self.misses()
             if step is None:
                 step = np.zeros(jacobian.shape[1])
             counted.jacobians += 1
-            try:
-                step[unknown] = np.linalg.solve(jacobian[:, unknown], -missed)
-            except np.linalg.LinAlgError:
+            factors, swaps, solved, info = dgesv(jacobian[self.rows][:, unknown], -missed[self.rows])
+            if info:
                 return None
-            size = float(np.abs(step).max())
+            step[unknown] = solved
+            size = float(np.abs(solved).max())
             if not size <= longest:
                 if not (shorten and np.isfinite(size)):
                     return None
                 step *= longest / size
+            elif number == 1 and size > CONTRACTED * previous and size > ROUNDING_STEP and not shorten:
+                return None
             self.move(step)
             counted.steps += 1
             if size <= tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
-                return size
+                return size if _sign(factors, swaps) == self.sign else None
             previous = size
         return None
 
@@ -259,6 +244,12 @@ class Program(ABC):
         }
         named = {name: places[:, k] for k, name in enumerate(self.linkage.points)}
         return Poses(driven, coordinates, named, steps, counts)
+
+
+def _sign(factors: Array, swaps: NDArray[np.intp]) -> float:
+    """Sign of a determinant, from its factors and their swaps of rows."""
+    turned = np.count_nonzero(swaps != np.arange(len(swaps))) + np.count_nonzero(np.diag(factors) < 0.0)
+    return -1.0 if turned % 2 else 1.0
 
 
 class _Count:

@@ -1,4 +1,4 @@
-"""The reference: the equations of every suspension in many digits, with a proof of every one.
+"""The reference: the equations of any mechanism in many digits, with a proof of every number.
 
 Third and independent: it shares no code with the formulations it judges. Where the project says
 "error" it means the distance from these numbers.
@@ -18,11 +18,12 @@ try:
     from validate.reference.errors import NoReferenceError as NoReferenceError
     from validate.reference.errors import NotDecidedError as NotDecidedError
     from validate.reference.errors import SingularPoseError as SingularPoseError
+    from validate.reference.errors import TooManyStepsError as TooManyStepsError
     from validate.reference.instant import Instant as Instant
-    from validate.reference.linkage import Choices as Choices
     from validate.reference.sensitivity import Sensitivity as Sensitivity
     from validate.reference.sensitivity import sensitivities as sensitivities
     from validate.reference.solve import instants_of as instants_of
+    from validate.reference.solve import pose_exists as pose_exists
     from validate.reference.solve import solve_reference as solve_reference
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.reference", error) from None

@@ -1,28 +1,86 @@
-"""The given points as exact fractions, in a frame of their own size."""
+"""The given points as exact fractions, in a frame of their own size, and the equations that they make."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
+from typing import Any
 
-from flint import arb
+import numpy as np
+from flint import arb, arb_mat, ctx
 
+from validate.reference.chassis import ChassisMotion
+from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
-from validate.reference.linkage import Known, Link, Linkage
-from validate.reference.suspensions import CLOSURE, SUSPENSION, linkage_for
-from validate.reference.vectors import Vector, dot, minus, plus, times
+from validate.reference.krawczyk import System
+from validate.reference.mechanism import Mechanism, compiled
+from validate.reference.vectors import Scalar, Vector, dot, each, minus, times
 
 DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
-HEAVE = "heave"  # moves the chassis of every suspension, mm along up
+SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
 
-# Every input of a linkage, and heave, each (value, rate, acceleration) in fractions; rad or mm.
+# Every input, each (value, rate, acceleration) in fractions; rad or mm.
 Driven = Mapping[str, Jet]
 
 
 @dataclass(frozen=True)
+class Known:
+    """What the equations take as given at one instant; scalars may be balls, floats, arrays or jets.
+
+    Attributes:
+        mechanism: whose equations hold.
+        equations: in that kind of number.
+        numbers: w.
+        chassis: how the car as a whole is moved.
+    """
+
+    mechanism: Mechanism
+    equations: Equations
+    numbers: Sequence[Scalar]
+    chassis: ChassisMotion
+
+    @property
+    def fixed(self) -> frozenset[str]:
+        """The points of the chassis."""
+        constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.mechanism.places.items())
+        return frozenset(name for name, rests in constant if rests)
+
+    def unknown_of(self, points: Mapping[str, Vector]) -> list[arb]:
+        """The unknowns of points in balls, relative to the chassis."""
+        return self.mechanism.unknown_of(points, as_ball)
+
+    def handed(self, unknown: Sequence[arb]) -> bool:
+        """Whether a zero is an assembly, proven: no body is mirrored, no hinge the wrong way round."""
+        return all(one > 0 for one in self.mechanism.handed(unknown, self.numbers, as_ball))
+
+    def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
+        """Of every moving body two vectors fixed in it, with the chassis moved."""
+        frames = self.equations.frames_of(unknown)
+        return {n: (self.chassis.turned(u), self.chassis.turned(v)) for n, (u, v) in frames.items()}
+
+    def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
+        """Where every point is, with the chassis moved."""
+        return {name: self.chassis.moved(p) for name, p in self.equations.points_of(unknown).items()}
+
+    def residual(self, unknown: Sequence[Scalar]) -> list[Scalar]:
+        """C(y, w)."""
+        return self.equations.residual(unknown, self.numbers)
+
+    def matrix(self, unknown: Sequence[arb]) -> arb_mat:
+        """dC/dy as a square matrix of balls."""
+        return self.equations.matrix(unknown, self.numbers)
+
+    @property
+    def system(self) -> System:
+        """C(y, w) = 0 in y; numbers are balls."""
+        return System(self.residual, self.matrix, self.equations.bend)
+
+
+@dataclass(frozen=True, eq=False)
 class Design:
     """The mechanism as given. Local coordinates are (p - origin) / unit, exact.
 
@@ -30,97 +88,98 @@ class Design:
     the mechanism is 1e-3 or 1e6 mm in size.
 
     Attributes:
-        linkage: which suspension, under which closure.
-        table: the points that this car has, by name, local.
+        plain: the description, see `pointcoord/mechanisms/README.md`; its points are not read after this.
+        mechanism: its equations.
+        table: the points, by name, local.
         origin: the first point, mm.
         unit: a power of two near the mechanism's size, mm.
         up: direction of z.
         right: direction of y.
         outboard: +1 where outboard is `right`, -1 where it is the opposite.
-        squared_length: of every link, local.
-        knuckle: its shape, in the numbers that the equations use, local.
+        chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
     """
 
-    linkage: Linkage
+    plain: Mapping[str, Any]
+    mechanism: Mechanism
     table: Mapping[str, Vector]
     origin: Vector
     unit: Fraction
     up: Vector
     right: Vector
     outboard: int
-    squared_length: Mapping[Link, Fraction]
-    knuckle: Mapping[str, Vector]
+    chosen: tuple[int, ...]
 
     @classmethod
-    def from_points(
-        cls,
-        points: Mapping[str, Sequence[object]],
-        up: Sequence[object],
-        right: Sequence[object],
-        side: str,
-        closure: str = CLOSURE,
-        suspension: str = SUSPENSION,
-    ) -> Design:
-        """Take over the named points, mm; a point that is left out may have a stand-in.
+    def from_plain(cls, plain: Mapping[str, Any]) -> Design:
+        """Take over a description, mm.
 
         Raises:
-            BadInputError: there is no such suspension, a point is missing or unknown, a number is not finite,
-                `up` and `right` are not unit vectors at right angles, a link or the knuckle has no extent, or
-                an input cannot drive the car.
+            BadInputError: a point is unknown, a number is not finite, `up` and `right` are not unit vectors
+                at right angles, a rod or a body has no extent, or freedoms and inputs are not as many.
         """
-        linkage = linkage_for(suspension, closure)
-        if not set(linkage.required) <= set(points) <= set(linkage.points):
-            optional = " and ".join(n for n in linkage.points if n not in linkage.required)
-            allowed = f"exactly the names {', '.join(linkage.required)}, with or without {optional}"
-            raise BadInputError("points", sorted(points), allowed)
-        given = {n: exact_vector(points[n], f"points[{n!r}]") for n in linkage.points if n in points}
-        for name, other in linkage.stand_ins.items():
-            given.setdefault(name, given[other])
-        z, y = exact_vector(up, "up"), exact_vector(right, "right")
+        given = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
+        if not given:
+            raise BadInputError("points", "none", "at least one")
+        z, y = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
         if abs(dot(z, z) - 1) > DIRECTION_SLACK or abs(dot(y, y) - 1) > DIRECTION_SLACK:
-            raise BadInputError("up and right", (up, right), "unit vectors, to 1e-12")
+            raise BadInputError("up and right", (plain["up"], plain["right"]), "unit vectors, to 1e-12")
         if abs(dot(z, y)) > DIRECTION_SLACK:
-            raise BadInputError("up and right", (up, right), "vectors at right angles, to 1e-12")
-        if side not in ("left", "right"):
-            raise BadInputError("side", side, "'left' or 'right'")
-        unit, origin = _unit(given, linkage.points[0]), given[linkage.points[0]]
-        present = (n for n in linkage.points if n in given)
-        table = {n: times(minus(given[n], origin), 1 / unit) for n in present}
-        lengths = {}
-        for a, b in linkage.links:
-            link = minus(table[a], table[b])
-            lengths[a, b] = dot(link, link)
-            if lengths[a, b] == 0:
-                raise BadInputError(f"the distance from {a} to {b}", 0, "more than 0")
-        for drive in linkage.inputs.values():
-            drive.check(table, z)
-        outboard = -1 if side == "left" else 1
-        return cls(linkage, table, origin, unit, z, y, outboard, lengths, linkage.shape(table))
+            raise BadInputError("up and right", (plain["up"], plain["right"]), "at right angles, to 1e-12")
+        if plain["side"] not in ("left", "right"):
+            raise BadInputError("side", plain["side"], "'left' or 'right'")
+        first = next(iter(given))
+        unit, origin = _unit(given, first), given[first]
+        table = {n: times(minus(p, origin), 1 / unit) for n, p in given.items()}
+        exact = {**plain, "up": z, "right": y}
+        for kind, groups in (("bodies", exact["bodies"]), ("rods", exact["rods"])):
+            for name, points in groups.items():
+                for point in points:
+                    if point not in table:
+                        raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(table)}")
+        mechanism = compiled(exact, table, unit)
+        outboard = -1 if plain["side"] == "left" else 1
+        return cls(exact, mechanism, table, origin, unit, z, y, outboard, _chosen(mechanism, table))
+
+    def with_table(self, table: Mapping[str, Vector]) -> Mechanism:
+        """The mechanism of points elsewhere, local: the same rows and unknowns with other coefficients."""
+        return compiled(self.plain, table, self.unit)
 
     @property
     def names(self) -> tuple[str, ...]:
         """The points that this car has."""
         return tuple(self.table)
 
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that it takes."""
+        return tuple(self.plain["inputs"])
+
+    def role(self, name: str) -> Any:
+        """What a role names, or None."""
+        return self.plain["roles"].get(name)
+
+    def equations(self) -> Equations:
+        """In balls at the present precision."""
+        return _equations(self, ctx.prec)
+
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
-        """Inputs by name as fractions; an input that is not named rests at zero.
+        """Inputs by name as fractions; a travel or chassis motion that is not named rests at zero.
 
         Raises:
             BadInputError: an unknown name, not three finite numbers, or an input is missing.
         """
-        names = (*self.linkage.inputs, HEAVE)
         for name, triple in inputs.items():
-            if name not in names:
-                raise BadInputError(f"inputs[{name!r}]", triple, f"one of {', '.join(names)}")
+            if name not in self.inputs:
+                raise BadInputError(f"inputs[{name!r}]", triple, f"one of {', '.join(self.inputs)}")
             if len(triple) != 3:
                 raise BadInputError(f"inputs[{name!r}]", triple, "three numbers: value, rate, acceleration")
-        required = [name for name, drive in self.linkage.inputs.items() if drive.required]
+        required = [name for name, drive in self.mechanism.drives.items() if drive.required]
         if not set(required) <= set(inputs):
             allowed = f"a mapping that names at least {' and '.join(required)}"
             raise BadInputError("inputs", sorted(inputs), allowed)
         return {
             name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0, 0, 0))))
-            for name in names
+            for name in self.inputs
         }
 
     def known(self, driven: Driven) -> Known:
@@ -129,48 +188,41 @@ class Design:
 
     def known_for(self, driven: Mapping[str, Jet]) -> Known:
         """The same from jets of balls, or of duals of balls; rad, mm, mm."""
-        numbers = {
-            name: drive.driven(driven[name], self.squared_length, self.unit)
-            for name, drive in self.linkage.inputs.items()
-        }
-        return self.known_at(numbers, driven[HEAVE])
+        numbers = [w for name, drive in self.mechanism.drives.items() for w in drive.numbers(driven[name])]
+        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, driven))
 
-    def known_at(self, numbers: Mapping[str, Jet], heave: Jet) -> Known:
-        """The same from the numbers that the equations take for the inputs, local, and heave, mm.
+    def known_as_drawn(self) -> Known:
+        """The same at rest at the inputs that the car is drawn at, the chassis in its place."""
+        numbers = [Jet(w, arb(0), arb(0)) for drive in self.mechanism.drives.values() for w in drive.drawn()]
+        still = {name: Jet(arb(0), arb(0), arb(0)) for name in self.inputs}
+        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, still))
 
-        Heave moves the points of the chassis by heave(t) up.
-        """
-        rise = heave * as_ball(1 / self.unit)
-        up = ball_vector(self.up)
-        lift = (rise * up[0], rise * up[1], rise * up[2])
-        return Known(
-            linkage=self.linkage,
-            chassis={n: plus(ball_vector(self.table[n]), lift) for n in self.linkage.chassis},
-            up=up,
-            right=ball_vector(self.right),
-            squared_length={link: as_ball(squared) for link, squared in self.squared_length.items()},
-            driven=numbers,
-            knuckle={n: ball_vector(shape) for n, shape in self.knuckle.items()},
-        )
+    def drawn_unknown(self) -> list[arb]:
+        """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
+        places = {name: ball_vector(p) for name, p in self.table.items()}
+        return [arb(number).mid() for number in self.mechanism.unknown_of(places, as_ball)]
+
+
+@lru_cache(maxsize=256)
+def _equations(design: Design, precision: int) -> Equations:
+    return equations_in(design.mechanism, design.chosen, lambda numbers: as_ball(numbers[0]))
 
 
 def values_only(known: Known) -> Known:
     """The same with the values of the jets, for the position equations."""
-    chassis = {n: (p[0].value, p[1].value, p[2].value) for n, p in known.chassis.items()}
-    return replace(known, chassis=chassis, driven={n: jet.value for n, jet in known.driven.items()})
+    return replace(known, numbers=[jet.value for jet in known.numbers], chassis=known.chassis.still())
 
 
 def exact_vector(numbers: Sequence[object], what: str) -> Vector:
     """Three numbers as fractions; `BadInputError` if there are not three."""
     if len(numbers) != 3:
         raise BadInputError(what, numbers, "three numbers")
-    x, y, z = (as_fraction(number, what) for number in numbers)
-    return x, y, z
+    return each(lambda number: as_fraction(number, what), (numbers[0], numbers[1], numbers[2]))
 
 
-def ball_vector(vector: Vector) -> tuple[arb, arb, arb]:
+def ball_vector(vector: Vector) -> Vector:
     """Three fractions as balls."""
-    return as_ball(vector[0]), as_ball(vector[1]), as_ball(vector[2])
+    return each(as_ball, vector)
 
 
 def balls(jet: Jet) -> Jet:
@@ -184,3 +236,38 @@ def _unit(points: Mapping[str, Vector], origin: str) -> Fraction:
         raise BadInputError("points", "all in one place", "points with some distance between them")
     power = size.numerator.bit_length() - size.denominator.bit_length()
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
+
+
+def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...]:
+    """As many rows as unknowns; of more than that those that stand most clearly apart as drawn.
+
+    Rows are taken in turn, each time the one of which most is left beside those taken (Gram and Schmidt).
+    """
+    rows, size = len(mechanism.rows), mechanism.size
+    if rows < size:
+        allowed = f"{size} rows: drive {size - rows} more of what can move"
+        raise BadInputError("the equations", f"{rows} rows for {size} unknowns", allowed)
+    if rows == size:
+        return tuple(range(size))
+    drawn = [float(x) for x in mechanism.unknown_of({n: ball_vector(p) for n, p in table.items()}, as_ball)]
+    numbers = [float(w) for drive in mechanism.drives.values() for w in drive.drawn()]
+    matrix = np.array(
+        [
+            [float(row.derivative(j).at([*drawn, *numbers], float)) for j in range(size)]
+            for row in mechanism.rows
+        ]
+    )
+    left = matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
+    taken: list[int] = []
+    for _ in range(size):
+        lengths = np.linalg.norm(left, axis=1)
+        best = int(lengths.argmax())
+        if not lengths[best] > SAME_ROW:
+            allowed = f"inputs and joints that leave no freedom; {size - len(taken)} are left as drawn"
+            raise BadInputError(
+                "the equations", f"{len(taken)} independent rows for {size} unknowns", allowed
+            )
+        taken.append(best)
+        unit = left[best] / lengths[best]
+        left = left - np.outer(left @ unit, unit)
+    return tuple(sorted(taken))

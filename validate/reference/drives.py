@@ -1,115 +1,218 @@
-r"""Kinds of input: what number the equations take for it, and where the drawing has it.
+r"""Kinds of input: the rows that say them, the numbers w that these take, and where the drawing has them.
 
-A drive works in local coordinates (see `design`), with jets of balls or of duals for the input's value, rate
-and acceleration.
+    angle from a direction    (P - Q) . direction = w,          w = d cos(theta), d as drawn
+    angle from the drawing    g1 w1 - g2 w2 = 0,                w1 = sin(theta), w2 = cos(theta) / |n|,
+                              g1 = R e . R' e,  g2 = R e . R' (n x e),  n along the hinge, e across it
+    travel of a slide         s = w                             w = travel / length of the slide's line
+    height of a point         P . direction = w
+    contact height            (centre - s up) . direction = w,  s^2 + (r m / l)^2 = r^2,
+                              m = (centre - inner) . up, l their distance, r the wheel's radius
+    distance of two points    |P - Q|^2 = w,                    w = distance^2
+
+All lengths are local (see `design`), and so is the drawing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol
+from math import sqrt
+from typing import Any
 
+import numpy as np
 from flint import arb
-from mpmath import mpf
 
+from validate.reference.compiler import CHASSIS, Compiler, Exact, Reader, Table
+from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
-from validate.reference.exact import as_ball, centre_of, mpf_from_fraction
+from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
-from validate.reference.vectors import Vector, cross, dot, minus
-
-Table = Mapping[str, Vector]
-Lengths = Mapping[tuple[str, str], Fraction]
+from validate.reference.polynomial import Polynomial
+from validate.reference.vectors import Scalar, across, cross, dot, minus
 
 
-class Drive(Protocol):
-    """An input of a linkage.
+@dataclass(frozen=True)
+class Drive:
+    """An input of a mechanism.
 
     Attributes:
         required: whether it must be given; else it rests at zero.
+        numbers: the numbers w of the input's value, rad or mm, as a jet of balls or of duals.
+        drawn: these numbers as drawn.
+        input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
+        turns: whether it is an angle of any number of turns.
     """
 
-    @property
-    def required(self) -> bool: ...
-
-    def check(self, table: Table, up: Vector) -> None:
-        """Pass if the input can drive the car as drawn, else `BadInputError`."""
-
-    def driven(self, value: Jet, squared_length: Lengths, unit: Fraction) -> Jet:
-        """The number that the equations take; from rad or mm to local."""
-
-    def drawn(self, table: Table, up: Vector, right: Vector) -> Fraction:
-        """That number as drawn, exact."""
-
-    def input_of(self, drawn: Fraction, squared_length: Lengths, unit: Fraction, digits: int) -> mpf:
-        """The input itself at that number, rad or mm."""
+    required: bool
+    numbers: Callable[[Jet], Sequence[Jet]]
+    drawn: Callable[[], Sequence[arb]]
+    input_of: Callable[[Sequence[arb]], arb]
+    turns: bool = False
 
 
-@dataclass(frozen=True)
-class ArmAngle:
-    """theta, rad: (p_end - p_front) . up = d cos(theta), d the drawn length; 0 to pi.
+def drive_of(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    """The drive that a description's input is; its rows go to the compiler.
 
-    Attributes:
-        end: of the arm, at the knuckle.
-        front: pivot on the chassis from which theta is measured.
-        rear: other pivot.
+    Raises:
+        BadInputError: there is no such kind of input, or it cannot drive the car as drawn.
     """
-
-    end: str
-    front: str
-    rear: str
-    required: bool = True
-
-    def check(self, table: Table, up: Vector) -> None:
-        """Where the arm's axis is upright theta does not move the arm."""
-        upright = cross(minus(table[self.rear], table[self.front]), up)
-        if dot(upright, upright) == 0:
-            what = f"the arm's axis from {self.front} to {self.rear}"
-            raise BadInputError(what, "upright or without length", "an axis not along up")
-
-    def driven(self, value: Jet, squared_length: Lengths, unit: Fraction) -> Jet:
-        """h = d cos(theta), with its derivatives.
-
-        h' = -d sin(theta) theta',  h'' = -d (cos(theta) theta'^2 + sin(theta) theta'').
-        """
-        sine, cosine = value.value.sin_cos()
-        d = as_ball(squared_length[self.end, self.front]).sqrt()
-        bend = cosine * value.rate * value.rate + sine * value.acceleration
-        return Jet(d * cosine, -d * sine * value.rate, -d * bend)
-
-    def drawn(self, table: Table, up: Vector, right: Vector) -> Fraction:
-        """The height of the arm's end over its front pivot."""
-        height: Fraction = dot(minus(table[self.end], table[self.front]), up)
-        return height
-
-    def input_of(self, drawn: Fraction, squared_length: Lengths, unit: Fraction, digits: int) -> mpf:
-        """theta, by cosine and sine: an arc cosine loses its digits where the arm stands upright."""
-        # `up` is a unit vector to rounding only, so the difference may be just below zero.
-        beside = max(squared_length[self.end, self.front] - drawn * drawn, Fraction(0))
-        return centre_of(arb.atan2(as_ball(beside).sqrt(), as_ball(drawn)))
+    for kind, make in KINDS.items():
+        if kind in spec:
+            return make(compiler, name, spec)
+    raise BadInputError(f"inputs.{name}", dict(spec), f"one of {', '.join(KINDS)}, moves or turns")
 
 
-@dataclass(frozen=True)
-class RackTravel:
-    """S, mm: p_inner = p_centre - S right."""
+def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    if spec["from"] == "drawing":
+        return _angle_from_drawing(compiler, name, spec)
+    end, pivot = spec["of"], spec["about"]
+    along = directed(compiler.plain, spec["from"])
+    drawn = minus(compiler.table[end], compiler.table[pivot])
+    d2, height = dot(drawn, drawn), dot(drawn, along)
+    if d2 == 0:
+        raise BadInputError(f"the distance from {end} to {pivot}", 0, "more than 0")
+    compiler.row(name, dot(minus(compiler.place(end), compiler.place(pivot)), along) - compiler.number())
 
-    centre: str
-    inner: str
-    required: bool = False
+    def numbers(value: Jet) -> list[Jet]:
+        return [value.sin_cos()[1] * as_ball(d2).sqrt()]
 
-    def check(self, table: Table, up: Vector) -> None:
-        """Every rack can travel."""
+    def angle(numbers: Sequence[arb]) -> arb:
+        # By cosine and sine: an arc cosine loses its digits where the arm stands along the direction. That is
+        # a unit vector to rounding only, so the difference may be just below zero.
+        beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
+        return arb.atan2(beside.sqrt(), numbers[0])
 
-    def driven(self, value: Jet, squared_length: Lengths, unit: Fraction) -> Jet:
-        """S."""
-        return value * as_ball(1 / unit)
+    return Drive(True, numbers, lambda: [as_ball(height)], angle)
 
-    def drawn(self, table: Table, up: Vector, right: Vector) -> Fraction:
-        """S as drawn; what lies across the rack's line does not count."""
-        travel: Fraction = dot(minus(table[self.centre], table[self.inner]), right)
-        return travel
 
-    def input_of(self, drawn: Fraction, squared_length: Lengths, unit: Fraction, digits: int) -> mpf:
-        """S, exact to `digits`."""
-        return mpf_from_fraction(drawn * unit, digits)
+def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    body, on, table = spec["angle"], spec["on"], compiler.table
+    bodies = compiler.plain["bodies"]
+    both = [point for point in bodies[body] if point in bodies[on]]
+    if len(both) != 2:
+        raise BadInputError(f"inputs.{name}: angle", body, f"a body hinged on {on}")
+    n = minus(table[both[1]], table[both[0]])
+    e, nn = across(n)[0], dot(n, n)
+    turning, held = compiler.bodies[body].turned(e), compiler.bodies[on]
+    products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
+    if on != CHASSIS:
+        parts = list(products)
+
+        def read(index: int) -> Reader:
+            return lambda _, unknown, exact: [parts[index].at(unknown, exact)]
+
+        products = [compiler.unknowns(1, read(i))[0] for i in range(2)]
+        for product, part in zip(products, parts, strict=True):
+            compiler.row(name, product - part)
+    sine, cosine = compiler.number(), compiler.number()
+    compiler.row(name, products[0] * sine - products[1] * cosine)
+    # At the angle itself g1 cos + g2 sin / |n| is positive; half a turn from it negative.
+    compiler.positive.append(products[0] * cosine * nn + products[1] * sine)
+
+    def numbers(value: Jet) -> list[Jet]:
+        sin, cos = value.sin_cos()
+        return [sin, cos * (1 / as_ball(nn).sqrt())]
+
+    def angle(numbers: Sequence[arb]) -> arb:
+        return arb.atan2(numbers[0], numbers[1] * as_ball(nn).sqrt())
+
+    return Drive(True, numbers, lambda: [arb(0), 1 / as_ball(nn).sqrt()], angle, turns=True)
+
+
+def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    drawn, lengths = [], []
+    for slide in spec["travel"]:
+        lines, along, of_the_car = compiler.lines[slide]
+        compiler.row(name, lines[0] - compiler.number())
+        told = compiler.plain["slides"][slide]
+        off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
+        drawn.append(dot(off, along) / dot(along, along))
+        # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
+        lengths.append(Fraction(1) if of_the_car else dot(along, along))
+
+    def numbers(value: Jet) -> list[Jet]:
+        local = value * as_ball(1 / compiler.unit)
+        return [local * (1 / as_ball(squared).sqrt()) for squared in lengths]
+
+    def travel(numbers: Sequence[arb]) -> arb:
+        return numbers[0] * as_ball(compiler.unit) * as_ball(lengths[0]).sqrt()
+
+    return Drive(False, numbers, lambda: [as_ball(one) for one in drawn], travel)
+
+
+def _height(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    along = directed(compiler.plain, spec.get("along", "up"))
+    drawn = dot(compiler.table[spec["height"]], along)
+    compiler.row(name, dot(compiler.place(spec["height"]), along) - compiler.number())
+
+    def numbers(value: Jet) -> list[Jet]:
+        return [value * as_ball(1 / compiler.unit) + as_ball(drawn)]
+
+    return Drive(
+        True, numbers, lambda: [as_ball(drawn)], lambda w: (w[0] - as_ball(drawn)) * as_ball(compiler.unit)
+    )
+
+
+def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    inner, centre = spec["contact"]
+    radius = compiler.plain.get("wheel_radius")
+    if radius is None:
+        raise BadInputError("wheel_radius", None, f"a number of mm, which inputs.{name} needs")
+    up, r = directed(compiler.plain, "up"), Fraction(radius) / compiler.unit
+    axis = minus(compiler.table[centre], compiler.table[inner])
+    l2, m = dot(axis, axis), dot(axis, up)
+    if l2 == 0:
+        raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
+    share2 = r * r / l2
+
+    def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+        x, y, z = (exact(part) for part in up)
+        lean = dot(minus(points[centre], points[inner]), (x, y, z))
+        return [_root(exact(r * r) - lean * lean * exact(share2))]
+
+    (drop,) = compiler.unknowns(1, read, length=True)
+    lean = dot(minus(compiler.place(centre), compiler.place(inner)), up)
+    if isinstance(lean, Polynomial):
+        compiler.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
+    compiler.positive.append(drop)
+    compiler.row(name, dot(compiler.place(centre), up) - drop - compiler.number())
+    high = dot(compiler.table[centre], up)
+
+    def drawn() -> arb:
+        return as_ball(high) - as_ball(r * r - m * m * share2).sqrt()
+
+    def numbers(value: Jet) -> list[Jet]:
+        return [value * as_ball(1 / compiler.unit) + drawn()]
+
+    return Drive(True, numbers, lambda: [drawn()], lambda w: (w[0] - drawn()) * as_ball(compiler.unit))
+
+
+def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    one, two = spec["distance"]
+    apart = minus(compiler.place(one), compiler.place(two))
+    compiler.row(name, dot(apart, apart) - compiler.number())
+    drawn = minus(compiler.table[one], compiler.table[two])
+    d2 = dot(drawn, drawn)
+
+    def numbers(value: Jet) -> list[Jet]:
+        local = value * as_ball(1 / compiler.unit)
+        return [local * local]
+
+    return Drive(True, numbers, lambda: [as_ball(d2)], lambda w: w[0].sqrt() * as_ball(compiler.unit))
+
+
+def _root(number: Scalar) -> Scalar:
+    """The root, of any kind of number that has one."""
+    if isinstance(number, float | Fraction | int):
+        return sqrt(number)
+    return np.sqrt(number) if isinstance(number, np.ndarray) else number.sqrt()
+
+
+KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {
+    "angle": _angle,
+    "travel": _travel,
+    "height": _height,
+    "contact": _contact,
+    "distance": _distance,
+}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from validate.reference.vectors import Scalar
 
 
@@ -48,7 +50,7 @@ class Dual:
 
     def sqrt(self) -> Dual:
         """The root of a positive number."""
-        root = self.value.sqrt()
+        root = np.sqrt(self.value) if isinstance(self.value, np.ndarray) else self.value.sqrt()
         return Dual(root, self.slope / (2 * root))
 
     __radd__ = __add__

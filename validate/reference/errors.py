@@ -5,7 +5,10 @@ No function of this package returns a number that it could not prove: it raises 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from flint import arb
+from mpmath import mpf
 
 
 class NoReferenceError(Exception):
@@ -27,20 +30,24 @@ class BadInputError(NoReferenceError):
 
 
 class InfeasibleError(NoReferenceError):
-    """The inputs ask for a pose that the links cannot reach, and that is proven.
+    """The assembly of the drawing does not come to these inputs: the way there meets a fold, proven.
+
+    There is no pose beyond a fold on its branch. From the drawing the straight way is tried, and the ways
+    that take one input after the other; from one instant of a motion to the next only the straight one.
 
     Attributes:
-        closure: "arm" (the lower ball joint), "tie_rod" (its outer end), or what the suspension's closed form
-            names (see its `branches`).
-        gap: how far a link of it is too short, mm.
+        way: which way it is.
+        share: how much of it is left behind at the fold, 0 to 1.
+        inputs: at the fold, rad or mm, without those that move the whole car.
     """
 
-    def __init__(self, closure: str, gap: float) -> None:
-        self.closure, self.gap = closure, gap
-        remedy = (
-            "less rack travel or arm angle" if closure == "tie_rod" else "an arm angle nearer the design's"
+    def __init__(self, way: str, share: float, inputs: Mapping[str, mpf]) -> None:
+        self.way, self.share, self.inputs = way, share, inputs
+        there = ", ".join(f"{name} = {float(value):.9g}" for name, value in inputs.items())
+        super().__init__(
+            f"{way} turns back at a fold after {share:.9g} of it (needed 1), at {there}: beyond there is no "
+            "pose of this assembly; ask for inputs nearer those of the drawing"
         )
-        super().__init__(f"the {closure} closure misses by {gap:.6g} mm (limit 0); try {remedy}")
 
 
 class AmbiguousAssemblyError(NoReferenceError):
@@ -84,6 +91,21 @@ class SingularPoseError(NoReferenceError):
     def __init__(self, digits: int, reason: NotDecidedError) -> None:
         self.digits, self.reason = digits, reason
         super().__init__(
-            f"no certificate with {digits} digits ({reason}); the pose is at a dead point or a toggle, or the"
-            " guess leads to one: move an input, or give a guess nearer the wanted assembly"
+            f"no certificate with {digits} digits ({reason}); the pose, or one on the way to it, is at a dead"
+            " point or a toggle: move an input"
+        )
+
+
+class TooManyStepsError(NoReferenceError):
+    """A way is given up: its proven steps are too short for the time that a reference may take.
+
+    Attributes:
+        way: in words. share: how much of it was done, 0 to 1. steps: that it took.
+    """
+
+    def __init__(self, way: str, share: float, steps: int) -> None:
+        self.way, self.share, self.steps = way, share, steps
+        super().__init__(
+            f"{way} is given up after {steps} proven steps and {share:.3g} of it (needed 1): nothing is said "
+            "of the pose; ask for inputs nearer those of the drawing"
         )

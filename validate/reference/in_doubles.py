@@ -1,6 +1,6 @@
 r"""The equations at many instants at once, in doubles: poses that are known, their rates, and small changes.
 
-One text of the equations serves every kind of number (`linkage`): here arrays over the instants, (N,), and
+One text of the equations serves every kind of number (`equations`): here arrays over the instants, (N,), and
 duals of them whose slopes are (directions, N). From C(y, t) = 0 follow y' and y'', and by a parameter that
 the equations depend on, order by order, what it makes of y, y' and y'': each solves an equation with the one
 matrix C', and what stands on its right is C itself, evaluated with duals.
@@ -9,36 +9,29 @@ matrix C', and what stands on its right is C itself, evaluated with duals.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import sqrt
-from typing import Self
+from functools import lru_cache
 
 import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
-from validate.reference.design import HEAVE, Design
+from validate.reference.chassis import ChassisMotion
+from validate.reference.design import Design, Known
 from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.equations import Equations, equations_in
 from validate.reference.jet import Jet
-from validate.reference.linkage import Known
-from validate.reference.vectors import Scalar, Vector, plus
+from validate.reference.kinematics import with_rates
+from validate.reference.vectors import Scalar, Vector, each
 
 Array = NDArray[np.float64]
 
 ORDERS = 3  # a number, its rate and its acceleration
 
 
-class Constant(float):
-    """A number that the equations take the root of, alone or after a quotient."""
-
-    def sqrt(self) -> float:
-        """Its root."""
-        return sqrt(self)
-
-    def __truediv__(self, other: float) -> Self:
-        return type(self)(float(self) / other)
-
-    def __rtruediv__(self, other: float) -> Self:
-        return type(self)(other / float(self))
+@lru_cache(maxsize=64)
+def equations_in_doubles(design: Design) -> Equations:
+    """The equations with their coefficients rounded to doubles."""
+    return equations_in(design.mechanism, design.chosen, lambda numbers: float(numbers[0]))
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:
@@ -48,50 +41,39 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
         laws: of each input that does not rest at zero, value, rate and acceleration, (N, 3); rad or mm.
         count: N.
     """
-    linkage = design.linkage
     still = np.zeros((count, ORDERS))
-    driven = {}
-    for name, drive in linkage.inputs.items():
+    numbers: list[Jet] = []
+    for name, drive in design.mechanism.drives.items():
         found = [
-            drive.driven(Jet(*(arb(x) for x in law)), design.squared_length, design.unit)
+            [floats_of_jet(jet) for jet in drive.numbers(Jet(*(arb(x) for x in law)))]
             for law in laws.get(name, still).tolist()
         ]
-        driven[name] = Jet(*np.array([floats_of_jet(jet) for jet in found]).reshape(-1, ORDERS).T)
-    up, right = floats_of(design.up), floats_of(design.right)
-    return Known(
-        linkage=linkage,
-        chassis={n: plus(_still(design.table[n], count), lift(design, laws)) for n in linkage.chassis},
-        up=up,
-        right=right,
-        squared_length={link: Constant(float(x)) for link, x in design.squared_length.items()},
-        driven=driven,
-        knuckle={name: floats_of(shape) for name, shape in design.knuckle.items()},
-    )
+        numbers += [Jet(*one) for one in np.array(found).transpose(1, 2, 0)]
+    driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
+    chassis = ChassisMotion.of(design, driven, float)
+    return Known(design.mechanism, equations_in_doubles(design), numbers, chassis)
 
 
-def lift(design: Design, laws: Mapping[str, Array]) -> Vector:
-    """What heave moves the chassis by, jets of arrays; local."""
-    if HEAVE not in laws:
-        return 0.0, 0.0, 0.0
-    rise, up = Jet(*(laws[HEAVE] / float(design.unit)).T), floats_of(design.up)
-    return rise * up[0], rise * up[1], rise * up[2]
-
-
-def local_places(design: Design, places: Mapping[str, Array]) -> dict[str, Vector]:
-    """Points, (N, 3), mm, in the design's coordinates."""
+def local_places(design: Design, places: Mapping[str, Array], known: Known) -> dict[str, Vector]:
+    """Points, (N, 3), mm, in the design's coordinates relative to the chassis."""
     origin, unit = np.array([float(x) for x in design.origin]), float(design.unit)
     local = {}
     for name in design.names:
         x, y, z = ((places[name] - origin) / unit).T
-        local[name] = (x, y, z)
+        local[name] = known.chassis.taken_back((x, y, z))
     return local
 
 
-def jacobian_of(values: Sequence[Scalar], known: Known, part: Callable[[Scalar], Scalar] = value_of) -> Array:
+def jacobian_of(
+    values: Sequence[Scalar],
+    numbers: Sequence[Scalar],
+    equations: Equations,
+    part: Callable[[Scalar], Scalar] = value_of,
+) -> Array:
     """The Jacobian or its slope, (..., N, size, size)."""
-    entries = [(i, j, part(entry)) for i, j, entry in known.linkage.jacobian(values, known)]
+    entries = [(i, j, part(entry)) for i, j, entry in equations.jacobian(values, numbers)]
     shape = np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries))
-    matrix = np.zeros((*shape, known.linkage.size, known.linkage.size))
+    matrix = np.zeros((*shape, equations.size, equations.size))
     for i, j, entry in entries:
         matrix[..., i, j] = entry
     return matrix
@@ -107,24 +89,19 @@ def inverse_of(matrix: Array) -> Array:
 
 def newton_step(values: Array, inverse: Array, known: Known) -> Array:
     """What Newton's method takes off unknowns, (size, N)."""
-    rows = known.linkage.residual(list(values), known)
+    rows = known.residual(list(values))
     stacked = np.array([np.broadcast_to(row, values.shape[1:]) for row in rows])
     return np.asarray(np.einsum("nij,jn->in", inverse, stacked))
 
 
 def unknown_jets_of(values: Sequence[Array], inverse: Array, known: Known) -> list[Jet]:
     """The unknowns with their rates, as in `kinematics.unknown_jets`."""
-    zero = np.zeros_like(values[0])
 
-    def solved(rows: Sequence[Scalar]) -> Array:
-        stacked = np.array([np.broadcast_to(row, zero.shape) for row in rows])
-        return np.asarray(-np.einsum("nij,jn->in", inverse, stacked))
+    def solved(rows: Sequence[Scalar]) -> list[Array]:
+        stacked = np.array([np.broadcast_to(row, values[0].shape) for row in rows])
+        return list(-np.einsum("nij,jn->in", inverse, stacked))
 
-    still = [Jet(value, zero, zero) for value in values]
-    velocity = solved([row.rate for row in known.linkage.residual(still, known)])
-    moving = [Jet(jet.value, rate, zero) for jet, rate in zip(still, velocity, strict=True)]
-    bend = solved([row.acceleration for row in known.linkage.residual(moving, known)])
-    return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
+    return with_rates(values, known, solved)
 
 
 def changes_of(
@@ -137,13 +114,13 @@ def changes_of(
     Args:
         first: dy, (size, directions, N), where it is known already.
     """
-    size, count = known.linkage.size, len(inverse)
+    size, count = known.equations.size, len(inverse)
     found = np.zeros((ORDERS, size, directions, count))
     start = 0
     if first is not None:
         found[0], start = first, 1
     for d in range(start, ORDERS):
-        rows = known.linkage.residual(with_slopes(jets, found), known)
+        rows = known.residual(with_slopes(jets, found))
         moved = np.array([np.broadcast_to(slope_of(part_of(row, d)), (directions, count)) for row in rows])
         found[d] = -np.einsum("nij,jkn->ikn", inverse, moved)
     return found
@@ -161,8 +138,7 @@ def part_of(jet: Jet, order: int) -> Scalar:
 
 def order_of(point: Vector, order: int) -> Vector:
     """The same of a vector of jets."""
-    x, y, z = (part_of(component, order) for component in point)
-    return x, y, z
+    return each(lambda component: part_of(component, order), point)
 
 
 def values_of(vector: Vector, count: int) -> Array:
@@ -172,15 +148,9 @@ def values_of(vector: Vector, count: int) -> Array:
 
 def floats_of(vector: Vector) -> Vector:
     """Three fractions as doubles."""
-    x, y, z = (float(x) for x in vector)
-    return x, y, z
+    return each(float, vector)
 
 
 def floats_of_jet(jet: Jet) -> tuple[float, float, float]:
     """A jet of balls as doubles."""
     return float(jet.value), float(jet.rate), float(jet.acceleration)
-
-
-def _still(vector: Vector, count: int) -> Vector:
-    x, y, z = (Jet(np.full(count, float(x)), np.zeros(count), np.zeros(count)) for x in vector)
-    return x, y, z

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import arb
 from mpmath import mpf
 
-from validate.reference.candidates import choices_of
-from validate.reference.certificate import Certificate, certify, refine
-from validate.reference.design import Design, ball_vector, values_only
+from validate.reference.certificate import Certificate, certify
+from validate.reference.design import Design, Known, ball_vector, values_only
 from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.effects.registry import EFFECTS, effects_of
 from validate.reference.errors import BadInputError, NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
+from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, unknown_jets
-from validate.reference.linkage import Choices, Known
-from validate.reference.vectors import Vector, plus, times
+from validate.reference.krawczyk import newton
+from validate.reference.vectors import Vector, each, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
+Expected = Callable[[Sequence[arb]], bool]
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,15 @@ class Instant:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
-        angular_velocity: of the knuckle and of each arm (see `Linkage.arms`), rad/s.
+        angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
-        effects: by name, see `effects.registry`; one that is undefined (0/0, or at 180 deg) is left out.
+        effects: by name, see `effects.registry`; one that is undefined (0/0, or at 180 deg) is left out,
+            and one whose role the mechanism lacks.
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
-        choices: which of the possible assemblies this is.
+        orientation: sign of the Jacobian's determinant, which no regular motion changes: assemblies that meet
+            at a fold differ in it.
         digits: how many digits it took.
     """
 
@@ -53,7 +56,7 @@ class Instant:
     radius: mpf
     error_bound: Mapping[str, mpf]
     condition: float
-    choices: Choices
+    orientation: int
     digits: int
 
     def effect(self, name: str) -> mpf:
@@ -67,8 +70,8 @@ class Instant:
             raise BadInputError("effect", name, f"one of {', '.join(EFFECTS)}")
         if name not in self.effects:
             raise NoReferenceError(
-                f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg; "
-                "use the positions instead"
+                f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg, or the "
+                "mechanism does not say the axis that it needs; use the positions instead"
             )
         return self.effects[name]
 
@@ -82,7 +85,7 @@ def prove_instant(
     design: Design,
     known: Known,
     start: Sequence[arb],
-    expected: Choices | None,
+    expected: Expected,
     digits: int,
     working: int,
 ) -> Instant:
@@ -91,7 +94,7 @@ def prove_instant(
     Args:
         known: with rates, local.
         start: the unknowns to start from, local.
-        expected: the assembly that must come out, or None for whichever is there.
+        expected: holds of the enclosure of the assembly that must come out.
         digits: what every returned number must have, relative to the greatest of its kind.
         working: digits of the arithmetic (25 more are carried), at least `digits`.
     Raises:
@@ -99,32 +102,31 @@ def prove_instant(
     """
     still = values_only(known)
     certificate = prove_pose(still, start, expected, digits, working)
+    _require_others(design, certificate, still, digits)
     solved = unknown_jets(certificate.enclosure, known)
-    points = known.linkage.points_of(solved, known)
+    points = known.points_of(solved)
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    named = {name: points[name] for name in design.names}
-    position = {name: plus(origin, times(_part(p, "value"), unit)) for name, p in named.items()}
-    velocity = {name: times(_part(p, "rate"), unit) for name, p in named.items()}
-    acceleration = {name: times(_part(p, "acceleration"), unit) for name, p in named.items()}
-    turns = body_turns(solved, points, known)
-    omega, alpha = ({body: turn[i] for body, turn in turns.items()} for i in (0, 1))
+    turns = body_turns(solved, known)
 
-    fastest, hardest = _greatest(velocity.values()), _greatest(acceleration.values())
+    def local(order: str) -> dict[str, Vector]:
+        return {name: times(part_of(points[name], order), unit) for name in design.names}
+
+    vectors = {
+        "position": {name: plus(origin, place) for name, place in local("value").items()},
+        "velocity": local("rate"),
+        "acceleration": local("acceleration"),
+        "angular_velocity": {body: turn[0] for body, turn in turns.items()},
+        "angular_acceleration": {body: turn[1] for body, turn in turns.items()},
+    }
+    _, fastest, hardest, spin, twist = (_greatest(named.values()) for named in vectors.values())
     push = hardest + fastest * fastest / unit  # centripetal parts may cancel: their size counts
     scales = {
         "position": unit,
         "velocity": fastest,
         "acceleration": push,
-        "angular_velocity": _greatest(omega.values()) + fastest / unit,
-        "angular_acceleration": _greatest(alpha.values()) + push / unit,
-    }
-    vectors = {
-        "position": position,
-        "velocity": velocity,
-        "acceleration": acceleration,
-        "angular_velocity": omega,
-        "angular_acceleration": alpha,
+        "angular_velocity": spin + fastest / unit,
+        "angular_acceleration": twist + push / unit,
     }
     if not all(x.is_finite() for balls in vectors.values() for vector in balls.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
@@ -137,13 +139,14 @@ def prove_instant(
     # The proof speaks of a box about the centre, the answer is the middle of the enclosure. Half the
     # box about the answer lies inside the whole box about the centre, so the proof holds there too;
     # a shift of at most a quarter leaves room for the rounding of the radius itself.
-    radius = certificate.radius * design.unit / 2
+    # A turned chassis turns the box: in the maximum norm its room is smaller by less than two.
+    radius = certificate.radius * design.unit / (4 if known.chassis.turns else 2)
     shift = certificate.shift * unit + bounds["position"]
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
-    axes = Axes.of({name: _part(p, "value") for name, p in points.items()}, still, design.outboard)
-    balls = {name: effect.value(axes) for name, effect in EFFECTS.items()}
+    axes = Axes.of({name: part_of(p, "value") for name, p in points.items()}, design, ball_vector)
+    balls = {name: effect.value(axes) for name, effect in effects_of(axes).items()}
     effects = {name: ball for name, ball in balls.items() if ball.rad() < as_ball(Fraction(1, 10**digits))}
     bounds["effects"] = max((ball.rad() for ball in effects.values()), default=arb(0))
     return Instant(
@@ -152,13 +155,13 @@ def prove_instant(
         radius=mpf_from_fraction(radius, working),
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
         condition=certificate.condition,
-        choices=choices_of({n: _part(p, "value") for n, p in points.items()}, still),
+        orientation=_orientation(certificate, still),
         digits=working,
     )
 
 
 def prove_pose(
-    known: Known, start: Sequence[arb], expected: Choices | None, digits: int, working: int
+    known: Known, start: Sequence[arb], expected: Expected, digits: int, working: int
 ) -> Certificate:
     """Refine and prove the position at the present precision; `known` without rates, else as above.
 
@@ -167,16 +170,39 @@ def prove_pose(
     """
     # Extra digits go half into a smaller box, which keeps a close second assembly out, and half into
     # the arithmetic, which a nearly singular Jacobian wears down.
-    certificate = certify(refine(start, known), known, Fraction(1, 10 ** ((digits + working) // 2)))
-    points = known.linkage.points_of(certificate.enclosure, known)
-    choices = choices_of(points, known)
-    if expected is not None and choices != expected:
-        raise NotDecidedError("the choices of the assembly found", str(choices), str(expected))
+    certificate = certify(newton(known.system, start)[0], known, Fraction(1, 10 ** ((digits + working) // 2)))
+    if not known.handed(certificate.enclosure):
+        raise NotDecidedError("the handedness of the zero found", "not positive", "> 0")
+    if not expected(certificate.enclosure):
+        raise NotDecidedError("the assembly found", "not proven to be the one followed", "the same")
     return certificate
 
 
-def _part(vector: Vector, name: str) -> Vector:
-    return getattr(vector[0], name), getattr(vector[1], name), getattr(vector[2], name)
+def _require_others(design: Design, certificate: Certificate, known: Known, digits: int) -> None:
+    """Pass if the rows that are not solved, because the others say them in the drawing, hold here too.
+
+    That they hold exactly cannot be proven by balls, only that they do to the digits asked for.
+
+    Raises:
+        NoReferenceError: one does not hold.
+    """
+    mechanism, values = design.mechanism, [*certificate.enclosure, *known.numbers]
+    for i in set(range(len(mechanism.rows))) - set(design.chosen):
+        missed = mechanism.rows[i].at(values, as_ball)
+        if not missed.contains(0):
+            raise NoReferenceError(
+                f"the row {mechanism.names[i]!r}, which depends on the others in the drawing, is violated "
+                f"here by {missed.str(6)}, needed 0; the mechanism is locked, or not drawn exactly enough"
+            )
+        if not missed.abs_upper() < as_ball(Fraction(1, 10**digits)):
+            raise NotDecidedError(f"the row {mechanism.names[i]!r}", missed, f"0 to {digits} digits")
+
+
+def _orientation(certificate: Certificate, known: Known) -> int:
+    determinant = known.matrix(certificate.enclosure).det()
+    if not (determinant > 0 or determinant < 0):
+        raise NotDecidedError("the sign of the Jacobian's determinant", determinant, "not 0")
+    return 1 if determinant > 0 else -1
 
 
 def _greatest(vectors: Iterable[Vector]) -> arb:
@@ -191,4 +217,4 @@ def _greatest_radius(vectors: Iterable[Vector]) -> arb:
 
 
 def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:
-    return {name: (centre_of(x), centre_of(y), centre_of(z)) for name, (x, y, z) in balls.items()}
+    return {name: each(centre_of, ball) for name, ball in balls.items()}

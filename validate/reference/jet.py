@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from validate.reference.vectors import Scalar
+import numpy as np
+
+from validate.reference.vectors import Scalar, Vector, each
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,26 @@ class Jet:
     def __rsub__(self, other: Scalar) -> Jet:
         return self.__neg__().__add__(other)
 
+    def sin_cos(self) -> tuple[Jet, Jet]:
+        """The sine and the cosine: sin' = cos x', sin'' = cos x'' - sin x'^2, and so on."""
+        sine, cosine = _sin_cos(self.value)
+        square = self.rate * self.rate
+        return (
+            Jet(sine, cosine * self.rate, cosine * self.acceleration - sine * square),
+            Jet(cosine, -sine * self.rate, -(sine * self.acceleration) - cosine * square),
+        )
+
     __radd__ = __add__
     __rmul__ = __mul__
+
+
+def part_of(vector: Vector, name: str) -> Vector:
+    """`value`, `rate` or `acceleration` of a vector of jets."""
+    return each(lambda jet: getattr(jet, name), vector)
+
+
+def _sin_cos(number: Scalar) -> tuple[Scalar, Scalar]:
+    return (np.sin(number), np.cos(number)) if isinstance(number, np.ndarray) else number.sin_cos()
 
 
 def _jet(number: Scalar) -> Jet:

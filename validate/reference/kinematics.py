@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 from flint import arb, arb_mat
 
-from validate.reference.certificate import jacobian_matrix
-from validate.reference.design import values_only
+from validate.reference.design import Known, values_only
 from validate.reference.errors import NotDecidedError
-from validate.reference.jet import Jet
-from validate.reference.linkage import Known
-from validate.reference.vectors import Vector, cross, dot, minus, plus, times
+from validate.reference.jet import Jet, part_of
+from validate.reference.krawczyk import column
+from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
 
 
 def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
@@ -23,13 +22,20 @@ def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
-    residual, inverse = known.linkage.residual, inverse_jacobian(enclosure, values_only(known))
-    zero = arb(0)
-    still = [Jet(value, zero, zero) for value in enclosure]
-    velocity = inverse * _right_hand_side([row.rate for row in residual(still, known)])
-    moving = [Jet(jet.value, velocity[i, 0], zero) for i, jet in enumerate(still)]
-    acceleration = inverse * _right_hand_side([row.acceleration for row in residual(moving, known)])
-    return [Jet(jet.value, jet.rate, acceleration[i, 0]) for i, jet in enumerate(moving)]
+    inverse = inverse_jacobian(enclosure, values_only(known))
+    return with_rates(enclosure, known, lambda rows: (-(inverse * column(rows))).entries())
+
+
+def with_rates(
+    values: Sequence[Scalar], known: Known, solved: Callable[[Sequence[Scalar]], Sequence[Scalar]]
+) -> list[Jet]:
+    """The same of any kind of number, where `solved` gives -C'^-1 times a column."""
+    zero = values[0] * 0
+    still = [Jet(value, zero, zero) for value in values]
+    velocity = solved([row.rate for row in known.residual(still)])
+    moving = [Jet(value, rate, zero) for value, rate in zip(values, velocity, strict=True)]
+    bend = solved([row.acceleration for row in known.residual(moving)])
+    return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
 
 
 def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
@@ -39,19 +45,14 @@ def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
     try:
-        return jacobian_matrix(enclosure, known).inv()
+        return known.matrix(enclosure).inv()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian for the rates", "0", "not 0") from None
 
 
-def body_turns(
-    solved: Sequence[Jet], points: Mapping[str, Vector], known: Known
-) -> dict[str, tuple[Vector, Vector]]:
-    """Angular velocity and acceleration of the knuckle and the arms, rad/s, rad/s^2."""
-    turns = {"knuckle": body_rates(*known.linkage.knuckle_frame(solved, known))}
-    for body, (a, b, c) in known.linkage.arms.items():
-        turns[body] = body_rates(minus(points[b], points[a]), minus(points[c], points[a]))
-    return turns
+def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, tuple[Vector, Vector]]:
+    """Angular velocity and acceleration of every moving body, rad/s, rad/s^2."""
+    return {name: body_rates(*frame) for name, frame in known.frames_of(solved).items()}
 
 
 def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
@@ -67,7 +68,7 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
         omega, rad/s, and alpha, rad/s^2, as vectors of balls.
     """
     frame = (a, b, cross(a, b))
-    e = [_part(vector, "value") for vector in frame]
+    e = [part_of(vector, "value") for vector in frame]
     n2 = dot(e[2], e[2])
     reciprocal = [times(g, 1 / n2) for g in (cross(e[1], e[2]), cross(e[2], e[0]), e[2])]
 
@@ -76,16 +77,8 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
         x, y, z = plus(plus(parts[0], parts[1]), parts[2])
         return x / 2, y / 2, z / 2
 
-    omega = half_curl([_part(vector, "rate") for vector in frame])
+    omega = half_curl([part_of(vector, "rate") for vector in frame])
     centripetal = [cross(omega, cross(omega, vector)) for vector in e]
-    second_rates = [_part(vector, "acceleration") for vector in frame]
+    second_rates = [part_of(vector, "acceleration") for vector in frame]
     alpha = half_curl([minus(d, c) for d, c in zip(second_rates, centripetal, strict=True)])
     return omega, alpha
-
-
-def _right_hand_side(rows: Sequence[arb]) -> arb_mat:
-    return arb_mat(len(rows), 1, [-row for row in rows])
-
-
-def _part(vector: Vector, name: str) -> Vector:
-    return getattr(vector[0], name), getattr(vector[1], name), getattr(vector[2], name)

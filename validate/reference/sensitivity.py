@@ -14,20 +14,18 @@ from functools import partial
 from flint import arb, arb_mat
 from mpmath import mpf
 
-from validate.reference.candidates import CLEAR_SIGN, choices_of_table
-from validate.reference.design import Design, Driven, balls, values_only
+from validate.reference.design import Design, Driven, Known, ball_vector, balls, values_only
 from validate.reference.dual import Dual, slope_of
 from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.effects.registry import effects_of
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball, centre_of
 from validate.reference.instant import Triple, prove_pose
-from validate.reference.jet import Jet
+from validate.reference.jet import Jet, part_of
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
-from validate.reference.linkage import Choices, Known
-from validate.reference.solve import Points, with_enough_digits
-from validate.reference.suspensions import CLOSURE, SUSPENSION
-from validate.reference.vectors import Vector, times
+from validate.reference.route import CLEAR, Assembly, reached
+from validate.reference.solve import with_enough_digits
+from validate.reference.vectors import Vector, each, times
 
 ORDERS = ("value", "rate", "acceleration")
 
@@ -38,7 +36,7 @@ class Sensitivity:
 
     Attributes:
         position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
-        angular_velocity, angular_acceleration: of the knuckle and of each arm.
+        angular_velocity, angular_acceleration: of every moving body.
         effects: by name, see `effects.registry`; one that is undefined (0/0) is left out.
         error_bound: proven bound on the error of each quantity above.
     """
@@ -53,15 +51,10 @@ class Sensitivity:
 
 
 def sensitivities(
-    points: Points,
+    design: Design,
     inputs: Mapping[str, Sequence[object]],
-    up: Sequence[object] = (0, 0, 1),
-    right: Sequence[object] = (0, 1, 0),
-    side: str = "left",
     digits: int = 60,
-    closure: str = CLOSURE,
-    clearness: float = CLEAR_SIGN,
-    suspension: str = SUSPENSION,
+    clearness: float = CLEAR,
 ) -> dict[tuple[str, str], Sensitivity]:
     """The derivatives of an instant by the value, rate and acceleration of each input.
 
@@ -69,28 +62,23 @@ def sensitivities(
     e_i times these, to first order.
 
     Args:
-        points: as for `solve_reference`, mm; also inputs, up, right, side, digits, closure, clearness,
-            suspension.
+        inputs: as for `solve_reference`; also digits, clearness.
     Returns:
         By (input, "value" | "rate" | "acceleration").
     Raises:
         BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
-    design = Design.from_points(points, up, right, side, closure, suspension)
     driven = design.driven(inputs)
-    choices = choices_of_table(design.table, design.up, design.linkage, clearness)
-    return with_enough_digits(partial(_attempt, design, driven, choices, digits), digits)
+    here = reached(design, clearness, driven)
+    return with_enough_digits(partial(_attempt, design, driven, here, digits), digits)
 
 
 def _attempt(
-    design: Design, driven: Driven, choices: Choices, digits: int, working: int
+    design: Design, driven: Driven, here: Assembly, digits: int, working: int
 ) -> dict[tuple[str, str], Sensitivity]:
     known = design.known(driven)
     still = values_only(known)
-    chosen = design.linkage.candidate(still, choices)
-    chosen.require_feasible(float(design.unit))
-    start = design.linkage.unknown_of(chosen.points, still)
-    enclosure = prove_pose(still, start, choices, digits, working).enclosure
+    enclosure = prove_pose(still, here.pose.unknown, here.pose.holds, digits, working).enclosure
     inverse, jets = inverse_jacobian(enclosure, still), unknown_jets(enclosure, known)
     return {
         (name, order): _by(design, _changed(design, driven, name, order), jets, inverse)
@@ -112,24 +100,24 @@ def _changed(design: Design, driven: Driven, name: str, order: str) -> Known:
 def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> Sensitivity:
     slopes: list[list[arb]] = [[arb(0)] * 3 for _ in jets]
     for order, name in enumerate(ORDERS):
-        rows = known.linkage.residual(_with_slopes(jets, slopes), known)
+        rows = known.residual(_with_slopes(jets, slopes))
         step = inverse * arb_mat(len(rows), 1, [-slope_of(getattr(row, name)) for row in rows])
         for i, slope in enumerate(slopes):
             slope[order] = step[i, 0]
     solved = _with_slopes(jets, slopes)
-    points, unit = known.linkage.points_of(solved, known), as_ball(design.unit)
-    turns = body_turns(solved, points, known)
+    points, unit = known.points_of(solved), as_ball(design.unit)
+    turns = body_turns(solved, known)
     vectors = {
-        quantity: {name: times(_slope(points[name], order), unit) for name in design.names}
+        quantity: {name: times(_slope_of(part_of(points[name], order)), unit) for name in design.names}
         for quantity, order in zip(("position", "velocity", "acceleration"), ORDERS, strict=True)
     }
     for i, quantity in enumerate(("angular_velocity", "angular_acceleration")):
         vectors[quantity] = {body: _slope_of(turn[i]) for body, turn in turns.items()}
     if not all(x.is_finite() for named in vectors.values() for vector in named.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
-    places = {name: _part(p, "value") for name, p in points.items()}
-    axes = Axes.of(places, known, design.outboard)
-    slopes_of_effects = {name: effect.slope(axes) for name, effect in EFFECTS.items()}
+    places = {name: part_of(p, "value") for name, p in points.items()}
+    axes = Axes.of(places, design, ball_vector)
+    slopes_of_effects = {name: effect.slope(axes) for name, effect in effects_of(axes).items()}
     effects = {name: slope for name, slope in slopes_of_effects.items() if slope.is_finite()}
     bounds = {
         quantity: max(x.rad() for vector in named.values() for x in vector)
@@ -138,7 +126,7 @@ def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> 
     bounds["effects"] = max((slope.rad() for slope in effects.values()), default=arb(0))
     return Sensitivity(
         **{
-            quantity: {name: (centre_of(x), centre_of(y), centre_of(z)) for name, (x, y, z) in named.items()}
+            quantity: {name: each(centre_of, vector) for name, vector in named.items()}
             for quantity, named in vectors.items()
         },
         effects={name: centre_of(slope) for name, slope in effects.items()},
@@ -153,14 +141,5 @@ def _with_slopes(jets: Sequence[Jet], slopes: Sequence[Sequence[arb]]) -> list[J
     ]
 
 
-def _slope(point: Vector, order: str) -> Vector:
-    return _slope_of(_part(point, order))
-
-
-def _part(point: Vector, order: str) -> Vector:
-    return getattr(point[0], order), getattr(point[1], order), getattr(point[2], order)
-
-
 def _slope_of(vector: Vector) -> Vector:
-    x, y, z = (arb(slope_of(number)) for number in vector)
-    return x, y, z
+    return each(lambda number: arb(slope_of(number)), vector)

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from fractions import Fraction
+from math import frexp
 from typing import Any
 
 # A scalar is anything with + - *: a ball (arb), a Fraction, a Jet, a float or a numpy array. One text
 # of the equations serves them all.
 Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
+
+
+def each(change: Callable[[Scalar], Scalar], a: Vector) -> Vector:
+    """A change of each component."""
+    return change(a[0]), change(a[1]), change(a[2])
 
 
 def plus(a: Vector, b: Vector) -> Vector:
@@ -41,3 +49,17 @@ def squares(*vectors: Vector) -> Scalar:
     for vector in vectors[1:]:
         product = product * dot(vector, vector)
     return product
+
+
+def across(axis: Vector) -> tuple[Vector, Vector]:
+    """Two vectors square to a line and to each other, of fractions."""
+    # By rounded numbers: a drawing that is moved by a trifle takes the same vectors, moved by as little.
+    least = min(range(3), key=lambda i: round(abs(float(axis[i])), 12))
+    u = cross(axis, (Fraction(least == 0), Fraction(least == 1), Fraction(least == 2)))
+    return near_one(u) or u, near_one(cross(axis, u)) or u
+
+
+def near_one(vector: Vector) -> Vector | None:
+    """The vector of fractions times a power of two, of a length near one; None if it has none."""
+    longest = max(abs(float(x)) for x in vector)
+    return times(vector, Fraction(2) ** -frexp(longest)[1]) if longest else None

@@ -1,1 +1,1 @@
-"""A relative-coordinate model of suspensions in Pinocchio: a tree of joints with loop closures."""
+"""A relative-coordinate model of mechanisms in Pinocchio: a tree of joints with loop closures."""

@@ -19,25 +19,22 @@ above FOLD the pose cannot be told from that of the other side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.relative.follow import Poses, at_places
-from validate.relative.linkage import Line
+from validate.relative.follow import BLOCK, Poses, at_places, drive_rates
 from validate.relative.rates import (
     Rates,
-    as_rows,
     carried,
     chain_sum,
-    closure_gaps,
-    cross,
-    point_velocities,
     screw_product,
-    screws_by_joint,
+    turned,
 )
-from validate.relative.tree import TURNED, Places, Tree, U
+from validate.relative.tree import TURNED, Places, Rows, Tree, U, product_rates
+from validate.spanning_tree.cut import Place
 
 Array = NDArray[np.float64]
 
@@ -45,8 +42,6 @@ Array = NDArray[np.float64]
 # shared by its numbers and not all independent.
 DEVIATIONS = 5.0
 FOLD = 0.125
-# Poses whose folds are looked at together: what is made on the way takes some 10 kB for each.
-BLOCK = 2**10
 
 
 @dataclass(frozen=True)
@@ -54,17 +49,15 @@ class Motion:
     """How bodies move in one or more directions; the axis of the directions, K, follows that of the poses.
 
     Attributes:
-        twists: of the bodies and the chassis with time, (N, 1, bodies + 1, 6).
-        accelerations: likewise.
-        pose: twists of the bodies with the direction, (N, K, bodies + 1, 6).
-        twists_by, accelerations_by: derivatives of the twists and accelerations, (N, K, bodies + 1, 6).
+        pose: twists of the bodies with the direction, (N, K, B, 6).
+        twists_by, accelerations_by: derivatives of the twists and accelerations, (N, K, B, 6).
+        matrices: derivatives of the bodies' matrices and of their two rates, (N, K, 12 B) each.
     """
 
-    twists: Array
-    accelerations: Array
     pose: Array
     twists_by: Array
     accelerations_by: Array
+    matrices: tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True)
@@ -73,96 +66,66 @@ class Deviations:
 
     Attributes:
         motion: how everything moves with the rows and, after these, with their first rates.
-        noise: standard deviations of the rows and of their first and second rates, (3, N, size).
+        noise: standard deviations of the rows and of their first and second rates, (N, size) each.
         residual: what is left of the rows, (N, size).
         widened: 1 / (1 - 2 h), (N,). fold: h, (N,).
         condition: number of the Jacobian, (N,).
     """
 
     motion: Motion
-    noise: Array
+    noise: tuple[Array, Array, Array]
     residual: Array
     widened: Array
     fold: Array
     condition: Array
 
 
-def point_derivatives(poses: Poses, motion: Motion, places: Places) -> tuple[Array, Array, Array]:
+def point_derivatives(motion: Motion, places: Places) -> tuple[Array, Array, Array]:
     """Of points' places, velocities and accelerations by the directions, (N, K, P, 3) each."""
-    at, body = at_places(poses, places)[:, None], places.body
-    moved, faster = _first(at, motion.pose, motion.twists, motion.twists_by, body)
-    twist, by = motion.twists[..., body, :], motion.twists_by[..., body, :]
-    second = (
-        carried(motion.accelerations_by[..., body, :], at)
-        + cross(motion.accelerations[..., body, 3:], moved)
-        + cross(by[..., 3:], carried(twist, at))
-        + cross(twist[..., 3:], faster)
-    )
-    return moved, faster, second
+    x, v, a = (places.now(part) for part in motion.matrices)
+    return x, v, a
 
 
-def _first(
-    at: Array, pose: Array, twists: Array, twists_by: Array, body: NDArray[np.int64]
-) -> tuple[Array, Array]:
-    """Derivatives of points' places and velocities by directions, (..., P, 3) each.
+def _changed(
+    rates: Rates, pose: Array, twists_by: Array, accelerations_by: Array | None
+) -> tuple[Array, Array, Array]:
+    """Derivatives of the bodies' matrices and of their rates by directions, (N, K, 12 B) each.
 
     Args:
-        at: places, (..., P, 3). pose, twists, twists_by: as of `Motion`, (..., bodies + 1, 6).
-        body: of each point, (P,).
+        pose, twists_by, accelerations_by: see `Motion`; without the last one, neither is the last result.
     """
-    moved = carried(pose[..., body, :], at)
-    return moved, carried(twists_by[..., body, :], at) + cross(twists[..., body, 3:], moved)
-
-
-def _first_rates(tree: Tree, at: Array, pose: Array, twists: Array, twists_by: Array) -> Array:
-    """Derivatives of the rows' first rates by directions, (..., size).
-
-    Args:
-        at: places of the rows' ends, (..., ends, 3). pose, twists, twists_by: as of `_first`.
-    """
-    body, rods = tree.ends.body, tree.rods
-    moved, faster = _first(at, pose, twists, twists_by, body)
-    place, velocity = closure_gaps(tree, moved)[..., rods, :], closure_gaps(tree, faster)
-    d, d1 = (closure_gaps(tree, x)[..., rods, :] for x in (at, carried(twists[..., body, :], at)))
-    along = (place * d1 + d * velocity[..., rods, :]).sum(-1) / tree.lengths
-    return as_rows(tree, velocity, along, faster[..., 2 * len(tree.linkage.closures) :, :])
-
-
-def _second_rates(tree: Tree, poses: Poses, motion: Motion) -> Array:
-    """Derivatives of the rows' second rates by the directions, (N, K, size)."""
-    at, body, rods = at_places(poses, tree.ends)[:, None], tree.ends.body, tree.rods
-    ends = point_derivatives(poses, motion, tree.ends)
-    place, velocity = (closure_gaps(tree, x)[..., rods, :] for x in ends[:2])
-    apart = closure_gaps(tree, ends[2])
-    twist = motion.twists[..., body, :]
-    fast = carried(twist, at)
-    faster = carried(motion.accelerations[..., body, :], at) + cross(twist[..., 3:], fast)
-    d, d1, d2 = (closure_gaps(tree, x)[..., rods, :] for x in (at, fast, faster))
-    along = (place * d2 + d * apart[..., rods, :] + 2.0 * d1 * velocity).sum(-1) / tree.lengths
-    return as_rows(tree, apart, along, ends[2][..., 2 * len(tree.linkage.closures) :, :])
+    m, m1 = (part[:, None] for part in rates.matrices[:2])
+    twists, accelerations = rates.twists[:, None], rates.accelerations[:, None]
+    moved = carried(pose, m)
+    faster = carried(twists_by, m) + turned(twists, moved)
+    if accelerations_by is None:
+        return moved, faster, faster
+    second = carried(accelerations_by, m) + turned(accelerations, moved) + turned(twists_by, m1)
+    return moved, faster, second + turned(twists, faster)
 
 
 def _fold(tree: Tree, poses: Poses, screws: Array, inverse: Array, size: Array) -> Array:
     """How much the Jacobian changes over the pose's error, in parts of itself, (N,)."""
     found = np.empty(len(screws))
-    at = at_places(poses, tree.ends)
     for low in range(0, len(screws), BLOCK):
         some = slice(low, low + BLOCK)
-        found[some] = _fold_of_block(tree, at[some], screws[some], inverse[some], size[some])
+        found[some] = _fold_of_block(tree, poses.matrices[some], screws[some], inverse[some], size[some])
     return found
 
 
-def _fold_of_block(tree: Tree, at: Array, screws: Array, inverse: Array, size: Array) -> Array:
+def _fold_of_block(tree: Tree, matrices: Array, screws: Array, inverse: Array, size: Array) -> Array:
     # Column k of dJ v is a row's first rate by the pose where coordinate k alone moves at rate one.
-    by_row = np.swapaxes(inverse, 1, 2)
-    moved = chain_sum(tree, screws[:, None] * by_row[..., None])
-    turned = screw_product(moved[:, :, tree.body_of], screws[:, None])
-    # (N, K, size) to (N, coordinates, 1 or K, bodies + 1, 6): a coordinate moves the bodies of its chains.
+    by_row, m = np.swapaxes(inverse, 1, 2), matrices[:, None]
+    pose = chain_sum(tree, screws[:, None] * by_row[..., None])
+    screws_by = screw_product(pose[:, :, tree.body_of], screws[:, None])
+    # (N, K, size) to (N, coordinates, 1 or K, B, 6): a coordinate moves the bodies of its chains.
     chain = tree.chains.T[:, None, :, None]
     twists = screws[:, :, None, None] * chain
-    twists_by = np.swapaxes(turned, 1, 2)[:, :, :, None] * chain
-    changed = _first_rates(tree, at[:, None, None], moved[:, None], twists, twists_by)
-    part = changed @ by_row[:, None]
+    twists_by = np.swapaxes(screws_by, 1, 2)[:, :, :, None] * chain
+    moved = carried(pose, m)[:, None]
+    rates = (m[:, None], carried(twists, m[:, None]))
+    by = (moved, carried(twists_by, m[:, None]) + turned(twists, moved))
+    part = tree.rows.changes(rates, by, 1) @ by_row[:, None]
     return np.asarray(np.sqrt(((part**2).sum(-1) * (size**2)[:, None]).sum((-1, -2))))
 
 
@@ -172,18 +135,32 @@ def deviations(tree: Tree, poses: Poses, rates: Rates, inputs: Array) -> Deviati
     Raises:
         LinAlgError: a Jacobian is singular to rounding.
     """
-    screws = screws_by_joint(poses)
-    inverse = np.asarray(np.linalg.inv(rates.jacobian), dtype=float)
-    motion = _settled(tree, poses, screws, rates, inverse)
-    noise = _noise(tree, poses, screws, rates, inputs)
+    screws = poses.screws
+    inverse = np.asarray(np.linalg.inv(poses.jacobian), dtype=float)
+    motion = _settled(tree, screws, rates, inverse)
+    noise = _noise(tree, tree.rows, poses, screws, rates, inputs)
     residual = poses.residual
     size = DEVIATIONS * noise[0] + np.abs(residual)
     fold = _fold(tree, poses, screws, inverse, size)
     widened = 1.0 / (1.0 - 2.0 * np.minimum(fold, FOLD))
-    return Deviations(motion, noise, residual, widened, fold, np.linalg.cond(rates.jacobian))
+    return Deviations(motion, noise, residual, widened, fold, np.linalg.cond(poses.jacobian))
 
 
-def _settled(tree: Tree, poses: Poses, screws: Array, rates: Rates, inverse: Array) -> Motion:
+def violated(tree: Tree, poses: Poses, rates: Rates, inputs: Array, known: Deviations) -> NDArray[np.bool_]:
+    """Which of the rows that are left out an answer violates, (N, left out).
+
+    A row that depends on others is zero with them, but for what rounding does to it and to them.
+    """
+    rows = tree.left_out
+    found = rows.values(poses.matrices, poses.q, rows.target)
+    x, y = rows.pairs(poses.matrices)
+    dx, dy = rows.pairs(known.motion.matrices[0][:, : tree.size])
+    by = product_rates([dx], [y[:, None]], 0) + product_rates([x[:, None]], [dy], 0)
+    noise = _noise(tree, rows, poses, poses.screws, rates, inputs)[0]
+    return np.asarray(~(np.abs(found) <= _claim(known, by, noise)))
+
+
+def _settled(tree: Tree, screws: Array, rates: Rates, inverse: Array) -> Motion:
     """The motion by the rows, where their rates are held, and then by each row's first rate alone.
 
     The joint coordinates' rates by a direction are found from the rows' rates as they would be without them.
@@ -192,31 +169,32 @@ def _settled(tree: Tree, poses: Poses, screws: Array, rates: Rates, inverse: Arr
     none = np.zeros_like(by_row)
     pose, wanted = np.concatenate([by_row, none], axis=1), np.concatenate([none, by_row], axis=1)
     s, q1, q2 = screws[:, None], rates.first[:, None, :, None], rates.second[:, None, :, None]
-    own, at = tree.body_of, at_places(poses, tree.ends)[:, None]
-    twists, accelerations = rates.twists[:, None], rates.accelerations[:, None]
+    own, twists = tree.body_of, rates.twists[:, None]
+    m = tuple(part[:, None] for part in rates.matrices)
     moved = chain_sum(tree, s * pose[..., None])
     # Screws by the direction, and how they change in time.
     s_by = screw_product(moved[..., own, :], s)
     twists_by = chain_sum(tree, s_by * q1)
-    first = (wanted - _first_rates(tree, at, moved, twists, twists_by) @ by_row)[..., None]
+    changed = _changed(rates, moved, twists_by, None)
+    first = (wanted - tree.rows.changes(m, changed, 1) @ by_row)[..., None]
     twists_by = twists_by + chain_sum(tree, s * first)
-    turned = screw_product(twists[..., own, :], s)
-    turned_by = screw_product(twists_by[..., own, :], s) + screw_product(twists[..., own, :], s_by)
-    accelerations_by = chain_sum(tree, s_by * q2 + turned_by * q1 + turned * first)
-    open_ = Motion(twists, accelerations, moved, twists_by, accelerations_by)
-    second = -(_second_rates(tree, poses, open_) @ by_row)[..., None]
-    return replace(open_, accelerations_by=accelerations_by + chain_sum(tree, s * second))
+    turning = screw_product(twists[..., own, :], s)
+    turning_by = screw_product(twists_by[..., own, :], s) + screw_product(twists[..., own, :], s_by)
+    accelerations_by = chain_sum(tree, s_by * q2 + turning_by * q1 + turning * first)
+    changed = _changed(rates, moved, twists_by, accelerations_by)
+    second = chain_sum(tree, s * -(tree.rows.changes(m, changed, 2) @ by_row)[..., None])
+    last = changed[2] + carried(second, m[0])
+    return Motion(moved, twists_by, accelerations_by + second, (*changed[:2], last))
 
 
 def _reach(tree: Tree, poses: Poses, places: Places) -> Array:
-    """Root of the sum of squares of the chains' lengths, to points, (N, P)."""
-    to_joint = np.zeros((len(poses.q), len(tree.bodies) + 1))
-    joints = np.concatenate([poses.translations, np.zeros((len(poses.q), 1, 3))], axis=1)
-    for body, parent in enumerate(tree.parents):
-        # Without a parent it is the chassis, which is the last.
-        to_joint[:, body] = np.square(joints[:, body] - joints[:, parent]).sum(axis=-1) + to_joint[:, parent]
-    from_joint = at_places(poses, places) - joints[:, places.body]
-    squares = to_joint[:, places.body] + np.square(from_joint).sum(axis=-1)
+    """Root of the sum of squares of the chains' lengths, to points, or of directions, (N, P)."""
+    joints = poses.matrices.reshape(len(poses.q), 3, -1, 4)[..., 3]
+    to_joint = np.zeros((len(poses.q), len(tree.bodies)))
+    for body, parent in enumerate(tree.parents[1:], 1):
+        to_joint[:, body] = np.square(joints[..., body] - joints[..., parent]).sum(axis=-1)
+        to_joint[:, body] += to_joint[:, parent]
+    squares = to_joint[:, places.body] * places.point + np.square(places.at).sum(axis=-1)
     return np.asarray(np.sqrt(squares))
 
 
@@ -227,10 +205,10 @@ def _sizes(
     chain = tree.chains[places.body]
     far = np.linalg.norm(at_places(poses, places), axis=-1)[:, :, None]
     linear, angular, fast, turn = _lengths(tree, screws, rates)
-    arm = np.hypot(linear, angular * far)
+    arm = np.hypot(linear * places.point[:, None], angular * far)
     velocity = np.sqrt((np.square(arm * rates.first[:, None]) * chain).sum(axis=-1))
-    turned = np.hypot(fast * angular, turn * arm)
-    acceleration = np.square(arm * rates.second[:, None]) + np.square(turned * rates.first[:, None])
+    faster = np.hypot(fast * angular * places.point[:, None], turn * arm)
+    acceleration = np.square(arm * rates.second[:, None]) + np.square(faster * rates.first[:, None])
     spin = np.linalg.norm(rates.twists[:, places.body, 3:], axis=-1)
     return (
         _reach(tree, poses, places),
@@ -247,29 +225,40 @@ def _lengths(tree: Tree, screws: Array, rates: Rates) -> tuple[Array, Array, Arr
     return linear, angular, fast, turn
 
 
-def _noise(tree: Tree, poses: Poses, screws: Array, rates: Rates, inputs: Array) -> Array:
-    """Standard deviations of the rows and of their first and second rates, (3, N, size)."""
-    noise = np.zeros((3, len(screws), tree.size))
-    count = len(tree.linkage.closures)
-    ends = np.stack(_sizes(tree, poses, screws, rates, tree.ends))
-    closures, drives = np.hypot(ends[..., :count], ends[..., count : 2 * count]), ends[..., 2 * count :]
-    fast = closure_gaps(tree, point_velocities(poses, rates.twists, tree.ends))[:, tree.rods]
-    twice = 2.0 * np.linalg.norm(fast, axis=-1) / tree.lengths
-    closures[2][:, tree.rods] = np.hypot(closures[2][:, tree.rods], twice * closures[1][:, tree.rods])
-    noise[..., tree.ball_rows] = closures[..., tree.balls, None]
-    noise[..., tree.rod_rows] = closures[..., tree.rods]
-    for k, drive in enumerate(tree.linkage.drives):
-        value, rate, acceleration = (np.abs(inputs[:, k, order]) for order in range(3))
-        wanted = (
-            (drive.size, drive.size * rate, drive.size * (rate * rate + acceleration))
-            if drive.kind == "angle"
-            else (drive.size * value, drive.size * rate, drive.size * acceleration)
-        )
-        foot = (abs(float(drive.foot @ drive.direction)), 0.0, 0.0)
+def _noise(
+    tree: Tree, rows: Rows, poses: Poses, screws: Array, rates: Rates, inputs: Array
+) -> tuple[Array, Array, Array]:
+    """Standard deviations of the rows and of their first and second rates, (N, rows) each.
+
+    Of a rate of X . Y every product of rates is rounded as its factors are.
+    """
+    # Of the first and second place of X and of Y, (N, 2, 2, F); directions of the chassis are exact.
+    exact = (rows.ends.body == 0) & (rows.ends.point == 0.0)
+    sizes = [np.where(exact, 0.0, part) for part in _sizes(tree, poses, screws, rates, rows.ends)]
+    off = [np.hypot(*np.moveaxis(part.reshape(len(part), 2, 2, -1), 1, 0)) for part in sizes]
+    long = [np.linalg.norm(rows.pairs(part), axis=-1) for part in rates.matrices]
+    off = [part * np.stack([rows.scale, np.ones_like(rows.scale)]) for part in off]
+    squares = []
+    for order in range(3):
+        parts = [
+            math.comb(order, k) ** 2
+            * (np.square(long[k][0] * off[order - k][:, 1]) + np.square(long[k][1] * off[order - k][:, 0]))
+            for k in range(order + 1)
+        ]
+        squares.append(np.asarray(sum(parts))[:, : rows.count])
+    squares[0][:, rows.tails] += np.square(rows.radii)
+    for row, k in zip(rows.drives, rows.drive_numbers, strict=True):
+        drive, series = tree.drives[k], np.abs(inputs[:, k])
+        _, rate, acceleration = np.moveaxis(series, -1, 0)
+        if drive.kind == "angle":
+            wanted = [np.full_like(rate, drive.size), drive.size * rate]
+            wanted.append(drive.size * (rate * rate + acceleration))
+        else:
+            wanted = [np.abs(part) for part in drive_rates(drive, series)]
         for order in range(3):
-            squares = drives[order, :, k] ** 2 + wanted[order] ** 2 + foot[order] ** 2
-            noise[order, :, tree.first_drive + k] = np.sqrt(squares)
-    return np.asarray(TURNED * noise)
+            squares[order][:, row] += np.square(wanted[order])
+    first, second, third = (TURNED * np.sqrt(part) for part in squares)
+    return first, second, third
 
 
 def _claim(known: Deviations, by: Array, own: Array, second: Array | None = None) -> Array:
@@ -299,8 +288,8 @@ def point_claims(
     tree: Tree, poses: Poses, rates: Rates, known: Deviations, places: Places
 ) -> tuple[Array, Array, Array]:
     """How far points' places, velocities and accelerations may be off, (N, P, 3) each."""
-    x, v, a = point_derivatives(poses, known.motion, places)
-    sizes = _sizes(tree, poses, screws_by_joint(poses), rates, places)
+    x, v, a = point_derivatives(known.motion, places)
+    sizes = _sizes(tree, poses, poses.screws, rates, places)
     own = [TURNED * size[..., None] for size in sizes]
     still = x[:, : tree.size]  # first rates do not move a place
     return _claim(known, still, own[0]), _claim(known, v, own[1]), _claim(known, a, own[2], still)
@@ -308,9 +297,9 @@ def point_claims(
 
 def body_claims(tree: Tree, poses: Poses, rates: Rates, known: Deviations, body: str) -> tuple[Array, Array]:
     """How far a body's angular velocity and acceleration may be off, (N, 3) each."""
-    k, motion = tree.number(body), known.motion
+    k, motion = tree.number[body], known.motion
     chain = tree.chains[k]
-    _, turns, _, spin = (part[:, 0] for part in _lengths(tree, screws_by_joint(poses), rates))
+    _, turns, _, spin = (part[:, 0] for part in _lengths(tree, poses.screws, rates))
     own1 = np.sqrt(np.square(turns * rates.first) @ chain)
     own2 = np.sqrt((np.square(turns * rates.second) + np.square(turns * spin * rates.first)) @ chain)
     turn = motion.pose[:, : tree.size, k, 3:]
@@ -320,12 +309,28 @@ def body_claims(tree: Tree, poses: Poses, rates: Rates, known: Deviations, body:
     )
 
 
-def line_vector(tree: Tree, poses: Poses, line: Line) -> Array:
-    """From a line's start to its end, (N, 3); turned with the body where one carries both."""
-    if line.fixed:
-        return np.asarray(poses.rotations[:, tree.number(line.start.body)] @ line.drawn)
-    at = at_places(poses, tree.together((line.start, line.end)))
-    return np.asarray(at[:, 1] - at[:, 0])
+@dataclass(frozen=True)
+class Line:
+    """A line through two points, of which angles are made.
+
+    Attributes:
+        places: start and end, or, where one body carries both, their difference as drawn: a direction, which
+            is exact where they lie near to each other.
+    """
+
+    places: Places
+
+    @classmethod
+    def of(cls, tree: Tree, start: Place, end: Place) -> Line:
+        """From one point to another."""
+        if start.body == end.body:
+            return cls(tree.together([Place(end.body, end.at - start.at)], np.zeros(1)))
+        return cls(tree.together([start, end]))
+
+    def now(self, matrices: Array) -> Array:
+        """From start to end, (..., 3); of rates of the matrices its rate."""
+        at = self.places.now(matrices)
+        return np.asarray(at[..., 0, :] if at.shape[-2] == 1 else at[..., 1, :] - at[..., 0, :])
 
 
 @dataclass(frozen=True)
@@ -343,14 +348,8 @@ class LineDerivatives:
 
 def line_derivatives(tree: Tree, poses: Poses, known: Deviations, line: Line) -> LineDerivatives:
     """How a line moves with the rows."""
-    vector, pose = line_vector(tree, poses, line), known.motion.pose[:, : tree.size]
-    if line.fixed:
-        turned = cross(pose[..., tree.number(line.start.body), 3:], vector[:, None])
-        return LineDerivatives(vector, turned, np.linalg.norm(vector, axis=-1))
-    places = tree.together((line.start, line.end))
-    moved = carried(pose[..., places.body, :], at_places(poses, places)[:, None])
-    reach = _reach(tree, poses, places)
-    return LineDerivatives(vector, moved[..., 1, :] - moved[..., 0, :], np.hypot(reach[:, 0], reach[:, 1]))
+    own = np.linalg.norm(_reach(tree, poses, line.places), axis=-1)
+    return LineDerivatives(line.now(poses.matrices), line.now(known.motion.matrices[0][:, : tree.size]), own)
 
 
 def angle_claims(known: Deviations, line: LineDerivatives, sine: Array, cosine: Array) -> Array:

@@ -53,7 +53,8 @@ class PoseError(RelativeError):
         problem: in words.
         instant: number of the instant; None for the drawing itself.
         wanted, reached: inputs, rad and mm: those asked for, and the last that could be solved.
-        condition: condition number of the loop closures' Jacobian at the last pose.
+        condition: condition number of the rows' Jacobian at the last pose.
+        links: what holds each other there, the strongest first.
     """
 
     def __init__(
@@ -63,12 +64,14 @@ class PoseError(RelativeError):
         wanted: Mapping[str, float],
         reached: Mapping[str, float],
         condition: float,
+        links: tuple[str, ...] = (),
     ) -> None:
         self.problem = problem
         self.instant = instant
         self.wanted = dict(wanted)
         self.reached = dict(reached)
         self.condition = condition
+        self.links = links
         where = "the drawing" if instant is None else f"instant number {instant}"
         super().__init__(
             f"{where} {problem}: wanted {_told(wanted)}; reached {_told(reached)}, where the condition "

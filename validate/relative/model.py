@@ -1,6 +1,6 @@
-"""The relative-coordinate model of a suspension: built once from hardpoints, then solved at instants.
+"""The relative-coordinate model of a mechanism: built from its flat description, then solved at instants.
 
-    model = build("macpherson", points, side="left", closure="drawn")
+    model = build(plain)
     poses = model.poses(inputs, times, tolerance=1e-9)
     rates = model.rates(poses, inputs)
     numbers = model.positions(poses)
@@ -11,7 +11,7 @@ Lengths go in and come out in mm; inside, the car has a size between one and two
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,27 +21,29 @@ from numpy.typing import ArrayLike, NDArray
 from validate.relative.accuracy import (
     FOLD,
     Deviations,
+    Line,
     angle_claims,
     body_claims,
     deviations,
     line_derivatives,
-    line_vector,
     point_claims,
+    violated,
 )
-from validate.relative.angles import ANGLES, car_directions
 from validate.relative.errors import HardpointsError, InputError, PoseError
-from validate.relative.follow import Blocked, Poses, at_places, closed, follow, room
-from validate.relative.linkage import Linkage
-from validate.relative.rates import Rates, point_accelerations, point_velocities, rates_of
-from validate.relative.suspensions import SUSPENSIONS
-from validate.relative.suspensions.steered_arm import Axes
+from validate.relative.follow import Blocked, Poses, at_places, closed, follow
+from validate.relative.rates import Rates, rates_of
 from validate.relative.tree import Places, Tree, U
+from validate.spanning_tree.cut import CutError, cut
+from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
 Inputs = Mapping[str, ArrayLike]
-
-TINIEST = 1e-250  # mm: the square of a smaller car is no normal number
+# What an input may be: an angle is told by its cosine, and rods of no length have no direction.
+BETWEEN = {
+    "angle": (0.0, np.pi, "an angle from 0 to pi"),
+    "distance": (np.nextafter(0.0, 1.0), np.inf, "a distance above 0"),
+}
 
 
 @dataclass(frozen=True)
@@ -60,46 +62,41 @@ class Motion:
 
 @dataclass(frozen=True)
 class Model:
-    """A suspension whose drawing is closed.
+    """A mechanism whose drawing is closed.
 
     Attributes:
-        tree: Pinocchio's model and the closure equations; its workspace serves one thread at a time.
+        tree: Pinocchio's model and the rows; its workspace serves one thread at a time.
         home: the closed drawing.
-        origin, unit: where it is measured from, (3,), mm, and in what, mm.
-        directions: of the car, by name.
-        drawn: hardpoints as drawn, (3,), mm.
+        bodies: those that are reported, by the name that they are reported by. wheel: likewise the angles.
     """
 
     tree: Tree
     home: Poses
-    origin: Array
-    unit: float
-    directions: Mapping[str, Array]
-    drawn: Mapping[str, Array]
+    bodies: Mapping[str, str]
+    wheel: Mapping[str, Angle]
 
     @property
-    def linkage(self) -> Linkage:
-        """Joints, closures and inputs as data."""
-        return self.tree.linkage
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs."""
-        return tuple(drive.input for drive in self.linkage.drives)
+    def unit(self) -> float:
+        """In which lengths are counted inside, mm."""
+        return self.tree.cut.unit
 
     @property
     def closing(self) -> dict[str, float]:
         """How far each point moves when the drawing is closed, mm."""
-        found = {}
-        for name, place in zip(self.linkage.points, at_places(self.home, self._places)[0], strict=True):
-            moved = place - (self.drawn[name] - self.origin) / self.unit
-            found[name] = self.unit * float(np.linalg.norm(moved))
-        return found
+        drawn, places = self.tree.cut.drawn, at_places(self.home, self._places)[0]
+        moved = zip(self.tree.cut.points, places, strict=True)
+        return {name: self.unit * float(np.linalg.norm(at - drawn[name])) for name, at in moved}
 
     @cached_property
     def _places(self) -> Places:
         """All points that are reported."""
-        return self.tree.together(tuple(self.linkage.points.values()))
+        return self.tree.together(tuple(self.tree.cut.points.values()))
+
+    @cached_property
+    def _lines(self) -> dict[tuple[str, str], Line]:
+        """Lines of the angles, by their points."""
+        ends = dict.fromkeys((angle.start, angle.end) for angle in self.wheel.values())
+        return {pair: Line.of(self.tree, *self.tree.cut.line(*pair)) for pair in ends}
 
     def poses(self, inputs: Inputs, times: ArrayLike, tolerance: float = 0.0) -> Poses:
         """Solve the poses at instants one after the other, from the closed drawing.
@@ -133,9 +130,10 @@ class Model:
             PoseError: a pose is singular to rounding.
         """
         count = len(poses.q)
-        series = np.stack([self._series(name, inputs, count, 3) for name in self.inputs], axis=1)
-        for k, drive in enumerate(self.linkage.drives):
-            if drive.kind == "travel":
+        drives = self.tree.drives
+        series = np.stack([self._series(d.input, inputs, count, 3) for d in drives], axis=1)
+        for k, drive in enumerate(drives):
+            if not drive.is_angle:
                 series[:, k] /= self.unit
         fastest = np.maximum(np.abs(series[..., 1]), np.sqrt(np.abs(series[..., 2]))).max(axis=1)
         exponent = np.where(fastest > 0.0, -np.frexp(fastest)[1], 0).astype(np.int64)
@@ -150,7 +148,8 @@ class Model:
         """What the claims of accuracy are made of.
 
         Raises:
-            PoseError: a pose is so near to a fold that its branch cannot be told; `partial` has those before.
+            PoseError: a pose is so near to a fold that its branch cannot be told, or violates a row that is
+                left out; `partial` has those before.
         """
         try:
             found = deviations(self.tree, poses, motion.rates, motion.inputs)
@@ -159,52 +158,62 @@ class Model:
         near = ~(found.fold < FOLD)
         if near.any():
             raise self._near_fold(poses, motion.inputs, found, int(np.argmax(near)))
+        broken = violated(self.tree, poses, motion.rates, motion.inputs, found)
+        if broken.any():
+            k, row = (int(i) for i in np.argwhere(broken)[0])
+            name = self.tree.left_out.rows[row].name
+            words = f"does not hold {name}, which follows from the other rows only as drawn"
+            raise self._at_fold(words, poses, motion.inputs, k, float(found.condition[k]))
         return found
 
     def positions(self, poses: Poses) -> Arrays:
         """Every point, (N, 3), mm."""
-        return self._by_point(at_places(poses, self._places) * self.unit + self.origin)
+        return self._by_point(at_places(poses, self._places) * self.unit + self.tree.cut.origin)
 
     def velocities(self, poses: Poses, motion: Motion) -> Arrays:
         """Every point's, (N, 3), mm/s."""
-        found = point_velocities(poses, motion.rates.twists, self._places)
+        found = self._places.now(motion.rates.matrices[1])
         return self._by_point(self._timed(motion, 1, self.unit, found))
 
     def accelerations(self, poses: Poses, motion: Motion) -> Arrays:
         """Every point's, (N, 3), mm/s^2."""
-        rates = motion.rates
-        found = point_accelerations(poses, rates.twists, rates.accelerations, self._places)
+        found = self._places.now(motion.rates.matrices[2])
         return self._by_point(self._timed(motion, 2, self.unit, found))
 
     def angular_velocities(self, motion: Motion) -> Arrays:
         """Of the bodies that are reported, (N, 3), rad/s."""
         twists = motion.rates.twists
         return {
-            name: self._timed(motion, 1, 1.0, twists[:, self.tree.bodies.index(body), 3:])
-            for name, body in self.linkage.bodies.items()
+            name: self._timed(motion, 1, 1.0, twists[:, self.tree.number[body], 3:])
+            for name, body in self.bodies.items()
         }
 
     def angular_accelerations(self, motion: Motion) -> Arrays:
         """Of the bodies that are reported, (N, 3), rad/s^2."""
         second = motion.rates.accelerations
         return {
-            name: self._timed(motion, 2, 1.0, second[:, self.tree.bodies.index(body), 3:])
-            for name, body in self.linkage.bodies.items()
+            name: self._timed(motion, 2, 1.0, second[:, self.tree.number[body], 3:])
+            for name, body in self.bodies.items()
         }
 
-    def angles(self, poses: Poses) -> Arrays:
-        """Camber, kingpin, toe and caster, (N,), rad."""
-        found = {}
-        for name, angle in ANGLES.items():
-            line = self.linkage.spin_axis if angle.of == "spin" else self.linkage.steering_axis
-            vector = line_vector(self.tree, poses, line)
-            sine, cosine = (vector @ self.directions[axis] for axis in (angle.sine, angle.cosine))
-            found[name] = np.arctan2(sine, cosine)
-        return found
+    def angles(self, poses: Poses, turn: Array | None = None) -> Arrays:
+        """Angles of the wheels, (N,), rad; on a chassis that is turned, (N, 3, 3)."""
+        lines = {ends: self._turned(line.now(poses.matrices), turn) for ends, line in self._lines.items()}
+        return {name: angle.of(lines[angle.start, angle.end]) for name, angle in self.wheel.items()}
 
-    def numbers(self, poses: Poses, motion: Motion | None = None) -> dict[str, Arrays]:
-        """By quantity and point, body or angle: all, or positions and angles where no rates are given."""
-        found = {"position": self.positions(poses), "wheel": self.angles(poses)}
+    @staticmethod
+    def _turned(vectors: Array, turn: Array | None) -> Array:
+        return vectors if turn is None else np.asarray(np.einsum("nij,n...j->n...i", turn, vectors))
+
+    def numbers(
+        self, poses: Poses, motion: Motion | None = None, turn: Array | None = None
+    ) -> dict[str, Arrays]:
+        """By quantity and point, body or angle: all, or positions and angles where no rates are given.
+
+        Args:
+            turn: of the chassis, which only angles are given with, (N, 3, 3).
+        """
+        found = {"position": self.positions(poses), "wheel": self.angles(poses, turn)}
         if motion is None:
             return found
         return found | {
@@ -214,7 +223,9 @@ class Model:
             "angular_acceleration": self.angular_accelerations(motion),
         }
 
-    def claims(self, poses: Poses, motion: Motion, known: Deviations) -> dict[str, Arrays]:
+    def claims(
+        self, poses: Poses, motion: Motion, known: Deviations, turn: Array | None = None
+    ) -> dict[str, Arrays]:
         """How far each number of `numbers` may be off."""
         position, velocity, acceleration = self.point_claims(poses, motion, known)
         angular_velocity, angular_acceleration = self.body_claims(poses, motion, known)
@@ -224,7 +235,7 @@ class Model:
             "acceleration": acceleration,
             "angular_velocity": angular_velocity,
             "angular_acceleration": angular_acceleration,
-            "wheel": self.angle_claims(poses, known),
+            "wheel": self.angle_claims(poses, known, turn),
         }
 
     def point_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays, Arrays]:
@@ -233,32 +244,33 @@ class Model:
         place, velocity, acceleration = (
             self._timed(motion, order, self.unit, claim) for order, claim in enumerate(claims)
         )
-        place += U * np.abs(at_places(poses, self._places) * self.unit + self.origin)
+        place += U * np.abs(at_places(poses, self._places) * self.unit + self.tree.cut.origin)
         return self._by_point(place), self._by_point(velocity), self._by_point(acceleration)
 
     def body_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays]:
         """How far angular velocities and accelerations may be off, by body, (N, 3), rad and s."""
         found: tuple[Arrays, Arrays] = ({}, {})
-        for name, body in self.linkage.bodies.items():
+        for name, body in self.bodies.items():
             claims = body_claims(self.tree, poses, motion.rates, known, body)
             for order, (arrays, claim) in enumerate(zip(found, claims, strict=True), 1):
                 arrays[name] = self._timed(motion, order, 1.0, claim)
         return found
 
-    def angle_claims(self, poses: Poses, known: Deviations) -> Arrays:
+    def angle_claims(self, poses: Poses, known: Deviations, turn: Array | None = None) -> Arrays:
         """How far the angles may be off, (N,), rad."""
-        lines = {"spin": self.linkage.spin_axis, "steering": self.linkage.steering_axis}
-        moved = {of: line_derivatives(self.tree, poses, known, line) for of, line in lines.items()}
+        moved = {}
+        for ends, line in self._lines.items():
+            found = line_derivatives(self.tree, poses, known, line)
+            vector, by = self._turned(found.vector, turn), self._turned(found.by, turn)
+            moved[ends] = replace(found, vector=vector, by=by)
         return {
-            name: angle_claims(
-                known, moved[angle.of], self.directions[angle.sine], self.directions[angle.cosine]
-            )
-            for name, angle in ANGLES.items()
+            name: angle_claims(known, moved[angle.start, angle.end], angle.sine, angle.cosine)
+            for name, angle in self.wheel.items()
         }
 
     def _by_point(self, array: Array) -> Arrays:
         """Of all points, (N, P, 3), by name."""
-        return {name: array[:, k] for k, name in enumerate(self.linkage.points)}
+        return {name: array[:, k] for k, name in enumerate(self.tree.cut.points)}
 
     def _timed(self, motion: Motion, order: int, unit: float, array: Array) -> Array:
         """In mm and s."""
@@ -268,7 +280,7 @@ class Model:
 
     def _series(self, name: str, inputs: Inputs, count: int, columns: int) -> Array:
         if name not in inputs:
-            raise InputError(name, "missing", "; ".join(self.inputs))
+            raise InputError(name, "missing", "; ".join(d.input for d in self.tree.drives))
         array = np.array(inputs[name], dtype=float)
         if columns == 1 and array.ndim == 2:
             array = array[:, 0]
@@ -282,26 +294,24 @@ class Model:
         return array
 
     def _values(self, inputs: Inputs, count: int) -> Array:
-        values = np.stack([self._series(name, inputs, count, 1) for name in self.inputs], axis=1)
-        for k, drive in enumerate(self.linkage.drives):
-            if drive.kind == "travel":
+        drives = self.tree.drives
+        values = np.stack([self._series(d.input, inputs, count, 1) for d in drives], axis=1)
+        for k, drive in enumerate(drives):
+            if not drive.is_angle:
                 values[:, k] /= self.unit
+            if drive.kind not in BETWEEN:
                 continue
-            wrong = ~((values[:, k] >= 0.0) & (values[:, k] <= np.pi))
+            least, most, words = BETWEEN[drive.kind]
+            wrong = ~((values[:, k] >= least) & (values[:, k] <= most))
             if wrong.any():
                 first = int(np.argmax(wrong))
-                raise InputError(drive.input, float(values[first, k]), "an angle from 0 to pi", first)
+                value = self.tree.cut.told(values[first])[drive.input]
+                raise InputError(drive.input, value, words, first)
         return values
 
-    def _told(self, values: Array) -> dict[str, float]:
-        """Inputs in rad and mm, by name."""
-        return {
-            drive.input: float(value) * (self.unit if drive.kind == "travel" else 1.0)
-            for drive, value in zip(self.linkage.drives, values, strict=True)
-        }
-
     def _refusal(self, end: Blocked, wanted: Array) -> PoseError:
-        error = PoseError(end.problem, end.instant, self._told(wanted), self._told(end.here), end.condition)
+        wanted_here, reached = (self.tree.cut.told(values) for values in (wanted, end.here))
+        error = PoseError(end.problem, end.instant, wanted_here, reached, end.condition, end.links)
         error.partial = end.solved
         return error
 
@@ -320,64 +330,27 @@ class Model:
         return self._at_fold(words, poses, series, k, float(found.condition[k]))
 
     def _at_fold(self, words: str, poses: Poses, series: Array, k: int, condition: float) -> PoseError:
-        there = self._told(series[k, :, 0])
-        error = PoseError(words, k, there, there, condition)
+        there = self.tree.cut.told(series[k, :, 0])
+        links = self.tree.holding(poses.jacobian[k])
+        error = PoseError(words, k, there, there, condition, links)
         error.partial = poses.first(k) if k else None
         return error
 
 
-def build(
-    type: str,
-    points: Mapping[str, Any],
-    *,
-    up: Any = (0.0, 0.0, 1.0),
-    right: Any = (0.0, 1.0, 0.0),
-    side: str = "left",
-    closure: str = "drawn",
-) -> Model:
-    """A model of a suspension, with its drawing closed.
+def build(plain: Mapping[str, Any]) -> Model:
+    """A model of a flat mechanism, with its drawing closed.
 
-    Args:
-        type: of suspension. points: by name, (3,), mm; `rack_centre` may be left out.
-        up, right: axes of the car. side: of the car. closure: what closes the drawing.
     Raises:
-        HardpointsError: the points make no mechanism.
+        HardpointsError: the points make no mechanism, or the inputs do not drive it.
         PoseError: the drawing does not close on the side that it is drawn on, or lies on a fold.
     """
-    if type not in SUSPENSIONS:
-        raise HardpointsError(repr(type), "is no suspension that this model has", ", ".join(SUSPENSIONS))
-    drawn = {name: np.array(place, dtype=float) for name, place in points.items()}
-    drawn.setdefault("rack_centre", drawn["tie_rod_inner"])
-    origin, unit = _measure(drawn)
-    near = {name: (place - origin) / unit for name, place in drawn.items()}
-    axes = Axes(np.array(up, dtype=float), np.array(right, dtype=float))
-    tree = Tree(SUSPENSIONS[type](near, axes, closure))
-    goal = float(np.linalg.norm(tree.noise))
-    directions = car_directions(axes.up, axes.right, side)
     try:
-        home = closed(tree, goal)
+        tree = Tree(cut(plain))
+    except CutError as error:
+        raise HardpointsError(error.name, error.problem, error.allowed) from error
+    try:
+        home = closed(tree, float(np.linalg.norm(tree.noise)))
     except Blocked as end:
-        model = Model(tree, room(tree, 0), origin, unit, directions, drawn)
-        told = model._told(end.here)
-        raise PoseError(end.problem, None, told, told, end.condition) from end
-    return Model(tree, home, origin, unit, directions, drawn)
-
-
-def _measure(points: Mapping[str, Array]) -> tuple[Array, float]:
-    """A place near the car from which differences are exact, (3,), mm, and a power of two, its size, mm.
-
-    Raises:
-        HardpointsError: the car has no size, or one that no number has the square of.
-    """
-    stack = np.array(list(points.values()))
-    if not np.isfinite(stack).all():
-        raise HardpointsError("hardpoints", "are not all numbers", "finite numbers")
-    largest = float(np.abs(stack).max())
-    if not largest < 2.0**1000:
-        raise HardpointsError("hardpoints", f"lie {largest:.3g} mm away", "less than 1e300 mm")
-    size = float(np.ptp(stack, axis=0).max())
-    if not size > TINIEST:
-        raise HardpointsError("hardpoints", f"lie within {size:.3g} mm", f"more than {TINIEST:g} mm")
-    unit = float(np.ldexp(1.0, np.frexp(size)[1] - 1))
-    grid = 8.0 * unit
-    return np.asarray(np.trunc(stack.mean(axis=0) / grid) * grid + 0.0), unit
+        there = tree.cut.told(end.here)
+        raise PoseError(end.problem, None, there, there, end.condition, end.links) from end
+    return Model(tree, home, knuckles(plain), wheel_angles(plain))

@@ -3,12 +3,16 @@ r"""What an accuracy that a solver states, in mm, makes of each number that it g
 A solver of accuracy e answers for a pose whose points are off by up to e in every coordinate. At such a pose
 y + dy the equations of the many-digit reference, C(y, t) = 0, are missed by up to
 
-    rho_i = e sum_j |C'_ij| s_j,
+    rho_i = e sum_k |sum_j C'_ij dy_j/dx_k|
 
-the sum over the unknowns y_j, with s_j = 1 for a coordinate and 1 / h for the others, which turn the knuckle
-or slide along it (h: how far its three points lie apart, below). Of a link that is its length missed by e to
-sqrt(3) e at each end. A solver that stops there, however it goes about it, is a car whose lengths are off by
-as much. What that makes of the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
+over the coordinates x_k of the points that the unknowns y_j are read from: the reader is differentiated, so
+a body whose matrix is read from three points is off by what these make of it together. Of a link that is its
+length missed by e to sqrt(3) e at each end, of a joint its two halves apart by as much, of a body its shape.
+A solver that stops there, however it goes about it, is a car whose lengths are off, or whose joints gape, by
+as much. With links alone the toe of a double wishbone would be held 2.5 times closer, but that says nothing
+of a solver that places bodies.
+
+What that makes of the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
 
     C' dy   = delta
     C' dy'  = -d(C' y' + C_t)                  the rate equations' dependence on the pose
@@ -20,7 +24,8 @@ and of every number q(y, y', y'') by its own derivative. The worst signs are tak
 instead of balls: a tolerance needs no 60 digits.
 
 A number is also read from points that are themselves off by e, on bodies that turn with |omega| <= W and
-|alpha| <= A (V, B: the largest speed and acceleration, L: the car's size, for what moves without turning):
+|alpha| <= A (V, B: the largest speed and acceleration against the chassis, L: the car's size, for what moves
+without turning; what the chassis adds to every point alike turns nothing):
 
     position                e
     velocity                e_1 = sqrt(3) e (W + V / L)
@@ -42,6 +47,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from math import sqrt
 
 import numpy as np
@@ -56,12 +62,14 @@ from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
 from validate.reference import Design
-from validate.reference.design import values_only
+from validate.reference.compiler import CHASSIS
+from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.effects.registry import effects_of
 from validate.reference.in_doubles import (
     changes_of,
+    floats_of,
     inverse_of,
     jacobian_of,
     known_in_doubles,
@@ -74,7 +82,6 @@ from validate.reference.in_doubles import (
 )
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_turns
-from validate.reference.linkage import Known
 from validate.reference.vectors import Vector
 
 Array = NDArray[np.float64]
@@ -118,8 +125,7 @@ def accuracy_at(
         places: where every point is, (N, 3), mm.
         laws: every input with its two time derivatives, (N, 3); of poses alone these are 0.
     """
-    part = scene.mechanism
-    design = Design.from_points(dict(part.points), part.up, part.right, part.side, part.closure, part.type)
+    design = Design.from_plain(scene.mechanism.plain(tuple(scene.inputs)))
     held = _Held(scene, design, accuracy)
     parts = []
     for low in range(0, len(next(iter(places.values()))), AT_ONCE):
@@ -138,7 +144,7 @@ class _Held:
     """A car and an accuracy.
 
     Attributes:
-        off: the accuracy in units of the design. height: of the knuckle's points, likewise.
+        off: the accuracy in units of the design. heights: of the bodies' points, likewise.
     """
 
     def __init__(self, scene: Scene, design: Design, accuracy: float) -> None:
@@ -148,27 +154,26 @@ class _Held:
         self.origin = np.array([float(x) for x in design.origin])
         self.off = accuracy / self.unit
         self.asked = asked_numbers(scene)
-        topology = scene.mechanism.topology
         drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
         self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
+        bodies = {name: points for name, points in design.plain["bodies"].items() if name != CHASSIS}
         self.heights = {
-            body: max(_height(*(drawn[name] for name in names)), FLATTEST * self.size)
-            for body, names in topology.bodies.items()
+            body: max(
+                max(_height(*(drawn[name] for name in three)) for three in combinations(points, 3)),
+                FLATTEST * self.size,
+            )
+            for body, points in bodies.items()
         }
-        self.height = min(self.heights.values())
 
     def at(self, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
         """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
         known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
         values, inverse, matrix, blind = self._pose(places, values_only(known))
         jets = unknown_jets_of(values, inverse, known)
-        linkage = self.design.linkage
-        scale = np.ones(linkage.size)
-        scale[linkage.coordinates :] = 1.0 / self.height
-        missed = self.off * (np.abs(matrix) @ scale)
+        missed = self.off * self._missed(places, matrix, values_only(known))
         # Missing a row by delta moves the unknowns by a column of the inverse.
         first = np.einsum("nij,nj->ijn", inverse, missed)
-        slopes = changes_of(jets, inverse, known, linkage.size, first)
+        slopes = changes_of(jets, inverse, known, len(jets), first)
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
@@ -184,33 +189,54 @@ class _Held:
         self, places: Mapping[str, Array], known: Known
     ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
         """The unknowns, the inverse of their Jacobian, it, and where the pose is not the equations' own."""
-        local = local_places(self.design, places)
-        values = np.array(self.design.linkage.unknown_of(local, known), dtype=float)
-        matrix = jacobian_of(list(values), known)
+        local = local_places(self.design, places, known)
+        count = len(next(iter(places.values())))
+        read = self.design.mechanism.unknown_of(local, float)
+        values = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
+        matrix = jacobian_of(list(values), known.numbers, known.equations)
         step = newton_step(values, inverse_of(matrix), known)
         blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
         values = np.where(blind, values, values - step)
-        matrix = jacobian_of(list(values), known)
+        matrix = jacobian_of(list(values), known.numbers, known.equations)
         return list(values), inverse_of(matrix), matrix, blind
+
+    def _missed(self, places: Mapping[str, Array], matrix: Array, known: Known) -> Array:
+        """By how much points that are off by 1 in each coordinate miss each equation, (N, rows).
+
+        With the worst signs, in local lengths.
+        """
+        local = local_places(self.design, places, known)
+        off = np.eye(3 * len(local))[:, :, None]
+        points: dict[str, Vector] = {}
+        for first, (name, (x, y, z)) in enumerate(local.items()):
+            i = 3 * first
+            points[name] = Dual(x, off[i]), Dual(y, off[i + 1]), Dual(z, off[i + 2])
+        read = self.design.mechanism.unknown_of(points, float)
+        shape = (len(off), len(matrix))
+        slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
+        return np.asarray(np.abs(np.einsum("nij,jkn->nik", matrix, slopes)).sum(axis=-1))
 
     def _claims(
         self, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
     ) -> dict[str, dict[str, Array]]:
-        points = known.linkage.points_of(solved, known)
-        turns = body_turns(solved, points, known)
+        points = known.points_of(solved)
+        turns = body_turns(solved, known)
         count = len(growth[0])
         states = {name: [values_of(order_of(p, d), count) for d in range(3)] for name, p in points.items()}
         turning, bending = (
             np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
         )
-        fastest, hardest = (np.max([_lengths(state[d]) for state in states.values()], axis=0) for d in (1, 2))
+        chassis = states[self.design.plain["bodies"][CHASSIS][0]]
+        fastest, hardest = (
+            np.max([_lengths(state[d] - chassis[d]) for state in states.values()], axis=0) for d in (1, 2)
+        )
         own = (
             np.full(count, self.off),
             ROOT_3 * self.off * (turning + fastest / self.size),
             ROOT_3 * self.off * (bending + turning**2 + hardest / self.size),
         )
         rounded = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        angles = self._angles(points, known, growth[0])
+        angles = self._angles(points, growth[0])
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             d, of = per_second(quantity), QUANTITIES[quantity].of
@@ -236,18 +262,17 @@ class _Held:
                 claims[quantity] = {n: angles[n] for n in names}
         return claims
 
-    def _angles(self, points: Mapping[str, Vector], known: Known, growth: Array) -> dict[str, Array]:
+    def _angles(self, points: Mapping[str, Vector], growth: Array) -> dict[str, Array]:
         """Of every angle: what the pose makes of it, and the ends of its line, which are off themselves."""
         places = {name: order_of(p, 0) for name, p in points.items()}
-        axes = Axes.of(places, known, self.design.outboard)
-        wheel, steering = (
-            _with_own(line, 2.0 * self.off, first, growth)
-            for first, line in enumerate((axes.wheel, axes.steering))
-        )
-        own = replace(axes, wheel=wheel, steering=steering)
+        axes = Axes.of(places, self.design, floats_of)
+        lines = {
+            name: _with_own(line, 2.0 * self.off, first, growth)
+            for first, (name, line) in enumerate(axes.lines.items())
+        }
         found = {}
-        for name, effect in EFFECTS.items():
-            angle = effect.evaluate(own)
+        for name, effect in effects_of(axes).items():
+            angle = effect.evaluate(replace(axes, lines=lines))
             claim = np.abs(slope_of(angle)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(angle))
             found[name] = np.where(np.isfinite(claim), claim, 0.0)
         return found
@@ -261,7 +286,7 @@ def _height(a: Array, b: Array, c: Array) -> float:
 
 def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     """r of the top of this file, (N,)."""
-    slopes = jacobian_of([jet.value for jet in jets], known, slope_of)
+    slopes = jacobian_of([jet.value for jet in jets], known.numbers, known.equations, slope_of)
     return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
 
 

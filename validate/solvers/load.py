@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from pointcoord.scene.messages import meant
+from pointcoord.wording import meant
 from validate.plain_text import shown
 from validate.solvers.plain import NoSolver, Solve, as_function, raised_at, said
 

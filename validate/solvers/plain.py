@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, SceneError
 from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.scene.messages import meant, shown
+from pointcoord.wording import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
 from validate.solvers.names import known_names, misspelt
@@ -85,7 +85,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         for name in part.topology.inputs
     }
     return {
-        "suspension": part.type,
+        "suspension": part.name,
         "closure": part.closure,
         "side": part.side,
         "up": list(part.up),

@@ -1,1 +1,1 @@
-"""Long runs of one process: claims, mutants."""
+"""Long studies: numbered tasks for many processes or machines, and rows that a stopped run goes on from."""

@@ -3,93 +3,79 @@
 Random scenes by number (see `random_scenes`), a tenth of them close to a singular pose, each number of every
 instant held against the reference:
 
-    python -m validate.studies.claims --formulation pointcoord --count 300
+    pointcoord study claims --formulation absolute --count 80
 """
 
 from __future__ import annotations
 
-import argparse
 import itertools
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import DUST, as_solution, inputs_at, reference_instant, scales
-from validate.cars.random_scenes import RandomScene, random_scene
-from validate.cars.registry import VARIANTS, Variant
+from validate.adjudication.reference_solution import DUST, as_solution, reference_motion, scales
+from validate.cars.base_cars import variants
+from validate.cars.random_scenes import SEED, RandomScene, random_scene
+from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import FormulationError, Solution
-from validate.formulations.registry import NAMES, formulation
-from validate.output.report import table
-from validate.reference import NoReferenceError
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
+from validate.output.table import Table
+from validate.reference import Instant, NoReferenceError
 from validate.reference.exact import as_fraction
-from validate.reference.instant import Instant
+from validate.studies.study import Findings, Row, Study, Task
 
-Array = NDArray[np.float64]
 LEVELS = (0.5, 0.9, 0.99)
+COLUMNS: Mapping[str, str] = {
+    **dict.fromkeys(("suspension", "kind", "quantity"), "string"),
+    **dict.fromkeys(("error", "claim"), "float64"),
+}
 
 
-@dataclass(frozen=True)
-class Held:
-    """The numbers of one quantity of one scene, held against the reference.
+def claims(count: int = 300, first: int = 0, formulation: str = "pointcoord", seed: int = SEED) -> Study:
+    """Random scenes of the numbers from `first` up. A row is a number, with its error and what is claimed.
 
-    Attributes:
-        scene, kind: its number, and what it comes close to.
-        variant: its kind of suspension.
-        error, claim: of every number that is off, (numbers,).
-        exact: how many are not off at all.
+    A scene without an answer, or without a reference, has one row without a quantity.
     """
-
-    scene: int
-    kind: str
-    variant: Variant
-    quantity: str
-    error: Array
-    claim: Array
-    exact: int
-
-    @property
-    def share(self) -> float:
-        """Largest error in parts of its claim; above 1 the claim is broken."""
-        with np.errstate(divide="ignore"):
-            return float(np.max(self.error / self.claim, initial=0.0))
+    settings: dict[str, str | int] = {"seed": seed, "formulation": formulation}
+    tasks = [Task("scenes", number) for number in range(first, first + count)]
+    examine, summary = partial(scene_rows, name=formulation), partial(found, settings=settings)
+    return Study("claims", "scene", settings, COLUMNS, tasks, examine, summary, chunk=2)
 
 
-def held_scene(car: RandomScene, name: str) -> list[Held]:
-    """All quantities of a scene; none where the formulation refuses it or there is no reference."""
+def scene_rows(task: Task, name: str) -> list[Row]:
+    """Every number of the scene of a number."""
+    car = random_scene(task.number)
+    return [{"suspension": car.variant.words, "kind": car.kind, **row} for row in _held(car, name) or [{}]]
+
+
+def _held(car: RandomScene, formulation_name: str) -> list[Row]:
     scene = car.scene
     try:
-        solution = formulation(name).solve(scene)
-        instants = [reference_instant(scene, inputs_at(scene, t)) for t in scene.instants.tolist()]
+        solution = formulation(formulation_name).solve(scene)
+        instants = reference_motion(scene, scene.instants.tolist())
     except (FormulationError, SceneError, NoReferenceError):
         return []
     reference = as_solution(scene, instants)
-    return [_held(car, quantity, solution, reference, instants) for quantity in asked_numbers(scene)]
-
-
-def _held(
-    car: RandomScene, quantity: str, solution: Solution, reference: Solution, instants: Sequence[Instant]
-) -> Held:
-    found: list[tuple[float, float]] = []
-    # The reference's own error is that of numbers as large as the largest ones that a number is made of.
-    dust = DUST * scales(reference.numbers)[quantity]
-    for name in reference.numbers[quantity]:
-        numbers = solution.numbers[quantity][name].reshape(len(instants), -1)
-        claims = solution.accuracy.claims[quantity][name].reshape(len(instants), -1)
-        for row, claim, instant in zip(numbers, claims, instants, strict=True):
-            errors = (_distance(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
-            found += [(e if e > dust else 0.0, float(c)) for e, c in zip(errors, claim, strict=True)]
-    error, claim = np.array(found).reshape(-1, 2).T
-    off = error > 0.0
-    return Held(
-        car.number, car.kind, car.variant, quantity, error[off], claim[off], int(np.count_nonzero(~off))
-    )
+    rows: list[Row] = []
+    for quantity in asked_numbers(scene):
+        # The reference's own error is that of numbers as large as the largest ones that a number is made of.
+        dust = DUST * scales(reference.numbers)[quantity]
+        for name in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):
+            numbers = solution.numbers[quantity][name].reshape(len(instants), -1)
+            claimed = solution.accuracy.claims[quantity][name].reshape(len(instants), -1)
+            for row, claim, instant in zip(numbers, claimed, instants, strict=True):
+                errors = (_distance(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
+                rows += [
+                    {"quantity": quantity, "error": e if e > dust else 0.0, "claim": float(c)}
+                    for e, c in zip(errors, claim, strict=True)
+                ]
+    return rows
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
@@ -100,50 +86,50 @@ def _distance(found: float, exact: Any) -> float:
     return float(abs(as_fraction(exact, "number") - Fraction(float(found))))
 
 
-def study(cars: Iterable[RandomScene], name: str) -> list[Held]:
-    """Every quantity of every scene that is answered and has a reference."""
-    return [held for car in cars for held in held_scene(car, name)]
-
-
-def study_text(helds: Sequence[Held]) -> str:
-    """A row for each suspension and quantity: numbers, the largest error / claim, claim / error at levels."""
-    rows = []
-    for variant, quantity in itertools.product(VARIANTS, QUANTITIES):
-        part = [held for held in helds if (held.variant, held.quantity) == (variant, quantity)]
-        if not part:
-            continue
-        worst = max(part, key=lambda held: held.share)
-        with np.errstate(divide="ignore"):
-            loose = np.concatenate([held.claim / held.error for held in part])
-        rows.append(
-            (
-                variant.words,
-                QUANTITIES[quantity].words,
-                str(sum(len(held.error) + held.exact for held in part)),
-                str(sum(held.exact for held in part)),
-                f"{worst.share:.7g}",
-                f"{worst.scene} ({worst.kind})",
-                *(f"{np.quantile(loose, level):.3g}" if len(loose) else "-" for level in LEVELS),
-            )
+def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
+    """By suspension and quantity: numbers, the largest error / claim, claim / error at levels."""
+    held = [row for row in rows if row.get("quantity") is not None]
+    data = [
+        {"suspension": variant.words, "quantity": quantity, **_looseness(part)}
+        for variant, quantity in itertools.product(variants(), QUANTITIES)
+        if (part := [r for r in held if (r["suspension"], r["quantity"]) == (variant.words, quantity)])
+    ]
+    lines = [
+        (
+            one["suspension"],
+            QUANTITIES[one["quantity"]].words,
+            *(str(one[name]) for name in ("numbers", "exact")),
+            f"{one['largest_error_over_claim']:.7g}",
+            f"{one['scene']} ({one['kind']})",
+            *(f"{value:.3g}" for value in one["claim_over_error"].values()),
+            *"-" * (len(LEVELS) - len(one["claim_over_error"])),
         )
+        for one in data
+    ]
     head = ("suspension", "quantity", "numbers", "exact", "largest error / claim", "scene")
-    levels = tuple(f"claim / error at {100 * level:g}%" for level in LEVELS)
-    scenes = len({held.scene for held in helds})
-    return f"{scenes} scenes held against the reference\n{table((*head, *levels), rows)}"
+    scenes = len({row["number"] for row in held})
+    table = Table((*head, *(f"claim / error at {100 * level:g}%" for level in LEVELS)), tuple(lines))
+    return Findings(
+        (f"{scenes} scenes held against the reference", table),
+        {**settings, "scenes": scenes, "quantities": data},
+        ExitStatus.AGREE if all(row["error"] <= row["claim"] for row in held) else ExitStatus.DISAGREE,
+    )
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a study and print it; 0 if every claim holds, else 1."""
-    parser = argparse.ArgumentParser(prog="python -m validate.studies.claims", description=study.__doc__)
-    parser.add_argument("--formulation", default="pointcoord", choices=NAMES)
-    parser.add_argument("--count", type=int, default=300, help="scenes")
-    parser.add_argument("--first", type=int, default=0, help="number of the first scene")
-    options = parser.parse_args(arguments)
-    cars = (random_scene(number) for number in range(options.first, options.first + options.count))
-    helds = study(cars, options.formulation)
-    print(study_text(helds))
-    return 1 if any(not held.share <= 1.0 for held in helds) else 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+def _looseness(rows: Sequence[Row]) -> dict[str, Any]:
+    """What errors of one quantity come to, in parts of their claims; the scene is that of the largest."""
+    off = [row for row in rows if row["error"] != 0.0]
+    error, claim = np.array([(row["error"], row["claim"]) for row in off]).reshape(-1, 2).T
+    with np.errstate(divide="ignore"):
+        share, loose = error / claim, claim / error
+    worst = off[int(share.argmax())] if off else rows[0]
+    return {
+        "numbers": len(rows),
+        "exact": len(rows) - len(off),
+        "largest_error_over_claim": float(share.max(initial=0.0)),
+        "scene": worst["number"],
+        "kind": worst["kind"],
+        "claim_over_error": {f"{level:g}": float(np.quantile(loose, level)) for level in LEVELS}
+        if off
+        else {},
+    }

@@ -6,27 +6,35 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from pointcoord import Scene, SceneError, built_in_scenes
-from pointcoord.scene.messages import meant
-from pointcoord.suspensions import SUSPENSIONS
+from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.wording import meant
 from validate.hard.case import Case
 from validate.hard.catalogue import CASES
+from validate.hard.family import BESIDE, SUBJECTS
 
 NEAR = 1e-3
 
 # Hard cases that no solver can be asked, by the reason.
 _NO_SCENE = "it is no scene: the number cannot be part of one, and pointcoord refuses to read it"
 _NO_LENGTH = "it is no scene: a link or an axis without length is refused when it is read"
-_OTHER_LINKS = "it is a mechanism with other links than a suspension has, which no scene can say"
-_OF_BOTH = (
+_OTHER_LINKS = (
+    "it is a mechanism with a link too many or too few, which is refused, or solved as it is without"
+)
+_FAMILIES = (
     (_NO_SCENE, ("not-a-number", "infinity", "minus-infinity", "whole-number-too-large", "heave-not-finite")),
     (_NO_LENGTH, ("link-without-length",)),
-    (_OTHER_LINKS, ("link-missing", "link-twice", "link-twice-for-another", "link-too-long")),
+    (_OTHER_LINKS, ("link-missing", "constraint-missing", "link-twice", "link-twice-for-another")),
     (_OTHER_LINKS, ("input-twice", "contradictory-links", "arm-held-by-a-third-link")),
 )
-_BESIDE = ("constraint-missing-beside", "link-twice-beside", "link-twice-for-another-beside")
+_OPEN = "a solver may refuse this mechanism, or this value, and be right"
+_REASONS = {
+    f"{name}{subject.suffix}": reason
+    for reason, names in _FAMILIES
+    for name in names
+    for subject in (*SUBJECTS, BESIDE)
+}
 NOT_ASKED: Mapping[str, str] = {
-    **{f"{n}{suffix}": reason for reason, names in _OF_BOTH for n in names for suffix in ("", "-wishbone")},
-    **dict.fromkeys(_BESIDE, _OTHER_LINKS),
+    case.name: _REASONS.get(case.name, _OPEN) for case in CASES if not (case.answered or case.without_pose)
 }
 
 
@@ -42,7 +50,7 @@ def scenes_to_try(
     Args:
         names: of built-in or hard scenes, paths, or scenes themselves; all built-in ones if not given.
         hard: whether the hard cases are added: every one that is one scene and has an answer.
-        suspension: scenes of this type only, such as "double_wishbone".
+        suspension: scenes of this shipped mechanism only, such as "double_wishbone".
         closure: scenes whose drawing closes in this way only, such as "drawn".
         near: how near to its singular place each hard case is taken: at the value of its parameter that is
             nearest to this, of those where there is an answer. None: at each of them.
@@ -117,14 +125,14 @@ def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[
 
 
 def _of_kind(scenes: Mapping[str, Scene], suspension: str | None, closure: str | None) -> dict[str, Scene]:
-    """Those of a type and a closure."""
-    if suspension is not None and suspension not in SUSPENSIONS:
-        raise ValueError(f"suspension={suspension!r}: there is none; there are: {', '.join(SUSPENSIONS)}")
-    closures = dict.fromkeys(name for one in SUSPENSIONS.values() for name in one.closures)
+    """Those of a mechanism and a closure."""
+    if suspension is not None and suspension not in shipped():
+        raise ValueError(f"suspension={suspension!r}: there is none; there are: {', '.join(shipped())}")
+    closures = dict.fromkeys(name for one in shipped() for name in mechanism_file(one).closures)
     if closure is not None and closure not in closures:
         raise ValueError(f"closure={closure!r}: there is none; there are: {', '.join(closures)}")
     return {
         name: scene
         for name, scene in scenes.items()
-        if suspension in (None, scene.mechanism.type) and closure in (None, scene.mechanism.closure)
+        if suspension in (None, scene.mechanism.name) and closure in (None, scene.mechanism.closure)
     }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.scene.messages import meant, shown
+from pointcoord.wording import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
 from validate.solvers.names import known_names, misspelt

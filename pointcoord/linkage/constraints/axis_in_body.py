@@ -21,13 +21,15 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
 from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout
+from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
+    exact_square,
     minus_pair,
     pair_cross,
     pair_product,
+    pair_root,
     pair_sum,
     two_sum,
 )
@@ -44,7 +46,8 @@ SOLVED = 32.0 * UNIT_ROUNDOFF
 class AxisInBody(Constraint):
     r"""An axis drawn from `tail` to `head` that the body of a triangle carries. Three rows.
 
-    d - a (p_first - p_base) - b (p_second - p_base) - c n = 0 with d along p_head - p_tail as drawn.
+    d - a (p_first - p_base) - b (p_second - p_base) - c n = 0 with d along p_head - p_tail as drawn; without
+    a tail, along the direction of the car that the head names.
     """
 
     axis: str
@@ -70,8 +73,7 @@ class AxisInBody(Constraint):
     @property
     def constants(self) -> tuple[str, ...]:
         """Its place in the body: a, b and c."""
-        body = self.normal
-        return tuple(f"{self.axis} along {part}" for part in (body.first, body.second, body.normal))
+        return weight_names(self.axis, self.normal)
 
     @property
     def holds_a_body(self) -> bool:
@@ -80,21 +82,8 @@ class AxisInBody(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the constants and the edges."""
-        body = self.normal
-        d, o, p, q, n = (
-            layout.vector(name) for name in (self.axis, body.base, body.first, body.second, body.normal)
-        )
-        a, b, c = (layout.scalar(name) for name in self.constants)
-        zero, one = layout.zero, layout.one
-        return tuple(
-            (
-                Product(1.0, (d[i], zero), (one, zero)),
-                Product(-1.0, (a, zero), (p[i], o[i])),
-                Product(-1.0, (b, zero), (q[i], o[i])),
-                Product(-1.0, (c, zero), (n[i], zero)),
-            )
-            for i in range(3)
-        )
+        d, zero = layout.vector(self.axis), layout.zero
+        return weighted_rows(layout, (d, (zero, zero, zero)), self.normal, self.constants)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
         """The drawn direction and its constants, with what they lack by rounding.
@@ -102,41 +91,76 @@ class AxisInBody(Constraint):
         Raises:
             MechanismError: the axis has no direction, or the triangle is flat.
         """
-        body = self.normal
         direction = scaled_axis(drawing, self.tail, self.head)
-        base, first, second = (drawing.vectors[name] for name in (body.base, body.first, body.second))
-        edges = (two_sum(first, -base), two_sum(second, -base))
-        columns = (*edges, pair_cross(*edges))
-        frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
-        lengths = np.linalg.norm(edges[0][0], axis=-1) * np.linalg.norm(edges[1][0], axis=-1)
-        area = np.linalg.norm(columns[2][0], axis=-1)
-        if not (area > 16 * UNIT_ROUNDOFF * lengths).all():
-            names = (body.base, body.first, body.second)
-            raise MechanismError(
-                f"{', '.join(names)} lie in one line, so they cannot carry the {self.axis}; "
-                "move one off the line",
-                names,
-            )
-        inverse = np.linalg.inv(frame)
-        high, _ = direction
-        weights = _applied(inverse, np.broadcast_to(high, frame.shape[:-1]))
-        rest, size = _unexplained(direction, columns, weights)
-        weights = weights + _applied(inverse, rest)
-        rest, size = _unexplained(direction, columns, weights)
-        values, lacks = two_sum(weights, _applied(inverse, rest))
-        spread = np.abs(inverse)
-        again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
-        doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
         places = tuple(layout.scalar(name) for name in self.constants)
-        return (Placed(layout.vector(self.axis), high), Placed(places, values, lacks, doubt))
+        weights = weights_in_body(drawing, direction, self.normal, self.axis)
+        return (Placed(layout.vector(self.axis), direction[0]), Placed(places, *weights))
+
+
+def weight_names(name: str, body: Normal) -> tuple[str, ...]:
+    """What the constants a, b and c of a vector in a body are called."""
+    return tuple(f"{name} along {part}" for part in (body.first, body.second, body.normal))
+
+
+def weighted_rows(
+    layout: Layout, vector: tuple[Triple, Triple], body: Normal, constants: tuple[str, ...]
+) -> tuple[Row, ...]:
+    """v - a e1 - b e2 - c n = 0 for the difference v of two vectors; bilinear in the constants and edges."""
+    o, p, q, n = (layout.vector(name) for name in (body.base, body.first, body.second, body.normal))
+    (end, start), (a, b, c) = vector, (layout.scalar(name) for name in constants)
+    zero, one = layout.zero, layout.one
+    return tuple(
+        (
+            Product(1.0, (end[i], start[i]), (one, zero)),
+            Product(-1.0, (a, zero), (p[i], o[i])),
+            Product(-1.0, (b, zero), (q[i], o[i])),
+            Product(-1.0, (c, zero), (n[i], zero)),
+        )
+        for i in range(3)
+    )
+
+
+def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> tuple[Array, Array, Array]:
+    """(a, b, c) of a drawn vector in a body, what they lack by rounding, and their doubt, each (..., 3).
+
+    Raises:
+        MechanismError: the body's triangle is flat.
+    """
+    base, first, second = (drawing.vectors[name] for name in (body.base, body.first, body.second))
+    edges = (two_sum(first, -base), two_sum(second, -base))
+    columns = (*edges, pair_cross(*edges))
+    frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
+    lengths = np.linalg.norm(edges[0][0], axis=-1) * np.linalg.norm(edges[1][0], axis=-1)
+    area = np.linalg.norm(columns[2][0], axis=-1)
+    if not (area > 16 * UNIT_ROUNDOFF * lengths).all():
+        names = (body.base, body.first, body.second)
+        raise MechanismError(
+            f"{', '.join(names)} lie in one line, so they cannot carry the {what}; move one off the line",
+            names,
+        )
+    inverse = np.linalg.inv(frame)
+    weights = _applied(inverse, np.broadcast_to(vector[0], frame.shape[:-1]))
+    rest, size = _unexplained(vector, columns, weights)
+    weights = weights + _applied(inverse, rest)
+    rest, size = _unexplained(vector, columns, weights)
+    values, lacks = two_sum(weights, _applied(inverse, rest))
+    spread = np.abs(inverse)
+    again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
+    doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
+    return values, lacks, doubt
 
 
 def scaled_axis(drawing: Drawing, tail: str, head: str) -> Pair:
     """The drawn direction from tail to head, as high and low, of a length between 1/2 and 1.
 
+    Without a tail, half the unit vector along a direction of the car.
+
     Raises:
         MechanismError: both points are in one place.
     """
+    if not tail:
+        high, low = drawing.pair(head)
+        return 0.5 * high, 0.5 * low
     scale = axis_scale(drawing, tail, head)[..., None]
     high, low = two_sum(drawing.vectors[head], -drawing.vectors[tail])
     return high * scale, low * scale
@@ -148,6 +172,18 @@ def axis_scale(drawing: Drawing, tail: str, head: str) -> Array:
     if not (length > 0.0).all():
         raise no_length(tail, head)
     return np.ldexp(1.0, -np.frexp(length)[1])
+
+
+def axis_square(drawing: Drawing, tail: str, head: str) -> Pair:
+    """|d|^2 of the scaled axis, shape (...,)."""
+    high, low = scaled_axis(drawing, tail, head)
+    square, rest = exact_square(high, np.zeros_like(high))
+    return square, rest + 2.0 * np.sum(high * low, axis=-1)
+
+
+def axis_length(drawing: Drawing, tail: str, head: str) -> Pair:
+    """|d| of the scaled axis, shape (...,)."""
+    return pair_root(axis_square(drawing, tail, head))
 
 
 def _applied(matrix: Array, vector: Array) -> Array:

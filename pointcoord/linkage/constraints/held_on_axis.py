@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pointcoord.data_classes import dataclass
-from pointcoord.linkage.constraints.axis_in_body import AxisInBody, axis_scale
-from pointcoord.linkage.constraints.constraint import Constraint, per_axis
+from pointcoord.linkage.constraints.axis_in_body import AxisInBody, axis_square, scaled_axis
+from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
 from pointcoord.linkage.constraints.on_axis import OnAxis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
@@ -54,22 +54,26 @@ class HeldOnAxis(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Linear in the direction, which is unknown; the place is known."""
-        return OnAxis(self.point, self.origin, self.axis.axis, self.place).rows(layout)
+        return OnAxis(self.point, self.origin, self.axis, self.place).rows(layout)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """r with r^2 = |p - p_origin|^2 / |d|^2, and what it lacks by rounding."""
-        tail, head = (drawing.vectors[name] for name in (self.axis.tail, self.axis.head))
-        scale = axis_scale(drawing, self.axis.tail, self.axis.head)
+        """r with r^2 = |p - p_origin|^2 / |d|^2, and what it lacks by rounding.
+
+        Raises:
+            MechanismError: the two points are drawn in one place.
+        """
         far, near = drawing.vectors[self.point], drawing.vectors[self.origin]
-        (reach, reach_rest), (square, square_rest) = exact_square(far, near), exact_square(head, tail)
-        square, square_rest = square * scale * scale, square_rest * scale * scale
-        side = np.where(np.sum((far - near) * (head - tail), axis=-1) < 0.0, -1.0, 1.0)
+        reach, reach_rest = exact_square(far, near)
+        if not (reach > 0.0).all():
+            raise no_length(self.origin, self.point)
+        square, square_rest = axis_square(drawing, self.axis.tail, self.axis.head)
+        direction = scaled_axis(drawing, self.axis.tail, self.axis.head)[0]
+        side = np.where(np.sum((far - near) * direction, axis=-1) < 0.0, -1.0, 1.0)
         place = np.sqrt(reach / square)
         own, own_rest = two_product(place, place)
         held, held_rest = two_product(own, square)
         rest = (reach - held) + (reach_rest - held_rest - own * square_rest - own_rest * square)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            lacks = np.where(place > 0.0, rest / (2.0 * place * square), 0.0)
+        lacks = rest / (2.0 * place * square)
         values = (side * place)[..., None]
         doubt = PAIRS * np.abs(values)
         return (Placed((layout.scalar(self.place),), values, (side * lacks)[..., None], doubt),)

@@ -10,6 +10,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.double_double import Pair, exact_square, pair_root
 from pointcoord.numerics.quadratic import Product, Row
 
 Array = NDArray[np.float64]
@@ -33,6 +34,7 @@ class OnLine(Constraint):
     start: str
     end: str
     ratio: str
+    driven: bool = False
 
     @property
     def name(self) -> str:
@@ -71,19 +73,29 @@ class OnLine(Constraint):
     @property
     def slides(self) -> tuple[str, ...]:
         """The ratio."""
-        return (self.ratio,)
+        return () if self.driven else (self.ratio,)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The ratio of the point's foot on the drawn line."""
+    def length(self, drawing: Drawing) -> Pair:
+        """|p_end - p_start| as high and low."""
+        return pair_root(exact_square(drawing.vectors[self.end], drawing.vectors[self.start]))
+
+    def foot(self, drawing: Drawing) -> Array:
+        """The ratio of the point's foot on the drawn line, shape (...,)."""
         start = drawing.vectors[self.start]
         line = drawing.vectors[self.end] - start
         reach = np.sum((drawing.vectors[self.point] - start) * line, axis=-1)
         square = np.sum(line * line, axis=-1)
         if not (square > 0.0).all():
             raise no_length(self.start, self.end)
-        ratio = reach / square
+        return np.asarray(reach / square)
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The ratio of the point's foot on the drawn line."""
+        ratio = self.foot(drawing)
         if (np.abs(ratio) > FARTHEST).any():
             raise self._ill_drawn(drawing, ratio)
+        if self.driven:
+            return ()
         return (Placed((layout.scalar(self.ratio),), ratio[..., None]),)
 
     def _ill_drawn(self, drawing: Drawing, ratio: Array) -> MechanismError:

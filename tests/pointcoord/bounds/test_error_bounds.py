@@ -91,7 +91,8 @@ def exact_known(mechanism: Mechanism, points: Points, angle: float, rack: float)
     for name in layout.chassis:
         for i, index in enumerate(layout.vector(name)):
             known[index - first] = (place[name][i] - origin[i]) / unit
-    known[layout.vector("up")[2] - first] = known[layout.vector("right")[1] - first] = Fraction(1)
+    known[layout.vector("up")[2] - first] = Fraction(1)
+    known[layout.vector("left")[1] - first] = Fraction(-1)
     arm, travel = mechanism.topology.drives
     length = root(square(place[arm.point], place[arm.pivot]))
     known[layout.scalar(arm.coordinate) - first] = length * cosine(Fraction(angle)) / unit

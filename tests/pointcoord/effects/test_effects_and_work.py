@@ -13,19 +13,20 @@ import pointcoord.solve.taylor
 from pointcoord import Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.mechanism import mechanism_file
 from pointcoord.method import METHODS
 from pointcoord.numerics import newton
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.patches import flood
 from pointcoord.solve import assembly
 from pointcoord.solve.proven_path import inverses
-from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.paper_car import PAPER
 
 # None, each, every pair and all: what three need is what two of them need.
 SUBSETS = [*chain.from_iterable(combinations(EFFECTS, n) for n in range(3)), tuple(EFFECTS)]
 SAMPLES = 7
-POINTS = COLLINEAR.given(PAPER).points
+COLLINEAR = mechanism_file("macpherson").topology("collinear", points=PAPER)
+POINTS = COLLINEAR.points
 MOVING = len(POINTS) - len(COLLINEAR.chassis)
 KNUCKLE = len(COLLINEAR.bodies["knuckle"])
 POWER_OF_TIME = {"mm": 0, "rad": 0, "mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2}

@@ -1,8 +1,9 @@
 """Every kind of constraint: its rows against its equation, its Jacobian against its own residual."""
 
 import importlib
+import inspect
 import pkgutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -13,13 +14,19 @@ from numpy.typing import NDArray
 from pointcoord.linkage import constraints
 from pointcoord.linkage.constraints.axis_in_body import AxisInBody
 from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.contact_height import ContactHeight
+from pointcoord.linkage.constraints.distance import Distance
+from pointcoord.linkage.constraints.height import Height
 from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.kept_from_turning import KeptFromTurning
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.normal import Normal
-from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_axis import OnAxis, OnChassisLine
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.point_in_body import PointInBody
 from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.constraints.some_rows import SomeRows
+from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
 from validate.paper.printed_parallel import PrintedParallel
@@ -31,15 +38,24 @@ LARGEST = 4.0
 BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "d", AXIS, "held")
+LINE = OnChassisLine("b", "o", "line", "o", "c", "place", False)
+HEIGHT = Height("d", "e", "travel")
+CONTACT = ContactHeight("a", "d", "e", "travel", 0.3)
+KEPT = KeptFromTurning("line", ("a", "b"), ("c", "d"))
+KEPT_BY_CHASSIS = KeptFromTurning("wall", ("e", ""), ("c", "d"))
+FURTHER = PointInBody("d", "body", BODY)
+TURN = Turn("turn", "c", "a", "b", "travel", "sine")
+TURN_ON_BODY = Turn("other turn", "d", "a", "b", "travel", "sine", BODY)
+WITH_CONSTANTS = (AXIS, HELD, LINE, HEIGHT, CONTACT, KEPT, KEPT_BY_CHASSIS, FURTHER, TURN, TURN_ON_BODY)
 LAYOUT = Layout(
     moving=("a", "b", "c", "d"),
-    ratios=("place",),
+    ratios=("place", *CONTACT.slides, *TURN.slides, *TURN_ON_BODY.slides),
     chassis=("o",),
     directions=("e",),
-    driven=("travel",),
+    driven=("travel", "sine"),
     squared_lengths=(("a", "b"), ("a", "o")),
-    vectors=("n", "axis"),
-    constants=(*AXIS.constants, *HELD.constants),
+    vectors=("n", "axis", *TURN_ON_BODY.vectors),
+    constants=tuple(name for constraint in WITH_CONSTANTS for name in constraint.constants),
 )
 
 
@@ -55,6 +71,33 @@ class Read:
     def scalar(self, name: str) -> float:
         return float(self.y[LAYOUT.scalar(name)])
 
+    def scalars(self, names: Sequence[str]) -> Array:
+        return np.array([self.scalar(name) for name in names])
+
+    def in_body(self, names: Sequence[str]) -> Array:
+        a, b, c = self.scalars(names)
+        return np.asarray(a * (self.b - self.a) + b * (self.c - self.a) + c * self.n)
+
+
+def contact(p: Read) -> Array:
+    rise, reach = p.scalars(CONTACT.slides)
+    square, share, drawn = p.scalars(CONTACT.constants)
+    height = p.d @ p.e - share * reach - drawn - p.scalar("travel")
+    return np.array([rise - (p.d - p.a) @ p.e, rise**2 + reach**2 - square, height])
+
+
+def turned(turn: Turn, v: Array, across: Array, along: Array, p: Read) -> Array:
+    alpha, beta = p.scalars(turn.slides)
+    row = p.scalar("travel") * alpha - p.scalar("sine") * beta
+    return np.array([alpha - v @ across, beta - v @ along, row])
+
+
+def turned_on_body(p: Read) -> Array:
+    across, along = (p.y[list(LAYOUT.vector(name))] for name in TURN_ON_BODY.vectors)
+    first, second = TURN_ON_BODY.constants[:3], TURN_ON_BODY.constants[3:]
+    rest = (across - p.in_body(first), along - p.in_body(second))
+    return np.concatenate([turned(TURN_ON_BODY, p.d - p.a, across, along, p), *rest])
+
 
 # Each kind with instances and its equation, written as vectors.
 CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
@@ -68,7 +111,10 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
     ),
     (OnLine("c", "a", "b", "place"), lambda p: p.c - p.a - p.scalar("place") * (p.b - p.a)),
     (OnLine("c", "o", "b", "place"), lambda p: p.c - p.o - p.scalar("place") * (p.b - p.o)),
-    (Rack("a", "o", "e", "travel"), lambda p: p.a - p.o + p.scalar("travel") * p.e),
+    (
+        OnChassisLine("a", "o", "rack", "", "e", "travel", True),
+        lambda p: p.a - p.o - p.scalar("travel") * p.e,
+    ),
     (Rise("a", "o", "e", "travel"), lambda p: np.array([(p.a - p.o) @ p.e - p.scalar("travel")])),
     (BODY, lambda p: p.n - np.cross(p.b - p.a, p.c - p.a)),
     (
@@ -80,8 +126,18 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
             - p.scalar("axis along n") * p.n
         ),
     ),
-    (OnAxis("b", "a", "axis", "place"), lambda p: p.b - p.a - p.scalar("place") * p.axis),
-    (OnAxis("o", "a", "axis", "place"), lambda p: p.o - p.a - p.scalar("place") * p.axis),
+    (OnAxis("b", "a", AXIS, "place"), lambda p: p.b - p.a - p.scalar("place") * p.axis),
+    (OnAxis("o", "a", AXIS, "place"), lambda p: p.o - p.a - p.scalar("place") * p.axis),
+    (LINE, lambda p: p.b - p.o - p.scalar("place") * p.scalars(LINE.constants)),
+    (HEIGHT, lambda p: np.array([p.d @ p.e - p.scalar(HEIGHT.constants[0]) - p.scalar("travel")])),
+    (CONTACT, contact),
+    (Distance("a", "d", "travel"), lambda p: np.array([(p.a - p.d) @ (p.a - p.d) - p.scalar("travel")])),
+    (KEPT, lambda p: np.array([(p.a - p.b) @ (p.c - p.d) - p.scalar(KEPT.constants[0])])),
+    (KEPT_BY_CHASSIS, lambda p: np.array([p.e @ (p.c - p.d) - p.scalar(KEPT_BY_CHASSIS.constants[0])])),
+    (FURTHER, lambda p: p.d - p.a - p.in_body(FURTHER.constants)),
+    (TURN, lambda p: turned(TURN, p.c - p.a, *p.scalars(TURN.constants).reshape(2, 3), p)),
+    (TURN_ON_BODY, turned_on_body),
+    (SomeRows(BODY, (2,)), lambda p: (p.n - np.cross(p.b - p.a, p.c - p.a))[2:]),
     (HELD, lambda p: p.c - p.d - p.scalar("held") * p.axis),
     (
         PrintedParallel("a", "b", "c", "d"),
@@ -104,10 +160,16 @@ def states() -> st.SearchStrategy[Array]:
     ).map(settle)
 
 
+def kinds(of: type[Constraint]) -> set[type[Constraint]]:
+    """A kind and those that are made of it, but for what they only share."""
+    own = set() if inspect.isabstract(of) else {of}
+    return own.union(*(kinds(kind) for kind in of.__subclasses__()))
+
+
 def test_every_kind_of_constraint_takes_part_in_the_properties_below() -> None:
     for module in pkgutil.iter_modules(constraints.__path__, f"{constraints.__name__}."):
         importlib.import_module(module.name)
-    assert {type(constraint) for constraint, _ in CASES} == set(Constraint.__subclasses__())
+    assert {type(constraint) for constraint, _ in CASES} == kinds(Constraint)
 
 
 @pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)

@@ -14,9 +14,8 @@ from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.normal import Normal
-from pointcoord.linkage.constraints.on_axis import OnAxis
+from pointcoord.linkage.constraints.on_axis import OnAxis, OnChassisLine
 from pointcoord.linkage.constraints.on_line import FARTHEST, OnLine
-from pointcoord.linkage.constraints.rack import Rack
 from pointcoord.linkage.constraints.rise import Rise
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
@@ -28,9 +27,9 @@ U = 2.0**-53
 BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "b", AXIS, "held")
-SLIDES = OnAxis("b", "a", "axis", "place")
+SLIDES = OnAxis("b", "a", AXIS, "place")
 LINE = OnLine("c", "a", "b", "ratio")
-RACK = Rack("a", "o", "e", "travel")
+RACK = OnChassisLine("a", "o", "rack", "", "e", "travel", True)
 LAYOUT = Layout(
     moving=("a", "b", "c"),
     ratios=("place", "ratio"),
@@ -84,7 +83,6 @@ def test_a_point_that_slides_stands_where_it_is_drawn_on_its_axis() -> None:
         ((-6.0, 18.0, -27.0), -48.0),
         ((3.0, 1.0, 0.0), np.sqrt(10.0) * 16.0 / 11.0),  # straight beside the end: 6 - 6 + 0
         ((10.0, 4.0, 0.0), -np.sqrt(116.0) * 16.0 / 11.0),  # 20 - 24 + 0, behind it
-        ((0.0, 0.0, 0.0), 0.0),
     ],
 )
 def test_a_point_is_held_at_its_distance_to_the_side_where_it_is_drawn(
@@ -98,6 +96,12 @@ def test_a_point_is_held_at_its_distance_to_the_side_where_it_is_drawn(
     assert np.isfinite(placed.lacks).all()
     assert np.abs(placed.lacks).max() <= 5 * U * abs(place)
     assert np.max(placed.doubt) <= 1e3 * U**2 * abs(place)
+
+
+def test_a_point_that_is_held_where_it_is_measured_from_is_a_link_of_no_length() -> None:
+    x, y, z = LONG["b"]
+    with pytest.raises(MechanismError, match="has no length"):
+        HELD.placed(LAYOUT, drawing(**LONG, c=(x, y, z)))
 
 
 def test_a_point_on_a_line_stands_at_its_foot() -> None:

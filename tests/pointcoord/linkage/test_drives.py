@@ -130,7 +130,7 @@ def test_many_laws_of_an_arm_are_each_of_them() -> None:
         assert one == pytest.approx(ARM.series(law, drawing), abs=64 * U * 5.0**4)
 
 
-def test_a_rack_goes_in_units_of_the_car_against_its_direction() -> None:
+def test_a_rack_goes_in_units_of_the_car_along_its_direction() -> None:
     drawing = drawn(8)
     law = np.array([[32.0, -8.0, 2.0], [1.0, 0.0, 0.0]])
     assert RACK.series(law, drawing).tolist() == [[0.125, -0.03125, 0.0078125], [1.0 / 256.0, 0.0, 0.0]]
@@ -141,7 +141,7 @@ def test_a_rack_goes_in_units_of_the_car_against_its_direction() -> None:
     assert (lacks.tolist(), doubt.tolist()) == ([0.0, 0.0], [0.0625, 0.0625])
     exact = RACK.enclosed([Enclosed.of(np.array([x])) for x in (32.0, -8.0, 2.0)], drawing)
     assert [float(part.high[0]) for part in exact] == [0.125, -0.03125, 0.0078125]
-    assert float(RACK.drawn(drawing)) == drawing.vectors["centre"][1] - drawing.vectors["inner"][1]
+    assert float(RACK.drawn(drawing)) == drawing.vectors["inner"][1] - drawing.vectors["centre"][1]
     assert float(RACK.input_value(np.array(0.125), drawing)) == 32.0
     # No rod that is drawn within the car, of the size of 1, reaches as far.
     assert [float(x) for x in RACK.extremes(drawing)] == [-8.0, 8.0]

@@ -14,14 +14,16 @@ from pointcoord import MechanismError, Scene, UnknownName, simulate
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism import mechanism_file
 from pointcoord.method import NEWTON, SERIES, Method
 from pointcoord.numerics.linear import null_directions
-from pointcoord.suspensions.macpherson import COLLINEAR
+
+COLLINEAR = mechanism_file("macpherson").topology("collinear", points=Scene.load("bounce").mechanism.points)
 
 Points = dict[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 LINKS = [c for c in COLLINEAR.constraints if isinstance(c, Link)]
-EVERY_LINK = [(car, c) for car in SAMPLES for c in car.whole.constraints if isinstance(c, Link)]
+EVERY_LINK = [(car, c) for car in SAMPLES for c in car.topology.constraints if isinstance(c, Link)]
 by_link = pytest.mark.parametrize(
     ("car", "link"), EVERY_LINK, ids=[f"{car.name} {link.name}" for car, link in EVERY_LINK]
 )
@@ -39,7 +41,7 @@ def doubled(topology: Topology, link: Link) -> Topology:
 def test_missing_link_is_under_determined_and_the_free_coordinates_are_named(
     car: SampleCar, link: Link
 ) -> None:
-    whole = car.whole
+    whole = car.topology
     n = whole.layout.unknowns
     expected = f"under-determined: {n} unknowns, {n - 1} equations; free"
     with pytest.raises(MechanismError, match=expected) as caught:
@@ -63,9 +65,9 @@ def test_without_the_tie_rod_the_knuckle_is_free_to_turn_and_the_arm_is_not(tabl
 
 @by_link
 def test_doubled_link_is_over_determined_and_both_rows_are_named(car: SampleCar, link: Link) -> None:
-    n = car.whole.layout.unknowns
+    n = car.topology.layout.unknowns
     with pytest.raises(MechanismError, match=f"over-determined: {n} unknowns, {n + 1} equations") as caught:
-        build_mechanism(doubled(car.whole, link), car.points, AXES)
+        build_mechanism(doubled(car.topology, link), car.points, AXES)
     assert set(caught.value.names) == {f"link {link.start} - {link.end}", f"link {link.end} - {link.start}"}
 
 
@@ -90,7 +92,7 @@ def test_drawn_mechanism_is_determined(car: SampleCar) -> None:
 def test_link_without_length_is_refused_by_name(car: SampleCar, link: Link) -> None:
     points = {**car.points, link.start: car.points[link.end]}
     with pytest.raises(MechanismError, match=r"no length|lie in one line") as caught:
-        build_mechanism(car.whole, points, AXES)
+        build_mechanism(car.topology, points, AXES)
     assert {link.start, link.end} <= set(caught.value.names)
 
 
@@ -109,13 +111,13 @@ def test_point_with_two_coordinates_is_refused_by_name(table: Points) -> None:
 
 @by_car
 def test_missing_point_is_refused_by_name(car: SampleCar) -> None:
-    for name in car.whole.required_points:
+    for name in car.topology.required_points:
         points = {other: place for other, place in car.points.items() if other not in (name, "rack_centre")}
-        if name == car.whole.stand_ins["rack_centre"]:
+        if name == car.topology.stand_ins["rack_centre"]:
             points["rack_centre"] = car.points[name]
         with pytest.raises(MechanismError, match=f"point '{name}' is missing; needed: ") as caught:
-            build_mechanism(car.whole, points, AXES)
-        assert all(point in str(caught.value) for point in car.whole.required_points)
+            build_mechanism(car.topology, points, AXES)
+        assert all(point in str(caught.value) for point in car.topology.required_points)
 
 
 def test_missing_and_unknown_directions_are_refused_by_name(table: Points) -> None:

@@ -27,8 +27,13 @@ by_scene = pytest.mark.parametrize("name", RANGES)
 
 
 def with_all_effects(name: str) -> Scene:
-    """As many instants as poses are compared with the reference; a map does not look at them."""
-    scene = Scene.load(name)
+    """As many instants as poses are compared with the reference; a map does not look at them.
+
+    What moves the chassis is an input of the scene, as the reference drives nothing else.
+    """
+    content = Scene.load(name).model_dump(exclude_none=True)
+    content["inputs"].setdefault("heave", {"constant": 0.0})
+    scene = Scene.from_mapping(content)
     time = scene.time.model_copy(update={"samples": POSES})
     return scene.model_copy(update={"effects": tuple(EFFECTS), "time": time})
 

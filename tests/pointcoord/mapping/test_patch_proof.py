@@ -15,11 +15,11 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.monomials import monomials
+from pointcoord.numerics.multi_index import powers, products
 from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.power_series import expand
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.expansion import expand_in_inputs
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers, products
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.solve.assembly import assemble, close_drawing, follow
 
@@ -66,7 +66,7 @@ def series_of(car: SampleCar, angle: float = 0.0625, travel: float = 6.0) -> Ser
     known, lacking, data = domain.known_over(centre, half, ORDER)
     y = follow(mechanism.map, close_drawing(mechanism).y[None], known[:, 0]).y
     factors = factorise(mechanism.map.jacobian(y))
-    found = expand_in_inputs(mechanism.map, factors, y, known, 2, ORDER)
+    found = expand(mechanism.map, factors, y, known, inputs=2)
     return Series(mechanism, domain, centre, half, factors, found, lacking, data)
 
 
@@ -147,7 +147,7 @@ def test_derivatives_are_within_their_bounds_of_those_of_the_solved_poses(car: S
         series.middle + shares * series.half, np.broadcast_to(series.half, (40, 2)), 3
     )
     every = powers(2, 3)
-    local = expand_in_inputs(system, factors, solved, known, 2, 3)
+    local = expand(system, factors, solved, known, inputs=2)
     for direction in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
         along = np.broadcast_to(np.array(direction)[:, None], (2, 40))
         states = [shares.T, along, np.zeros((2, 40))]

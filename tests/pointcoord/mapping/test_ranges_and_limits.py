@@ -9,12 +9,12 @@ import pytest
 from numpy.typing import NDArray
 from sample_cars import GENERAL_STRUT, PAPER_STRUT
 
+from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import Limits, Patches, _seams, flood
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup
-from pointcoord.patches.multi_index import powers
-from pointcoord.patches.way_map import HALVINGS, _widened, order_for, starts_on
+from pointcoord.patches.way_map import HALVINGS, order_for, starts_on, widened
 from pointcoord.solve.assembly import assemble
 
 Array = NDArray[np.float64]
@@ -50,8 +50,8 @@ def test_the_smallest_boxes_of_a_way_are_some_hundred_thousand() -> None:
 
 
 @pytest.mark.parametrize(("low", "high"), [(3.0, 3.0), (-4e3, -4e3), (1.0, 1.0 + 2.0**-22), (0.25, 0.25)])
-def test_a_range_too_narrow_is_widened_alike_on_both_sides(low: float, high: float) -> None:
-    first, last = _widened(low, high)
+def test_a_range_too_narrow_iswidened_alike_on_both_sides(low: float, high: float) -> None:
+    first, last = widened(low, high)
     width = 2.0**-20 * max(abs(low), abs(high), 1.0)
     assert last - first == pytest.approx(width, rel=1e-6)
     assert low - first == pytest.approx(last - high, rel=1e-6)
@@ -59,8 +59,8 @@ def test_a_range_too_narrow_is_widened_alike_on_both_sides(low: float, high: flo
 
 
 def test_a_range_that_is_wide_enough_stays_as_it_is() -> None:
-    assert _widened(1.0, 1.0 + 2.0**-19) == (1.0, 1.0 + 2.0**-19)
-    assert _widened(-1e-6, 1e-6) == (-1e-6, 1e-6)
+    assert widened(1.0, 1.0 + 2.0**-19) == (1.0, 1.0 + 2.0**-19)
+    assert widened(-1e-6, 1e-6) == (-1e-6, 1e-6)
 
 
 @pytest.mark.parametrize(("derivative", "used"), [(0, [0.5, 4.0]), (1, [3.0, 4.0]), (2, [3.0, 10.0])])

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from sample_cars import SAMPLES, SampleCar, by_car
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics import power_series
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.multi_index import powers, products
+from pointcoord.numerics.power_series import multiplied
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.patches import expansion
-from pointcoord.patches.expansion import multiplied
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.multi_index import powers, products
 from pointcoord.patches.patch_proof import _remaining
 from pointcoord.patches.reported_points import moving_points, reported_points
 
@@ -32,9 +32,9 @@ def test_products_of_series_do_not_depend_on_how_many_pairs_are_multiplied_at_on
     monkeypatch: pytest.MonkeyPatch, pairs_at_once: int
 ) -> None:
     pairs = products(2, 4, (2, 8), 1)
-    left, right = np.random.default_rng(3).integers(-9, 10, (2, 5, powers(2, 4).count, 3)).astype(float)
-    wanted = np.add.reduceat(left[:, pairs.first] * right[:, pairs.second], pairs.starts, axis=1)
-    monkeypatch.setattr(expansion, "PAIRS", pairs_at_once)
+    left, right = np.random.default_rng(3).integers(-9, 10, (2, powers(2, 4).count, 5, 3)).astype(float)
+    wanted = np.add.reduceat(left[pairs.first] * right[pairs.second], pairs.starts, axis=0)
+    monkeypatch.setattr(power_series, "PAIRS", pairs_at_once)
     # Whole numbers: no sum is rounded.
     assert np.array_equal(multiplied(left, right, pairs), wanted)
 
@@ -46,7 +46,8 @@ def test_bounds_of_series_without_negative_terms_are_reached_in_the_corner(input
     a, b = generator.integers(0, 10, (2, 4, own.count, 2)).astype(float)
     pairs = products(inputs, 3, (0, 6), 0)
     product = np.zeros((4, doubled.count, 2))
-    product[:, pairs.targets] = multiplied(a, b, pairs)
+    found = multiplied(a.swapaxes(0, 1), b.swapaxes(0, 1), pairs)
+    product[:, pairs.targets] = found.swapaxes(0, 1)
     for coefficients, every, jet in (
         (a, own, Jet.of(-a, own.exponents)),
         (product, doubled, Jet.of(a, own.exponents) * Jet.of(b, own.exponents)),

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from sample_cars import PAPER_STRUT
 
+from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_rows, sum_series
 from pointcoord.patches.flood import Limits, flood
 from pointcoord.patches.lookup import Lookup, Marked
-from pointcoord.patches.multi_index import powers
 from pointcoord.solve.assembly import assemble
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.rack import Rack
+from pointcoord.linkage.constraints.on_axis import OnChassisLine
 from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
@@ -17,8 +17,8 @@ from pointcoord.patches.evaluation import sum_series
 from pointcoord.patches.flood import Limits, flood
 from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.reported_points import moving_points
+from pointcoord.patches.unrelated_poses import solve_unrelated
 from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.unrelated_poses import solve_unrelated
 
 Array = NDArray[np.float64]
 
@@ -35,13 +35,12 @@ TRIPOD = Topology(
     directions=("up",),
     constraints=(
         *(Link("tip", f"slider_{n}") for n in NUMBERS),
-        *(Rack(f"slider_{n}", f"rail_{n}", "up", f"travel {n}") for n in NUMBERS),
+        *(OnChassisLine(f"slider_{n}", f"rail_{n}", "rail", "", "up", f"travel {n}", True) for n in NUMBERS),
     ),
     drives=tuple(Travel(f"travel {n}", f"push_{n}", f"rail_{n}", f"slider_{n}", "up") for n in NUMBERS),
     knuckle="",
     steering_axis=("rail_1", "rail_2"),
     wheel_axis=("slider_1", "tip"),
-    wheel_centre="tip",
     inboard="rail_1",
     front_and_rear=("rail_1", "rail_2"),
 )
@@ -50,7 +49,7 @@ TRIPOD = Topology(
 def tripod() -> Mechanism:
     points = {f"rail_{n}": place for n, place in RAILS.items()}
     points |= {f"slider_{n}": place for n, place in RAILS.items()} | {"tip": TIP}
-    return build_mechanism(TRIPOD, points, {"up": (0.0, 0.0, 1.0)})
+    return build_mechanism(TRIPOD, points, {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)})
 
 
 def tip_at(pushes: Array) -> Array:
@@ -59,7 +58,7 @@ def tip_at(pushes: Array) -> Array:
     squares = ((drawn - rails) ** 2).sum(axis=-1)
     found = []
     for push in pushes:
-        centres = rails - push[:, None] * np.array([0.0, 0.0, 1.0])
+        centres = rails + push[:, None] * np.array([0.0, 0.0, 1.0])
         # Differences of the spheres are two planes; their line meets the first sphere twice.
         normals = centres[1:] - centres[0]
         sides = 0.5 * (squares[0] - squares[1:] + (normals**2).sum(axis=-1))
@@ -102,7 +101,7 @@ def test_unrelated_poses_of_three_inputs_are_the_closed_form_within_their_bounds
     inputs = {name: pushes[:, i] for i, name in enumerate(mechanism.topology.required_inputs)}
     found = solve_unrelated(mechanism, inputs, 1e-9)
     assert not found.failures
-    tip = mechanism.origin + mechanism.unit * found.unknowns[:, list(mechanism.layout.vector("tip"))]
+    tip = mechanism.origin + found.places["tip"]
     # The closed form rounds some 50 times in sizes of 300 mm.
     assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= found.bound + 50 * 2.0**-53 * 300.0).all()
     assert found.bound.max() <= 1e-9

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.numerics.branch import NEAR, on_branch, orientation
+from pointcoord.numerics.branch import NEAR, on_branch, orientation, sides
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
@@ -21,6 +21,7 @@ PARABOLA: QuadraticMap = quadratic_map(
     [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4
 )
 S = 0.5
+ABOVE = orientation(PARABOLA, factorise(PARABOLA.jacobian(np.array([1.0, 1.0, 0.0, 1.0]))))
 
 
 def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float = 1.0) -> bool:
@@ -40,7 +41,7 @@ def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float
         last_step=np.array(first_step),
         work=Work(),
     )
-    return bool(on_branch(PARABOLA, np.array(1.0), series, S, reached, factors))
+    return bool(on_branch(PARABOLA, ABOVE, series, S, reached, factors))
 
 
 # The other branch is 2 u = 2 / omega away; of that distance NEAR may lie between the series and its end.
@@ -72,7 +73,14 @@ def test_a_series_as_near_to_the_other_assembly_is_not_on_the_branch(u: float) -
 def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
     assert ends_on_branch(0.0, 0.0, 0.0, u=1.0)
     assert not ends_on_branch(0.0, 0.0, 0.0, u=-1.0)
-    assert orientation(factorise(PARABOLA.jacobian(np.array([-1.0, 1.0, 0.0, 1.0])))) == -1.0
+    before, beyond = (factorise(PARABOLA.jacobian(np.array([u, 1.0, 0.0, 1.0]))) for u in (1.0, -1.0))
+    assert orientation(PARABOLA, before) != orientation(PARABOLA, beyond)
+
+
+def test_two_folds_at_once_are_not_one_that_is_none() -> None:
+    both = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+    assert len(set(sides(both).tolist())) == 4
+    assert np.isnan(sides(np.array([1.0, 0.0])))
 
 
 def path_to(w: float) -> tuple[float, float]:

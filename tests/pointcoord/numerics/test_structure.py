@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.numerics.structure import Structure, structure_of
+from pointcoord.numerics.structure import Structure, rows_too_many, structure_of
 from validate.cost.growth.chain import FourBarChain
 
 
@@ -70,6 +70,15 @@ def require_blocks(structure: Structure, pattern: Pattern) -> None:
         assert set(block.reads) == read - set(block.unknowns)
         assert {i for i in block.reads if i < n} <= solved
         solved |= set(block.unknowns)
+
+
+@given(patterns())
+def test_rows_too_many_are_more_than_the_unknowns_that_they_read(pattern: Pattern) -> None:
+    rows = rows_too_many(pattern)
+    assert (not rows) == (by_scipy(pattern) is not None)
+    read = {i for row in rows for i in pattern.reads[row] if i < pattern.unknowns}
+    # One more than they can be, so that leaving out any one of them would do.
+    assert len(set(rows)) == len(rows) == (len(read) + 1 if rows else 0)
 
 
 @given(patterns())

@@ -21,9 +21,9 @@ from hypothesis import strategies as st
 from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
 from pointcoord.errors import visible
 from pointcoord.results.even_instants import even_instants
-from pointcoord.scene.scene_text import LARGEST, read_stream
 from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
 from pointcoord.solve.taylor import COARSEST, FINEST
+from pointcoord.toml_text import LARGEST, read_stream
 
 BOUNCE = Scene.load("bounce")
 CONTENT = BOUNCE.model_dump(exclude_none=True)

@@ -1,21 +1,20 @@
 """Designs solved together are the designs solved one by one."""
 
-from dataclasses import replace
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Scene
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
+from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import chain_settings, pose_tolerance, prepare_task
-from pointcoord.solve import chains_together, designs
-from pointcoord.solve.dense_output import evaluate
-from pointcoord.solve.designs import Follow, SolvedDesigns, solve_designs, solve_plainly
-from pointcoord.solve.status import TooRough
-from pointcoord.solve.taylor import Chain, Segment, build_chain
-from pointcoord.sweeping.solving import way_of_inputs
+from pointcoord.solve import box, taylor
+from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.taylor import Chain, build_chain
 
 WISHBONE = Scene.load("double-wishbone")
 # Of these heights of the lower ball joint, mm, the last two cannot be steered as far as the scene does.
@@ -28,15 +27,23 @@ def moved(scene: Scene, height: float) -> Scene:
     return scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
 
 
-def together(scene: Scene, heights: tuple[float, ...]) -> tuple[Mechanism, SolvedDesigns]:
-    points = {name: np.array(place) for name, place in scene.mechanism.points.items()}
-    points["lower_ball_joint"] = points["lower_ball_joint"] + np.outer(heights, (0.0, 0.0, 1.0))
+def drawn(scene: Scene, points: Mapping[str, np.ndarray]) -> Mechanism:
+    places = {name: np.array(place) for name, place in scene.mechanism.points.items()} | dict(points)
     part = scene.mechanism
-    mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
+    return build_mechanism(part.topology, places, {"up": part.up, "right": part.right})
+
+
+def solve(scene: Scene, mechanism: Mechanism, derivative: int = 0) -> SolvedDesigns:
     functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    start, stop = scene.time.start, scene.time.stop
-    settings, allowed = chain_settings(scene, mechanism, 0), pose_tolerance(scene, SERIES, mechanism)
-    return mechanism, solve_designs(mechanism, functions, start, stop, settings, allowed)
+    settings = chain_settings(scene, mechanism, derivative)
+    allowed = pose_tolerance(scene, SERIES, mechanism)
+    return solve_designs(mechanism, functions, scene.time.start, scene.time.stop, settings, allowed)
+
+
+def together(scene: Scene, heights: tuple[float, ...]) -> tuple[Mechanism, SolvedDesigns]:
+    place = np.array(scene.mechanism.points["lower_ball_joint"])
+    mechanism = drawn(scene, {"lower_ball_joint": place + np.outer(heights, (0.0, 0.0, 1.0))})
+    return mechanism, solve(scene, mechanism)
 
 
 def alone(scene: Scene) -> tuple[Mechanism, Chain]:
@@ -48,42 +55,63 @@ def alone(scene: Scene) -> tuple[Mechanism, Chain]:
 
 
 def unknowns(mechanism: Mechanism, chain: Chain, instants: np.ndarray) -> np.ndarray:
-    pieces = [segment.coefficients[..., : mechanism.map.unknowns] for segment in chain.segments]
-    return evaluate(chain, pieces, instants, 0)[0]
+    return chain.summed(instants, mechanism.map.unknowns)
+
+
+def found_of(mechanism: Mechanism, solved: SolvedDesigns, instants: np.ndarray) -> dict[int, np.ndarray]:
+    """By design, what its chain gives."""
+    return {
+        number: place
+        for each in solved.followed
+        for number, place in zip(
+            each.numbers.tolist(), unknowns(mechanism, each.chain, instants), strict=True
+        )
+    }
+
+
+def assert_as_alone(mechanism: Mechanism, solved: SolvedDesigns, scenes: Mapping[int, Scene]) -> None:
+    found = found_of(mechanism, solved, WISHBONE.instants)
+    assert sorted(found) == sorted(scenes) == solved.solved.tolist()
+    for number, scene in scenes.items():
+        own, chain = alone(scene)
+        wanted = unknowns(own, chain, scene.instants)
+        # Each of the two is cut to a tenth of the scene's tolerance at most, the last two terms of a series
+        # standing for what it leaves out.
+        difference = float(mechanism.unit[number]) * np.abs(found[number] - wanted)
+        assert difference.max() <= 2.0 * 0.1 * scene.tolerance
 
 
 def test_designs_that_stop_drop_out_and_the_others_are_solved_as_alone() -> None:
     mechanism, solved = together(WISHBONE, HEIGHTS)
-    assert solved.chain is not None
-    assert set(solved.failures) | set(solved.alive.tolist()) == set(range(len(HEIGHTS)))
+    assert set(solved.failures) | set(solved.solved.tolist()) == set(range(len(HEIGHTS)))
     assert 4 in solved.failures
-    assert {0, 1, 3} <= set(solved.alive.tolist())
-    found = unknowns(mechanism, solved.chain, WISHBONE.instants)
-    for place, number in enumerate(solved.alive.tolist()):
-        scene = moved(WISHBONE, HEIGHTS[number])
-        own, chain = alone(scene)
-        # Each of the two is cut to a tenth of the scene's tolerance at most, the last two terms of a series
-        # standing for what it leaves out.
-        difference = float(mechanism.unit[number]) * np.abs(
-            found[place] - unknowns(own, chain, scene.instants)
-        )
-        assert difference.max() <= 2.0 * 0.1 * scene.tolerance
+    assert {0, 1, 3} <= set(solved.solved.tolist())
+    assert_as_alone(mechanism, solved, {n: moved(WISHBONE, HEIGHTS[n]) for n in solved.solved.tolist()})
+
+
+MANY = tuple(np.linspace(-20.0, 150.0, 24).tolist())
 
 
 def test_a_design_that_stops_says_what_it_says_alone() -> None:
-    _, solved = together(WISHBONE, HEIGHTS)
-    error = solved.failures[4].error()
-    with pytest.raises(AssemblyError) as own:
-        prepare_task(moved(WISHBONE, HEIGHTS[4]), SERIES)
+    _, solved = together(WISHBONE, MANY)
+    assert 0 < len(solved.failures) < len(MANY)
+    for number, status in solved.failures.items():
+        error = status.error()
+        own = what_stops(moved(WISHBONE, MANY[number]))
+        assert isinstance(error, AssemblyError)
+        assert (error.problem, error.limits, error.reduce) == (own.problem, own.limits, own.reduce)
+        for name, value in own.reached.items():
+            # Near a fold the steps end 1e-13 of the path before it; it is found from either side of that.
+            assert error.reached[name] == pytest.approx(value, rel=1e-9, abs=1e-9)
+
+
+def what_stops(scene: Scene) -> AssemblyError:
+    try:
+        error = alone(scene)[1].status.error()
+    except AssemblyError as refused:
+        return refused
     assert isinstance(error, AssemblyError)
-    assert (error.problem, error.limits, error.reduce) == (
-        own.value.problem,
-        own.value.limits,
-        own.value.reduce,
-    )
-    for name, value in own.value.reached.items():
-        # Near a fold the steps end 1e-13 of the path before it; the fold is found from either side of that.
-        assert error.reached[name] == pytest.approx(value, rel=1e-9, abs=1e-9)
+    return error
 
 
 def test_a_closed_drawing_is_kept_of_a_design_that_cannot_move() -> None:
@@ -93,71 +121,94 @@ def test_a_closed_drawing_is_kept_of_a_design_that_cannot_move() -> None:
     assert residual < 1e-12
 
 
-def test_no_designs_are_no_error_and_none_that_moves_leaves_no_chain() -> None:
+def test_none_that_moves_leaves_no_chain() -> None:
     _, solved = together(WISHBONE, (150.0, 150.0))
-    assert solved.chain is None
-    assert solved.start is None
-    assert not len(solved.alive)
+    assert not solved.followed
+    assert not len(solved.solved)
     assert set(solved.failures) == {0, 1}
 
 
-MANY = tuple(np.linspace(-20.0, 150.0, 24).tolist())
+@pytest.mark.parametrize("name", ["bounce", "steer", "off-axis-strut", "double-wishbone", "five-link"])
+def test_designs_that_are_alike_share_one_chain(name: str) -> None:
+    scene = Scene.load(name)
+    moves = np.random.default_rng(4).uniform(-1.0, 1.0, (len(scene.mechanism.points), 12, 3))
+    places = scene.mechanism.points.items()
+    mechanism = drawn(
+        scene, {point: np.array(place) + move for (point, place), move in zip(places, moves, strict=True)}
+    )
+    (followed,) = solve(scene, mechanism, 2).followed
+    np.testing.assert_array_equal(followed.numbers, np.arange(12))
 
 
-def test_designs_as_columns_are_those_of_the_plain_form() -> None:
-    mechanism, solved = together(WISHBONE, MANY)
-    assert solved.chain is not None
-    functions = {name: WISHBONE.functions[name] for name in mechanism.topology.required_inputs}
-    settings, allowed = chain_settings(WISHBONE, mechanism, 0), pose_tolerance(WISHBONE, SERIES, mechanism)
-    start, stop = WISHBONE.time.start, WISHBONE.time.stop
-    plain = solve_plainly(mechanism, Follow(functions, start, stop, settings, allowed))
-    assert plain.chain is not None
-    np.testing.assert_array_equal(solved.alive, plain.alive)
-    assert 0 < len(solved.failures) < len(MANY)
-    assert set(solved.failures) == set(plain.failures)
-    for number, status in solved.failures.items():
-        mine, theirs = status.error(), plain.failures[number].error()
-        assert isinstance(mine, AssemblyError)
-        assert isinstance(theirs, AssemblyError)
-        assert (mine.problem, mine.limits, mine.reduce) == (theirs.problem, theirs.limits, theirs.reduce)
-    np.testing.assert_allclose(solved.closed, plain.closed, rtol=0, atol=1e-13)
-    found = unknowns(mechanism.taken(solved.alive), solved.chain, WISHBONE.instants)
-    wanted = unknowns(mechanism.taken(plain.alive), plain.chain, WISHBONE.instants)
-    difference = mechanism.unit[solved.alive, None, None] * np.abs(found - wanted)
-    assert difference.max() <= 2.0 * 0.1 * WISHBONE.tolerance
-
-
-def test_designs_as_columns_take_no_plain_form_where_all_goes_well(monkeypatch: pytest.MonkeyPatch) -> None:
-    def plainly(*_: object) -> SolvedDesigns:
-        raise AssertionError("solved plainly")
-
-    monkeypatch.setattr(designs, "solve_plainly", plainly)
-    monkeypatch.setattr(Follow, "begun", plainly)
-    for name in ("bounce", "steer", "off-axis-strut", "double-wishbone"):
-        scene = Scene.load(name)
-        points = {
-            point: np.array(place) + np.random.default_rng(4).uniform(-1.0, 1.0, (12, 3))
-            for point, place in scene.mechanism.points.items()
-        }
-        part = scene.mechanism
-        mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
-        functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-        settings, allowed = chain_settings(scene, mechanism, 2), pose_tolerance(scene, SERIES, mechanism)
-        start, stop = scene.time.start, scene.time.stop
-        solved = solve_designs(mechanism, functions, start, stop, settings, allowed)
-        assert len(solved.alive) == 12
-
-
-def test_a_design_that_asks_for_shorter_segments_is_solved_or_dropped_for_its_own_reason() -> None:
+def test_a_design_that_asks_for_much_shorter_segments_goes_on_without_the_others() -> None:
     # The last of these nearly locks on the way, and asks for more segments than all others.
-    edge = max(set(np.linspace(100.0, 150.0, 26).tolist()) - failing())
-    mechanism, solved = together(WISHBONE, (*np.linspace(-20.0, 20.0, 9).tolist(), edge))
-    assert solved.chain is not None
-    np.testing.assert_array_equal(solved.alive, np.arange(10))
-    own, chain = alone(moved(WISHBONE, edge))
-    found = unknowns(mechanism, solved.chain, WISHBONE.instants)[9]
-    difference = float(mechanism.unit[9]) * np.abs(found - unknowns(own, chain, WISHBONE.instants))
-    assert difference.max() <= 2.0 * 0.1 * WISHBONE.tolerance
+    heights = tuple(np.linspace(100.0, 150.0, 26).tolist())
+    stopped = {heights[number] for number in together(WISHBONE, heights)[1].failures}
+    edge = max(set(heights) - stopped)
+    near = (*np.linspace(-20.0, 20.0, 9).tolist(), edge)
+    mechanism, solved = together(WISHBONE, near)
+    assert [each.numbers.tolist() for each in solved.followed] == [list(range(9)), [9]]
+    few, many = (len(each.chain.segments) for each in solved.followed)
+    assert few < many
+    assert_as_alone(mechanism, solved, {n: moved(WISHBONE, height) for n, height in enumerate(near)})
+
+
+@pytest.mark.parametrize("inputs", [2, 0])
+def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
+    inputs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(box, "INPUTS", inputs)
+    right = taylor.on_branch
+
+    def all_but_the_third(*arguments: Any) -> NDArray[np.bool_]:
+        good = np.array(right(*arguments))
+        if good.shape[:1] == (9,):
+            good[2] = False
+        return good
+
+    monkeypatch.setattr(taylor, "on_branch", all_but_the_third)
+    near = tuple(np.linspace(-20.0, 20.0, 9).tolist())
+    mechanism, solved = together(WISHBONE, near)
+    assert [each.numbers.tolist() for each in solved.followed] == [[0, 1, 3, 4, 5, 6, 7, 8], [2]]
+    assert_as_alone(mechanism, solved, {n: moved(WISHBONE, height) for n, height in enumerate(near)})
+
+
+def test_designs_whose_inputs_come_back_are_one_series_in_these() -> None:
+    near = tuple(np.linspace(-20.0, 20.0, 9).tolist())
+    (followed,) = together(WISHBONE, near)[1].followed
+    assert [type(segment) for segment in followed.chain.segments] == [box.Box]
+    # Of a box that the ways hardly fill, a chain of series in time is cheaper.
+    once = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"stop": 0.2})})
+    (followed,) = together(once, near)[1].followed
+    assert [type(segment) for segment in followed.chain.segments] == [taylor.Segment]
+
+
+@pytest.mark.parametrize("name", ["double-wishbone", "steer", "off-axis-strut"])
+def test_rates_by_inputs_are_those_in_time(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene.load(name)
+    sine = {"sine": {"amplitude": 10.0, "angular_frequency": 9.0, "phase": 0.4, "offset": 2.0}}
+    scene = scene.model_copy(update={"inputs": {**scene.inputs, "rack": sine}})
+    place = np.array(scene.mechanism.points["tie_rod_outer"])
+    mechanism = drawn(scene, {"tie_rod_outer": place + np.outer(np.linspace(-3.0, 3.0, 5), (0.0, 0.0, 1.0))})
+    (by_inputs,) = solve(scene, mechanism, 2).followed
+    assert isinstance(by_inputs.chain.segments[0], box.Box)
+    monkeypatch.setattr(box, "INPUTS", 0)
+    (in_time,) = solve(scene, mechanism, 2).followed
+    tolerance = chain_settings(scene, mechanism, 2).kept.tolerance
+    n = mechanism.map.unknowns
+    for order in range(3):
+        found, other = (each.chain.summed(scene.instants, n, order) for each in (by_inputs, in_time))
+        difference = np.abs(found - other).max()
+        size = 1.0 if order == 0 else np.abs(found).max()
+        # Each of the two is held to the tolerance, and rounded some hundred times.
+        assert difference <= (2.0 * tolerance + 200.0 * EPS) * size
+
+
+def test_designs_at_one_instant_are_one_series() -> None:
+    scene = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"stop": 0.0, "samples": 1})})
+    _, solved = together(scene, MANY[:9])
+    assert [len(each.chain.segments) for each in solved.followed] == [1]
+    np.testing.assert_array_equal(solved.solved, np.arange(9))
 
 
 def test_designs_that_all_lock_at_one_instant_are_told_of() -> None:
@@ -169,89 +220,9 @@ def test_designs_that_all_lock_at_one_instant_are_told_of() -> None:
     )
     points = {name: np.array(place) + np.zeros((9, 3)) for name, place in scene.mechanism.points.items()}
     points["wheel_centre"] = points["wheel_centre"] + np.outer(np.arange(9.0), (0.0, 0.0, 1.0))
-    part = scene.mechanism
-    mechanism = build_mechanism(part.topology, points, {"up": part.up, "right": part.right})
-    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    settings, allowed = chain_settings(scene, mechanism, 0), pose_tolerance(scene, SERIES, mechanism)
-    solved = solve_designs(mechanism, functions, 0.0, 1.5, settings, allowed)
+    solved = solve(scene, drawn(scene, points))
     assert set(solved.failures) == set(range(9))
     for status in solved.failures.values():
         error = status.error()
         assert isinstance(error, AssemblyError)
         assert error.reached["arm_angle"] == pytest.approx(np.deg2rad(152.013), abs=1e-5)
-
-
-def test_designs_that_only_go_on_in_parts_are_one_chain_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole, sizes = Follow.together, []
-
-    def in_parts(follow: Follow, mechanism: Mechanism) -> object:
-        sizes.append(len(mechanism.drawn))
-        ended = whole(follow, mechanism)
-        return replace(ended, status=TooRough("rack", 0.0, False)) if len(sizes) == 1 else ended
-
-    monkeypatch.setattr(Follow, "together", in_parts)
-    mechanism, solved = together(WISHBONE, (-20.0, 0.0, 20.0))
-    assert sizes == [3, 1, 2, 3]
-    np.testing.assert_array_equal(solved.alive, np.arange(3))
-    assert solved.chain is not None
-    assert unknowns(mechanism, solved.chain, WISHBONE.instants[:2]).shape == (3, 2, mechanism.map.unknowns)
-
-
-def test_designs_at_one_instant_are_no_functions_of_their_inputs() -> None:
-    scene = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"stop": 0.0, "samples": 1})})
-    mechanism, _ = together(WISHBONE, MANY[:9])
-    functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-    settings, allowed = chain_settings(scene, mechanism, 2), pose_tolerance(scene, SERIES, mechanism)
-    way = way_of_inputs(WISHBONE, functions)
-    solved = solve_designs(mechanism, functions, 0.0, 0.0, settings, allowed, way)
-    assert solved.boxes is None
-    np.testing.assert_array_equal(solved.alive, np.arange(9))
-
-
-def test_an_end_with_a_first_step_beyond_the_tolerance_is_not_confirmed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    whole, plainly = chains_together.confirm, []
-
-    def missed(*given: object) -> object:
-        found = whole(*given)
-        return replace(found, first_step=found.first_step + 1e-3)
-
-    def counted(mechanism: Mechanism, follow: Follow) -> SolvedDesigns:
-        plainly.append(len(mechanism.drawn))
-        return solve_plainly(mechanism, follow)
-
-    monkeypatch.setattr(chains_together, "confirm", missed)
-    monkeypatch.setattr(designs, "solve_plainly", counted)
-    _, solved = together(WISHBONE, MANY[:9])
-    assert plainly == [9]
-    np.testing.assert_array_equal(solved.alive, np.arange(9))
-
-
-def test_a_segment_is_cut_by_the_sizes_of_its_own_terms(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole, seen = chains_together._Step.segment, []
-
-    def looked(step: chains_together._Step, stop: float) -> Segment:
-        terms = step.series.y[: step.series.count, : step.course.columns.map.unknowns]
-        np.testing.assert_array_equal(step.sizes, np.abs(terms).max(axis=1), strict=True)
-        seen.append(stop)
-        return whole(step, stop)
-
-    monkeypatch.setattr(chains_together._Step, "segment", looked)
-    _, solved = together(WISHBONE, MANY[:9])
-    assert solved.chain is not None
-    assert len(seen) == len(solved.chain.segments)
-
-
-@pytest.mark.parametrize("last", [(1.0, 1e-3), (1e-3, 1.0)])
-def test_a_member_stands_out_by_the_larger_of_its_last_two_terms(last: tuple[float, float]) -> None:
-    # Every other term is missing where a car is symmetric.
-    step = object.__new__(chains_together._Step)
-    step.sizes, step.stays = np.full((9, 5), 1e-3), np.zeros(5, dtype=bool)
-    step.sizes[-2:, 3] = np.array(last)
-    np.testing.assert_array_equal(step._standing_out(), [False, False, False, True, False])
-
-
-def failing() -> set[float]:
-    heights = tuple(np.linspace(100.0, 150.0, 26).tolist())
-    return {heights[number] for number in together(WISHBONE, heights)[1].failures}

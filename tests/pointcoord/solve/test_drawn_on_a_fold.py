@@ -57,7 +57,7 @@ def sides(car: SampleCar, sine: float, count: int) -> list[bool]:
         points = drawn_with_a_dead_tie_rod(car, sine, turn)
         axes = {"up": turn.apply([0.0, 0.0, 1.0]), "right": turn.apply([0.0, 1.0, 0.0])}
         try:
-            mechanism = build_mechanism(car.whole, plain(points), plain(axes))
+            mechanism = build_mechanism(car.topology, plain(points), plain(axes))
             closed = close_drawing(mechanism).y
         except (AssemblyError, MechanismError):
             continue
@@ -85,7 +85,7 @@ def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> N
 
 def test_without_the_sign_of_the_determinant_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        pointcoord.solve.assembly, "orientation", lambda factors: np.ones(factors.matrix.shape[:-2])
+        pointcoord.solve.assembly, "orientation", lambda system, factors: np.ones(factors.matrix.shape[:-2])
     )
     assert not all(
         side for car in CLOSING for power in (-9, -8) for side in sides(car, 5.0 * 10.0**power, 40)

@@ -14,6 +14,8 @@ from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.method import NEWTON
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.pointwise import straight_way
 
 Array = NDArray[np.float64]
 Make = Callable[..., Scene]
@@ -109,3 +111,33 @@ def test_another_assembly_is_not_taken_for_the_next_pose(
 def at(poses: list[Array], targets: Array, unknowns: int) -> Array:
     """Those of the poses that have these known coordinates."""
     return np.array([min(poses, key=lambda y: np.abs(y[unknowns:] - w).max()) for w in targets])
+
+
+@pytest.mark.parametrize("name", ["steer", "off-axis-strut", "double-wishbone", "five-link"])
+def test_eta_of_a_straight_way_is_at_least_what_is_left_all_along_it(name: str) -> None:
+    """Also with the inverse of another pose, where C_u T does not take back all of C_w dw.
+
+    There the cross term of C(y + s T) = C(y) + s 2 B(y, T) + s^2 B(T, T) is the largest of the three. With
+    half of it, or without either of the others, what is left is somewhere more than eta.
+    """
+    mechanism = prepare_task(Scene.load(name), NEWTON).readout.mechanism
+    system, n, rng = mechanism.map, mechanism.map.unknowns, np.random.default_rng(5)
+    drawing = close_drawing(mechanism)
+    drawn = mechanism.input_values(drawing.y[n:])
+    reach = {name: 30.0 if mechanism.topology.input_units[name] == "mm" else 1.0 for name in drawn}
+    noticed = np.zeros(3, dtype=bool)
+    # How far the pose is from that of the inverse, how long the way is, and how far the pose is off.
+    for apart, length, off in ((0.1, 1e-4, 1e-12), (1e-9, 0.05, 1e-12), (1e-9, 1e-4, 1e-3)):
+        inputs = {name: value + apart * reach[name] for name, value in drawn.items()}
+        target = {name: (value + length * reach[name])[..., None] for name, value in inputs.items()}
+        y = assemble(mechanism, inputs, None, drawing).y
+        y[:n] += off * rng.uniform(-1.0, 1.0, n)
+        inverse = drawing.factors.preconditioner
+        way = straight_way(system, inverse, y, mechanism.known_series(target)[0])
+        rows = system.residual(y), 2.0 * system.polar(y, way.tangent), system.residual(way.tangent)
+        first, cross, last = (np.abs(inverse @ each).max() for each in rows)
+        for s in (0.25, 0.5, 1.0):
+            left = np.abs(inverse @ system.residual(y + s * way.tangent)).max()
+            assert left <= way.eta * (1.0 + 1e-9) + 1e-15
+            noticed |= left > np.array([cross + last, first + 0.5 * cross + last, first + cross])
+    assert noticed.all()

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, simulate
-from pointcoord.solve.taylor import SHORT, Settings, gone_on, last_magnitudes, length_by_sizes
+from pointcoord.solve.taylor import SHORT, Settings, gone_on, last_magnitudes, lengths_by_sizes
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ def test_a_segment_is_as_long_as_its_last_two_terms_allow_in_every_derivative(se
     logs = random_logs(rng, int(rng.integers(1, 4)))
     settings = Settings(10.0 ** rng.uniform(-15.0, -5.0), int(rng.integers(0, 3)))
     count = logs.shape[-1]
-    length = length_by_sizes(logs, settings)
+    length = float(lengths_by_sizes(logs, settings).min())
     logs[:, -2:] = carried_on(logs)
 
     def parts(s: float) -> Array:

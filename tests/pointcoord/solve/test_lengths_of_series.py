@@ -17,7 +17,7 @@ from pointcoord.solve.taylor import (
     build_chain,
     decay_by_sizes,
     gone_on,
-    length_by_sizes,
+    lengths_by_sizes,
     power_of_two,
 )
 from pointcoord.time_functions import Polynomial, Sine, TimeFunction
@@ -36,7 +36,7 @@ def test_a_series_ends_where_its_last_two_terms_are_half_the_tolerance_of_a_deri
     sizes = radius ** -k.astype(float) / np.maximum(k, 1) ** 2
     sizes[0] = 7.0
     with np.errstate(divide="ignore"):
-        length = length_by_sizes(np.log(sizes)[None], Settings(tolerance, derivative))
+        length = float(lengths_by_sizes(np.log(sizes)[None], Settings(tolerance, derivative))[0])
 
     def largest_part(s: float) -> float:
         """Of the last two terms in half the tolerance times the size, over the derivatives."""

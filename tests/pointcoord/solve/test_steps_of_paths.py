@@ -29,7 +29,7 @@ def test_a_step_from_a_place_that_is_off_is_as_long_as_its_condition_allows(
     pose, rng = at(mechanism, 1.3, 10.0), np.random.default_rng(4)
     system, n, factors = mechanism.map, mechanism.layout.unknowns, pose.factors
     tangent, correction = np.zeros(system.size), np.zeros(system.size)
-    tangent[mechanism.layout.scalar("arm rise")] = 0.5
+    tangent[mechanism.layout.scalar("arm_angle rise")] = 0.5
     tangent[:n] = -factors.solve(2.0 * system.polar(pose.y, tangent))
     correction[:n] = off * rng.uniform(-1.0, 1.0, n)
     inverse = np.linalg.inv(system.jacobian(pose.y))

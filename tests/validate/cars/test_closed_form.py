@@ -6,15 +6,12 @@ from itertools import combinations
 import mpmath
 import numpy as np
 import pytest
+from cars_in_closed_form import DRAWN, FORMS, PUT_IN_PLACE, VARIANTS, ClosedForm, Linkage, Variant, cars_of
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from validate.cars.car import Car
-from validate.cars.closed_form import ClosedForm
-from validate.cars.input_limits import Linkage
-from validate.cars.near_singular import car_with_ends
-from validate.cars.registry import VARIANTS, Variant, suspension_of
-from validate.cars.strategies import cars
+from validate.hard.cases.oriented import SIDES
 
 EPS = float(np.finfo(float).eps)
 STRUTS = tuple(v for v in VARIANTS if v.suspension == "macpherson")
@@ -34,7 +31,7 @@ def near_drawing(car: Car, arm: float, rack: float) -> tuple[float, float]:
 
 
 def exact(car: Car) -> ClosedForm:
-    return suspension_of(car).form.of(car, mpmath.mpf)
+    return FORMS[car.suspension].of(car, mpmath.mpf)
 
 
 def pose_of(form: ClosedForm, angle: float, rack: float) -> dict[str, np.ndarray]:
@@ -55,7 +52,7 @@ def product(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> mpmath.mpf:
     return sum(x * y for x, y in zip(np.cross(a, b), c, strict=True))
 
 
-@given(cars(), SHARES, SHARES)
+@given(cars_of(), SHARES, SHARES)
 def test_links_and_knuckle_keep_their_lengths_and_inputs_are_what_they_say(
     car: Car, arm: float, rack: float
 ) -> None:
@@ -64,7 +61,7 @@ def test_links_and_knuckle_keep_their_lengths_and_inputs_are_what_they_say(
     p = pose_of(form, angle, travel)
     assume(exists(p))
     carried = [name for name in form.knuckle if name in p]
-    for start, end in {REAR_LINK, *suspension_of(car).links, *combinations(carried, 2)}:
+    for start, end in {REAR_LINK, *form.links, *combinations(carried, 2)}:
         assert abs(length(p[start] - p[end]) - length(form.p[start] - form.p[end])) < 1e-40
     ball = p["lower_ball_joint"]
     assert abs(sum(ball * form.up) - length(form.p["lower_ball_joint"]) * mpmath.cos(angle)) < 1e-40
@@ -73,14 +70,14 @@ def test_links_and_knuckle_keep_their_lengths_and_inputs_are_what_they_say(
         assert all(x == 0 for x in p[name] - form.p[name])
 
 
-@given(cars(), SHARES, SHARES)
+@given(cars_of(), SHARES, SHARES)
 def test_every_side_is_that_of_the_drawing_and_the_knuckle_is_no_mirror_image(
     car: Car, arm: float, rack: float
 ) -> None:
-    form, suspension = exact(car), suspension_of(car)
+    form = exact(car)
     p = pose_of(form, *near_drawing(car, arm, rack))
     assume(exists(p))
-    for origin, *others in suspension.sides[car.closure].values():
+    for origin, *others in SIDES[car.suspension, car.closure].values():
         drawn, now = (product(*(q[name] - q[origin] for name in others)) for q in (form.p, p))
         assert drawn * now >= 0
     beside = [product(q["lower_arm_rear"], form.up, q["lower_ball_joint"]) for q in (form.p, p)]
@@ -90,7 +87,7 @@ def test_every_side_is_that_of_the_drawing_and_the_knuckle_is_no_mirror_image(
     assert abs(drawn - now) < 1e-30
 
 
-@given(cars(STRUTS), SHARES, SHARES)
+@given(cars_of(STRUTS), SHARES, SHARES)
 def test_the_top_of_a_strut_stays_on_the_axis_of_its_knuckle(car: Car, arm: float, rack: float) -> None:
     form = exact(car)
     p = pose_of(form, *near_drawing(car, arm, rack))
@@ -112,7 +109,7 @@ def test_the_top_of_a_strut_stays_on_the_axis_of_its_knuckle(car: Car, arm: floa
         assert abs(across - length(np.cross(there, now)) * length(direction)) < 1e-30
 
 
-@given(cars([v for v in VARIANTS if v.closure == "drawn"]))
+@given(cars_of(DRAWN))
 def test_a_drawing_comes_back_at_its_own_inputs_to_what_it_leaves_over(car: Car) -> None:
     linkage = Linkage.of(car)
     inner = linkage.p["tie_rod_inner"] - linkage.p["rack_centre"]
@@ -130,7 +127,7 @@ def test_a_drawing_comes_back_at_its_own_inputs_to_what_it_leaves_over(car: Car)
             assert float(np.abs(pose[name] - place).max()) <= 100 * EPS * far / (room * 0.05), name
 
 
-@given(cars([v for v in VARIANTS if v.closure == "collinear"]), SHARES, SHARES)
+@given(cars_of(PUT_IN_PLACE), SHARES, SHARES)
 def test_a_collinear_drawing_once_closed_is_the_same_strut_as_drawn(
     car: Car, arm: float, rack: float
 ) -> None:
@@ -138,7 +135,7 @@ def test_a_collinear_drawing_once_closed_is_the_same_strut_as_drawn(
     home = pose_of(collinear, linkage.drawn_angle, linkage.drawn_rack)
     assume(exists(home))
     closed = Car(home, car.side, car.up, car.right)
-    drawn = suspension_of(closed).form.of(closed, mpmath.mpf)
+    drawn = FORMS[closed.suspension].of(closed, mpmath.mpf)
     inputs = near_drawing(car, arm, rack)
     there, again = pose_of(collinear, *inputs), pose_of(drawn, *inputs)
     assume(exists(there))
@@ -146,7 +143,7 @@ def test_a_collinear_drawing_once_closed_is_the_same_strut_as_drawn(
     assert max(abs(x) for name in there for x in there[name] - again[name]) < 1e-15
 
 
-@given(cars(), SHARES, SHARES)
+@given(cars_of(), SHARES, SHARES)
 def test_floating_point_and_many_digits_agree(car: Car, arm: float, rack: float) -> None:
     linkage = Linkage.of(car)
     angle, travel = near_drawing(car, arm, rack)
@@ -170,10 +167,7 @@ def test_an_array_of_inputs_gives_the_poses_of_each(variant: Variant) -> None:
             assert np.array_equal(both[name][i, k], place, equal_nan=True)
 
 
-def test_a_collinear_slide_never_runs_out() -> None:
-    rng = np.random.default_rng(8)
-    struts = [car for car in (car_with_ends(rng) for _ in range(60)) if car.closure == "collinear"]
-    assert struts
-    for car in struts:
-        linkage = Linkage.of(car)
-        assert float(linkage.form.upper_spare(np.array(linkage.drawn_angle))) == 1.0
+@given(cars_of(PUT_IN_PLACE))
+def test_a_collinear_slide_never_runs_out(car: Car) -> None:
+    linkage = Linkage.of(car)
+    assert float(linkage.form.upper_spare(np.array(linkage.drawn_angle))) == 1.0

@@ -5,20 +5,22 @@ import io
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import jsonschema
 import pytest
-from made_rows import alike, kept, key, measured, study
+from made_rows import kept, measured, study
 from program import run as run_program
 
 from validate.cli import main
 from validate.commands import cost
+from validate.cost import study as studying
 from validate.cost.row import Row
-from validate.cost.store import Store, StoreError
+from validate.cost.scenes import STUDY_SCENES
+from validate.cost.store import Store, StoreError, measured_here, read_rows
+from validate.cost.study import Study
 from validate.output.document import schema_text
 
 CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
@@ -33,20 +35,10 @@ def store(tmp_path: Path) -> str:
 
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Puts others in the place of what measures the accuracy, and of the other parts nothing."""
+    """Puts another in the place of what measures."""
 
     def plant(measure: Callable[..., Any]) -> None:
-        modules = {
-            "accuracy": {"accuracy_rows": measure},
-            "growth.rows": {"measure_growth": lambda *_: ()},
-            "effects": {"measure_effects": lambda *_: ()},
-            "loading": {"measure_loading": lambda *_: ()},
-            "unrelated": {"measure_unrelated": lambda *_: ()},
-        }
-        for name, content in modules.items():
-            module = ModuleType(name)
-            vars(module).update(content)
-            monkeypatch.setitem(sys.modules, f"validate.cost.{name}", module)
+        monkeypatch.setattr(studying, "measure", measure)
 
     return plant
 
@@ -73,7 +65,7 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
     assert main(["cost", "--from-rows", "--rows", store]) == 0
     out, err = told(capsys)
     assert err == []
-    assert out.index("Races: 30") < out.index("bounce: time of a configuration to reach")
+    assert out.index("A pose to 1e-9 mm") < out.index("bounce: time of a pose to an accuracy of position")
     assert "a made machine" in out
     assert store in out
     assert Path(store).read_bytes() == before
@@ -106,7 +98,7 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
 ) -> None:
     assert main(["cost", "--from-rows", "--rows", store, "--json", "-"]) == 0
     data = document(capsys.readouterr().out)
-    assert (data["kind"], data["complete"], data["verdict"]) == ("cost", True, "agree")
+    assert (data["kind"], data["complete"], data["verdict"]) == ("cost", True, "nothing compared")
     assert len(data["rows"]) == len(ROWS)
     assert data["measured_by"]["machine"] == "a made machine, 2 cores"
     assert data["sentences"]
@@ -132,7 +124,7 @@ def test_quiet_says_nothing_but_writes(
 @pytest.mark.parametrize(
     ("words", "ways", "scenes", "parts"),
     [
-        (["bounce"], None, {"bounce"}, {"accuracy", "growth", "loading"}),
+        (["bounce"], None, {"bounce"}, {"accuracy", "growth"}),
         (
             ["--ways", "series,mujoco"],
             {"series", "mujoco"},
@@ -200,8 +192,10 @@ def test_a_wrong_command_ends_with_2_and_one_line_before_anything_is_measured(
 @pytest.mark.parametrize(
     ("content", "parts"),
     [
-        ("not rows\n", ["line 1", "is no row", "give another file"]),
-        ('{"cost of accuracy": 99}\n', ["form 99"]),
+        ("not rows\n", ["line 1", "is no row", "it is not JSON", "give another file"]),
+        ('{"cost of accuracy": 1}\n', ["line 1 is no row", "it has no 'part'"]),
+        (json.dumps({**asdict(ROWS[0]), "time": "soon"}), ["time is 'soon'; allowed: a number from 0 up"]),
+        (json.dumps(asdict(ROWS[0]))[:-1] + f', "size": {"9" * 5000}}}', ["size is too large a number"]),
         ("", ["holds no rows", "measure them first"]),
     ],
 )
@@ -251,27 +245,26 @@ def test_of_a_scene_that_was_changed_the_last_rows_count(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "rows.jsonl"
-    old = [measured("mine.toml", way, "", alike(1e-3), 1e-3) for way in ("series", "newton")]
-    kept(path, old, digest="before")
-    new = measured("mine.toml", "series", "", alike(1e-9), 1e-5)
-    kept(path, [new], digest="after")
+    for way in ("series", "newton"):
+        kept(path, measured("mine.toml", way, "", {"position": 1e-3}, 1e-3), digest="before")
+    kept(path, measured("mine.toml", "series", "", {"position": 1e-9}, 1e-5), digest="after")
     assert main(["cost", "--from-rows", "--rows", str(path), "--json", "-"]) == 0
     (row,) = document(capsys.readouterr().out)["rows"]
-    assert row["errors"]["position"]["largest"] == 1e-9
+    assert row["error"] == 1e-9
 
 
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rows.jsonl"
-    kept(path, [measured("bounce", "series", "", alike(1e-3), 1e-3)], quick=True)
+    kept(path, measured("bounce", "series", "", {"position": 1e-3}, 1e-3), quick=True)
     words = ["cost", "--from-rows", "--rows", str(path), "--json", "-"]
     # Where there are no others the quick ones are shown, and called quick.
     assert main(words) == 0
     assert document(capsys.readouterr().out)["quick"] is True
-    kept(path, [measured("bounce", "series", "", alike(1e-9), 1e-3)])
+    kept(path, measured("bounce", "series", "", {"position": 1e-9}, 1e-3))
     for more, largest in (([], 1e-9), (["--quick"], 1e-3)):
         assert main([*words, *more]) == 0
         (row,) = document(capsys.readouterr().out)["rows"]
-        assert row["errors"]["position"]["largest"] == largest
+        assert row["error"] == largest
 
 
 def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
@@ -300,21 +293,21 @@ def test_a_folder_that_cannot_be_had_is_refused_before_anything_is_measured(
     assert (tmp_path / "file").read_text() == "mine"
 
 
-def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., tuple[Row, ...]]:
+def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., list[Row]]:
     """A measurement that keeps rows, and then ends as told."""
 
-    def measure(scenes: Any, store: Store, ways: Any, *, quick: bool, progress: Any) -> tuple[Row, ...]:
+    def measure(study: Study, store: Store, progress: Any) -> list[Row]:
         for number, row in enumerate(rows):
             progress(row.way, number, len(rows))
-            store.write(key(row, quick=quick), row)
+            store.write([replace(row, quick=study.quick)])
         if end is not None:
             raise end
-        return rows
+        return store.rows
 
     return measure
 
 
-ONE = measured("bounce", "series", "1e-9 mm", alike(1e-10), 1e-5)
+(ONE,) = measured("bounce", "series", "1e-9 mm", {"position": 1e-10}, 1e-5)
 
 
 def test_ctrl_c_keeps_and_names_what_was_measured(
@@ -345,10 +338,10 @@ def test_json_of_an_interrupted_run_holds_what_was_measured(
 def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fake(planted(Row("accuracy", "bounce", "series", status="failed", reason="locked at 2 s")))
+    fake(planted(Row("accuracy", "bounce", "series", verdict="failed", reason="locked at 2 s")))
     assert main(["cost", "--rows", str(tmp_path / "rows.jsonl")]) == 3
     out, err = told(capsys)
-    assert "failed: locked at 2 s" in out
+    assert "locked at 2 s" in out
     assert "nothing could be measured" in err[0]
 
 
@@ -360,46 +353,86 @@ def test_rows_that_cannot_be_written_end_with_4(
     assert "is the disk full?" in told(capsys)[1][0]
 
 
-def test_progress_is_told_to_a_terminal_only(
+def test_a_pipe_has_no_line_that_is_written_over_and_a_quiet_run_none_at_all(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(ONE))
+    assert main(["cost", "--rows", str(tmp_path / "a.jsonl")]) == 0
+    assert "\r" not in capsys.readouterr().err
+    assert main(["cost", "--rows", str(tmp_path / "c.jsonl"), "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "scenes", "parts"),
+    [
+        ([], STUDY_SCENES, cost.PARTS),
+        (["--quick"], ("bounce-and-steer",), ("accuracy",)),
+        (["--quick", "--parts", "growth,loading"], ("bounce-and-steer",), ("growth", "loading")),
+        (
+            ["steer", "near-toggle", "steer"],
+            ("steer", "near-toggle"),
+            ("accuracy", "effects", "growth", "unrelated"),
+        ),
+        (["--effects", "steer"], ("steer",), ("effects",)),
+        (["--parts", "loading,accuracy", "steer"], ("steer",), ("accuracy", "loading")),
+    ],
+)
+def test_what_is_measured_is_what_the_options_say(
+    words: list[str],
+    scenes: tuple[str, ...],
+    parts: tuple[str, ...],
+    tmp_path: Path,
+    fake: Callable[..., None],
+) -> None:
+    asked: list[Study] = []
+
+    def measure(study: Study, store: Store, progress: Any) -> list[Row]:
+        asked.append(study)
+        return [ONE]
+
+    fake(measure)
+    assert main(["cost", *words, "--rows", str(tmp_path / "rows.jsonl"), "--quiet"]) == 0
+    (study,) = asked
+    assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
+    assert study.quick == ("--quick" in words)
+    assert study.own == bool({"steer"} & {*words})
+
+
+def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
     tmp_path: Path,
     fake: Callable[..., None],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     fake(planted(ONE))
-    assert main(["cost", "--rows", str(tmp_path / "a.jsonl")]) == 0
-    assert "\r" not in capsys.readouterr().err
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setenv("TERM", "dumb")  # one that takes no more than lines
-    assert main(["cost", "--rows", str(tmp_path / "b.jsonl")]) == 0
-    err = capsys.readouterr().err
-    assert "\r0 of 1: series" in err
-    assert err.rstrip(" ").rstrip("\r").rstrip(" ").endswith("\r") or err.endswith("\r")
-    assert main(["cost", "--rows", str(tmp_path / "c.jsonl"), "--quiet"]) == 0
-    assert capsys.readouterr().err == ""
+    path = tmp_path / "mine.jsonl"
+    assert main(["cost", "--quick", "--rows", str(path)]) == 0
+    assert f"the picture: {tmp_path / 'mine.svg'}" in capsys.readouterr().out
+    assert (tmp_path / "mine.svg").read_text().startswith("<?xml")
+    (tmp_path / "mine.svg").unlink()
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for name in [name for name in sys.modules if name.startswith("validate.cost.picture")]:
+        monkeypatch.delitem(sys.modules, name)
+    assert main(["cost", "--quick", "--rows", str(path)]) == 0
+    assert "pip install 'pointcoord[plot]'" in capsys.readouterr().err
+    assert not (tmp_path / "mine.svg").exists()
 
 
-def test_named_scenes_are_measured_in_the_parts_that_are_about_a_scene(
-    tmp_path: Path, fake: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+def test_a_real_run_of_one_way_goes_on_with_what_it_has(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked: list[tuple[str, ...]] = []
-
-    def measure(scenes: Any, store: Store, ways: Any, **_: object) -> tuple[Row, ...]:
-        asked.append(tuple(scene.name for scene in scenes))
-        return (ONE,)
-
-    fake(measure)
-
-    def loading(*_: object) -> tuple[Row, ...]:
-        raise AssertionError("loading was not asked for")
-
-    monkeypatch.setattr(sys.modules["validate.cost.loading"], "measure_loading", loading)
-    rows = ["--rows", str(tmp_path / "rows.jsonl"), "--quiet"]
-    assert main(["cost", "steer", "near-toggle", "steer", *rows]) == 0
-    assert asked == [("steer", "near-toggle")]
-    nothing: Any = None
-    with pytest.raises(AssertionError, match="not asked for"):
-        cost._of_part("loading", cost.Study((), (), (), (), False), nothing, nothing)
+    path = tmp_path / "rows.jsonl"
+    words = ["cost", "steer", "--quick", "--ways", "series", "--rows", str(path)]
+    assert main(words) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("What accuracy costs in time\nA pose to 1e-9 mm of position takes series")
+    kept_rows = read_rows(path)
+    assert {row.way for row in kept_rows} == {"series"}
+    assert kept_rows[0].machine == measured_here().machine
+    before = path.read_bytes()
+    assert main(words) == 0
+    assert path.read_bytes() == before
 
 
 def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
@@ -427,23 +460,6 @@ def test_the_program_reports_rows_as_a_shell_runs_it(store: str) -> None:
     assert done.returncode == 0
     assert done.stderr == ""
     assert done.stdout.startswith("What accuracy costs in time")
-
-
-def test_effects_alone_are_a_part_that_has_an_option_of_its_own(
-    tmp_path: Path, fake: Callable[..., None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fake(lambda *_, **__: pytest.fail("the accuracy was not asked for"))
-    row = Row("effects", "steer", "series", "no effect", configurations=10)
-    asked: list[list[str]] = []
-
-    def measure(_: Store, scenes: Any, *__: object) -> tuple[Row, ...]:
-        asked.append([scene.name for scene in scenes])
-        return (row,)
-
-    monkeypatch.setattr(sys.modules["validate.cost.effects"], "measure_effects", measure)
-    rows = ["--rows", str(tmp_path / "rows.jsonl"), "--quiet"]
-    assert main(["cost", "--effects", "steer", *rows]) == 0
-    assert asked == [["steer"]]
 
 
 def test_effects_and_parts_both_say_what_to_measure(capsys: pytest.CaptureFixture[str]) -> None:

@@ -257,7 +257,6 @@ def test_a_validate_of_another_distribution_is_told_by_name(kind: str, tmp_path:
     [
         ("pointcoord", ["hard", "--list"]),
         ("pointcoord", ["study", "random", "--records", "x"]),
-        ("validate.studies.claims", []),
     ],
 )
 def test_without_the_extra_one_line_names_it(program: str, words: list[str], tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ def test_the_effort_that_is_planned_is_the_work_of_the_solved_motion(name: str, 
     assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
     # The tolerance is what was asked for, or the finest that a series holds, and then the motion says so.
     noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
-    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12)) == (not noted)
+    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12, abs=0.0)) == (not noted)
     assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
     # Nothing is summed at the instants.
     assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated

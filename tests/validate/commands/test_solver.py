@@ -81,13 +81,14 @@ def run(*words: str) -> int:
 def test_a_right_solver_ends_with_0(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run("own_solvers.right:solve", "off-axis-strut.toml", "double-wishbone.toml") == 0
     said = capfd.readouterr()
-    assert "2 of 2 scenes agree between own_solvers.right:solve and pointcoord" in said.out
+    assert "own_solvers.right:solve and pointcoord: 2 scenes" in said.out
+    assert "2 of 2 scenes agree" in said.out
     assert "DISAGREES" not in said.out
     assert not complaints(said.err)
 
 
 def test_what_is_not_given_is_listed_and_no_fault(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert run("own_solvers.half:solve", "off-axis-strut.toml") == 0
+    assert run("own_solvers.half:solve", "off-axis-strut.toml", "-v") == 0
     out = capfd.readouterr().out
     assert "note: own_solvers.half:solve gives no angular velocity" in out
     lines = {line.split("  ")[0]: line for line in out.splitlines()}
@@ -96,7 +97,7 @@ def test_what_is_not_given_is_listed_and_no_fault(solvers: Path, capfd: pytest.C
 
 
 def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert run("own_solvers.wrong:solve", "off-axis-strut.toml") == 1
+    assert run("own_solvers.wrong:solve", "off-axis-strut.toml", "-v") == 1
     lines = {line.split("  ")[0]: line for line in capfd.readouterr().out.splitlines()}
     assert "DISAGREES" in lines["camber"]
     assert lines["toe"].endswith("agrees")
@@ -105,7 +106,7 @@ def test_a_wrong_solver_ends_with_1(solvers: Path, capfd: pytest.CaptureFixture[
     capfd.readouterr()
     assert run("own_solvers.wrong:solve", "--accuracy", "1e6", "off-axis-strut.toml", "-q") == 3
     (line,) = capfd.readouterr().err.splitlines()
-    assert "no verdict: no number that is given is tested; camber: " in line
+    assert "no verdict: no number that is given is tested; camber, toe: not tested: " in line
 
 
 def test_another_solver_than_the_baselines_is_no_verdict(
@@ -129,7 +130,7 @@ def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_sum
     (failure,) = ElementTree.parse(tests).getroot().iter("failure")
     assert f"; what would explain it: {why}" in failure.get("message", "")
     (line,) = (one for one in summary.read_text("utf-8").splitlines() if "what would explain it" in one)
-    assert line.endswith(f"; what would explain it: {markdown(why)}")
+    assert line.endswith(f"what would explain it: {markdown(why)}")
 
 
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
@@ -283,7 +284,7 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
     (solvers / "own_solvers" / "odd_ones.py").write_text(text, encoding="utf-8")
     told = []
     for extra in ([], ["--in-process"]):
-        assert run("own_solvers.odd_ones:solve", "off-axis-strut.toml", *extra) == 3
+        assert run("own_solvers.odd_ones:solve", "off-axis-strut.toml", "-v", *extra) == 3
         out = capfd.readouterr().out
         assert "agrees" in next(line for line in out.splitlines() if line.startswith("position"))
         told.append(out)
@@ -298,9 +299,10 @@ def test_how_much_was_compared_is_said_and_points_of_the_chassis_are_no_agreemen
     tests = solvers / "tests.xml"
     assert run("own_solvers.chassis:solve", "off-axis-strut.toml", "--junit", str(tests)) == 3
     out = capfd.readouterr().out
-    assert "  no verdict: whatever agrees is what the solver was given" in out
+    assert "not tested" in out
+    assert "no verdict: whatever agrees is what the solver was given" in out
     count = sum(map(len, given_to_solver(Scene.load("off-axis-strut"))["asked"].values()))
-    assert out.rstrip().endswith(
+    assert out.splitlines()[-2].endswith(
         f"; 1 of {count} numbers compared, 1 of them data that the solver was given, {count - 1} not given."
     )
     (error,) = ElementTree.parse(tests).getroot().iter("error")

@@ -1,169 +1,156 @@
-"""The report of made rows: everything that was measured, failed or left out is in it, and nothing else."""
+"""The report shows what the rows hold, in tables, pages, pictures and data; the same rows, the same bytes."""
 
 import csv
 import io
 import json
-import math
-import re
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 
+import jsonschema
 import pytest
-from made_rows import HEADER, alike, dialled, error, measured, study
+from made_rows import alike, measured, study
 
-from validate.cost.findings import findings
+from validate.cost.looks import looks
+from validate.cost.picture.figures import figures, headline
 from validate.cost.report import NOTHING, Report
 from validate.cost.row import Row
-from validate.cost.tables import csv_text, full_tables, short_tables
-from validate.output.terminal import text_of
+from validate.cost.ways.registry import WAYS
+from validate.output.document import schema_text
+from validate.output.table import Table as Shown
 
 ROWS = tuple(study())
+REPORT = Report("rows.jsonl", "pointcoord cost --from-rows", False, ROWS)
 
 
-def report(rows: tuple[Row, ...] = ROWS) -> Report:
-    return Report("rows.jsonl", HEADER, "pointcoord cost", False, rows)
+def test_a_terminal_sees_the_sentences_first_and_tables_of_positions() -> None:
+    text = REPORT.text()
+    lines = text.splitlines()
+    assert lines[0] == "What accuracy costs in time"
+    assert lines[1].startswith("A pose to 1e-9 mm of position takes series")
+    assert "a made machine, 2 cores" in text
+    titles = [line for line in lines if "by the cheapest setting" in line]
+    assert [title.split(":")[0] for title in titles] == ["bounce", "double-wishbone"]
+    assert all("accuracy of position" in title for title in titles)
+    # A page has every quantity.
+    assert REPORT.markdown().count("by the cheapest setting") == 10
 
 
-def test_machine_versions_threads_and_command_are_at_the_top_of_every_report() -> None:
-    one = report()
-    for text in (one.text(), one.markdown().replace("\\", "")):
-        head = text.partition("Races:")[0]
-        for words in (
-            HEADER.machine,
-            HEADER.program,
-            "numpy 2.0.0",
-            "OMP_NUM_THREADS 1",
-            "pointcoord cost",
-            "rows.jsonl",
-        ):
-            assert words in head
+def test_a_table_has_the_quickest_way_first_and_the_dialled_number() -> None:
+    (table, *_) = [one for one in REPORT.tables if one.title.startswith("bounce")]
+    first, second = table.rows[:2]
+    assert first[:4] == ("series*", "4.49 us (1e-3)", "6.34 us (1e-6)", "8.95 us (1e-9)")
+    assert second[0] == "mujoco"
+    reached = {row[0]: row for row in table.rows}
+    assert reached["printed"][1:4] == ("not reached",) * 3
+    assert reached["scipy-root"][3:5] == ("not reached", "2.0e-08")
+    assert "one solve serves any instant" in table.notes[0]
 
 
-def test_sentences_come_before_tables() -> None:
-    for text in (report().text(), report().markdown()):
-        assert text.index("Races:") < text.index("time of a configuration to reach")
+def test_what_has_no_numbers_is_told_with_its_reason_once() -> None:
+    (table,) = [one for one in REPORT.tables if one.title == "Without numbers"]
+    told = {row[0]: row[1:] for row in table.rows}
+    assert told["bounce exudyn"] == ("failed", "no convergence at 1.25 s")
+    assert told["double-wishbone printed"][0] == "left out"
+    assert told["chain relative"] == ("left out", "1500 unknowns: would take an hour")
 
 
-def test_a_terminal_of_120_columns_holds_the_text() -> None:
-    long = dialled("bounce", "least-squares-jac", 1e-3, 0.1, 1e-13)
-    long = [replace(row, setting=f"xtol, ftol, gtol {row.setting}") for row in long]
-    assert max(len(line) for line in report((*ROWS, *long)).text().splitlines()) <= 120
-
-
-def test_failures_and_omissions_stand_with_their_reasons_and_are_in_no_mean() -> None:
-    for text in (report().text(), report().markdown()):
-        assert "exudyn: failed: no convergence at 1.25 s" in text
-        assert "printed: left out: the paper's formulas are of a strut" in text
-        assert "mujoco, scipy-root" not in text  # they give positions and are asked for nothing else
-        assert "1500 unknowns: left out: would take an hour" in text
-    states = [row["status"] for row in csv.DictReader(io.StringIO(csv_text(ROWS)))]
-    assert (states.count("failed"), states.count("left out")) == (2, 2)
-
-
-def test_a_quantity_that_is_not_given_and_a_row_measured_otherwise_have_their_reasons() -> None:
-    rows = (
-        replace(
-            measured("bounce", "mujoco", "", {"position": 1e-12}, 1e-5), not_given={"velocity": "it has none"}
-        ),
-        replace(measured("bounce", "scipy-root", "", alike(1e-9), 1e-5), reason="at 8 of the 200 instants"),
+def test_growth_and_loading_have_their_tables() -> None:
+    titles = {table.title: table for table in REPORT.tables}
+    growth = titles["Growth in unknowns of chain: value = factor x size^exponent, of the largest sizes"]
+    assert growth.rows[0][:3] == ("series 1e-09 mm", "time", "1.10 +- 0.00")
+    assert titles["Loading, the start of Python included"].rows == (
+        ("import pointcoord", "150 ms", "100 ms to 200 ms"),
     )
-    text = report(rows).text()
-    assert "mujoco: velocity not given: it has none" in text
-    assert "scipy-root: at 8 of the 200 instants" in text
 
 
-def test_errors_that_are_exactly_0_or_no_number_look_like_what_they_are() -> None:
-    row = measured("bounce", "absolute", "", alike(1e-13), 1e-5)
-    row = replace(row, errors={"position": error(0.0), "velocity": error(math.nan)})
-    text = report((row,)).text()
-    assert re.search(r"^absolute +0 +not a number ", text, flags=re.M)
-
-
-def test_fewer_numbers_than_others_give_are_told() -> None:
-    whole = measured("bounce", "newton", "", {"position": 1e-12}, 1e-5)
-    part = replace(measured("bounce", "mujoco", "", {}, 1e-5), errors={"position": error(1e-12, numbers=300)})
-    assert "position over fewer than 900 numbers: mujoco 300" in report((whole, part)).text()
-
-
-def test_the_csv_gives_back_every_number_to_the_last_bit() -> None:
-    lines = list(csv.DictReader(io.StringIO(csv_text(ROWS))))
+def test_the_csv_is_the_long_table_with_every_digit() -> None:
+    lines = list(csv.DictReader(io.StringIO(REPORT.csv())))
     assert len(lines) == len(ROWS)
     for line, row in zip(lines, ROWS, strict=True):
-        assert (line["part"], line["scene"], line["way"], line["setting"]) == (
-            row.part,
-            row.scene,
-            row.way,
-            row.setting,
-        )
-        for quantity, found in row.errors.items():
-            assert float(line[f"{quantity}_largest"]) == found.largest
-            assert float(line[f"{quantity}_rms"]) == found.rms
-        for phase, time in row.times.items():
-            assert (float(line[f"{phase}_median_s"]), float(line[f"{phase}_lower_s"])) == (
-                time.median,
-                time.lower,
-            )
-        seconds = row.seconds("solve")
-        assert line["solve_s_per_configuration"] == ("" if seconds is None else repr(seconds))
+        assert line["way"] == row.way
+        assert float(line["time"] or 0.0) == (row.time or 0.0)
+        assert line["size"] == ("" if row.size is None else str(row.size))
 
 
-def test_every_measured_setting_is_in_the_full_tables_and_the_short_ones_say_how_many_are_not() -> None:
-    found = findings(ROWS)
-    full = "\n".join(table.markdown() for table in full_tables(ROWS, found))
-    for row in ROWS:
-        if row.part == "accuracy" and row.status == "measured":
-            assert f"{row.way}{'*' if row.dense else ''} {row.setting}".strip() in full
-    assert "24 further settings" in "\n".join(text_of(table.parts()) for table in short_tables(ROWS, found))
+def test_the_data_keeps_to_the_schema() -> None:
+    schema = json.loads(schema_text())
+    data = json.loads(json.dumps(REPORT.data(), allow_nan=False))
+    of_cost = next(one for one in schema["oneOf"] if one["properties"]["kind"].get("const") == "cost")
+    jsonschema.validate(data | {"kind": "cost"}, {**of_cost, "$defs": schema["$defs"]})
+    assert data["measured_by"]["machine"] == "a made machine, 2 cores"
+    assert {one["against"] for one in data["growths"]} == {"instants", "designs", "unknowns"}
+    assert data["rows"][0]["error"] == ROWS[0].error
 
 
-def test_the_way_to_an_accuracy_is_its_cheapest_setting_in_the_table_and_what_is_not_reached_says_so() -> (
-    None
-):
-    (table, *_) = short_tables(ROWS, findings(ROWS))
-    lines = {line[0]: line for line in table.rows}
-    assert lines["series*"][3] == "9.05 us (1e-9)"
-    assert lines["scipy-root"][3] == "not reached"
-    assert lines["printed"][1:] == ("not reached", "not reached", "not reached", "2.5e+00")
-    assert [line[0] for line in table.rows][:2] == ["series*", "mujoco"]
-
-
-def test_growth_and_loading_are_in_the_report() -> None:
-    text = report().text()
-    assert re.search(r"relative +time +2.900 \+- 0.000 +15 to 500 +500", text)
-    assert re.search(r"series 1e-09 mm +time +0.99\d \+- ", text)
-    assert re.search(r"import pointcoord +import +150 ms", text)
-
-
-def test_the_same_rows_make_the_same_bytes() -> None:
-    one, two = report(), report()
-    assert one.text() == two.text()
-    assert dict(one.files()) == dict(two.files())
-
-
-def test_a_folder_has_a_picture_of_every_scene_and_growth_in_both_forms_and_the_page_shows_them() -> None:
-    files = dict(report().files())
-    names = {"headline", "error-time-bounce", "error-time-double-wishbone", "growth-instants-bounce"}
-    names |= {"growth-designs-bounce", "growth-unknowns-chain"}
-    assert {name for name in files if name.endswith((".svg", ".png"))} == {
-        f"{name}.{ending}" for name in names for ending in ("svg", "png")
+def test_a_folder_has_a_picture_of_each_scene_and_growth_and_the_same_bytes_twice() -> None:
+    found = dict(REPORT.files())
+    assert {name.removesuffix(".svg") for name in found if name.endswith(".svg")} == {
+        "headline",
+        "error-time-bounce",
+        "error-time-double-wishbone",
+        "growth-instants-bounce",
+        "growth-designs-bounce",
+        "growth-unknowns-chain",
     }
-    page = files["report.md"].decode()
-    assert set(re.findall(r"\]\((\S+\.svg)\)", page)) == {f"{name}.svg" for name in names}
-    assert files["headline.svg"].startswith(b"<?xml")
-    assert b"<dc:date>" not in files["headline.svg"]
-    assert files["headline.png"].startswith(b"\x89PNG")
-    assert len(json.loads(files["rows.json"])["rows"]) == len(ROWS)
+    assert {"report.md", "table.csv", "rows.json", "headline.png"} <= found.keys()
+    assert dict(REPORT.files()) == found
+    for name, content in found.items():
+        if name.endswith(".svg"):
+            assert ET.fromstring(content).tag.endswith("svg")
+    assert REPORT.headline() == found["headline.svg"]
+    assert b"![headline](headline.svg)" in found["report.md"]
 
 
-def test_scenes_whose_names_make_the_same_file_have_a_file_each() -> None:
-    rows = tuple(measured(name, "series", "", alike(1e-12), 1e-5) for name in ("a/b.toml", "c/b.toml"))
-    assert {"error-time-b.svg", "error-time-b-2.svg"} <= dict(report(rows).files()).keys()
+def test_the_headline_draws_every_way_that_gives_positions_where_it_is() -> None:
+    page = headline(REPORT.table)
+    assert page is not None
+    (axes,) = page.axes
+    lines = [line for line in axes.lines if line.get_zorder() == 3]
+    there = {
+        row.way
+        for row in ROWS
+        if row.scene == "bounce" and row.quantity == "position" and row.part == "accuracy"
+    }
+    assert len(lines) == len(there)
+    times = {round(float(x), 6) for line in lines for x in line.get_xdata()}
+    assert round(37.0, 6) in times
+    assert page.legends[0].get_title().get_text().startswith("A line is a way")
 
 
-@pytest.mark.parametrize(
-    "rows", [(), (Row("accuracy", "bounce", "series", status="failed", reason="locked"),)]
-)
-def test_a_report_of_nothing_says_so(rows: tuple[Row, ...]) -> None:
-    one = report(rows)
-    assert NOTHING in one.text()
-    files = dict(one.files())
-    assert not [name for name in files if name.endswith(".svg")]
+def test_an_error_of_exactly_nothing_has_a_place_and_is_told() -> None:
+    rows = measured("a", "series", "", {"position": 0.0}, 1e-5) + measured("a", "map", "", alike(1e-9), 1e-5)
+    page = headline(Report("", "", False, tuple(rows)).table)
+    assert page is not None
+    assert "exactly 0 at the lower edge" in page.axes[0].get_title(loc="left")
+    assert min(float(min(line.get_ydata())) for line in page.axes[0].lines if line.get_zorder() == 3) == 1e-10
+
+
+def test_nothing_measured_is_said_and_draws_nothing() -> None:
+    nothing = Report("rows", "", False, (Row("accuracy", "a", "series", verdict="failed", reason="locked"),))
+    assert NOTHING in nothing.text()
+    assert "failed" in nothing.text()
+    assert "locked" in nothing.text()
+    assert nothing.headline() is None
+    assert list(figures(nothing.table)) == []
+
+
+def test_names_of_a_users_scene_are_text_everywhere() -> None:
+    rows = [replace(row, scene="mine/a|b *c*.toml") for row in measured("", "series", "", alike(1e-9), 1e-5)]
+    report = Report("rows", "", False, tuple(rows))
+    assert "error-time-mine-a-b-c.svg" in dict(report.files())
+    assert r"a\|b" in report.markdown()
+    assert any(isinstance(part, Shown) for part in report.parts())
+
+
+def test_no_two_ways_share_a_line_or_a_mark_and_new_ones_have_looks_too() -> None:
+    names = [way.name for way in WAYS]
+    found = looks([*names, "mine", "yours"])
+    assert len({(look.colour, look.dash) for look in found.values()}) == len(names) + 2
+    assert len({look.marker for look in found.values()}) == len({look.symbol for look in found.values()})
+    assert len({look.marker for look in found.values()}) == len(names) + 2
+    assert looks(["mujoco"])["mujoco"] == found["mujoco"]
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_a_quick_study_is_called_a_first_look(quick: bool) -> None:
+    assert ("quick" in dict(replace(REPORT, quick=quick).head())) == quick

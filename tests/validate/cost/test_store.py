@@ -1,148 +1,139 @@
 """What was measured is found again as it was, however a run ended, and never among what does not compare."""
 
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from made_rows import WHERE
 
 from pointcoord import Scene
-from validate.cost.row import QuantityError, Row, Time
-from validate.cost.store import Begun, Header, Key, Store, StoreError, read_rows, scene_digest
+from validate.cost.row import Row
+from validate.cost.store import Store, StoreError, latest, measured_here, read_rows, scene_digest
 
-HEADER = Header("p 1", "m", "CPython 3", {"numpy": "2.0"}, {"OMP_NUM_THREADS": "1"}, "pointcoord cost")
-KEY = Key("accuracy", "steer", "abc", "series", "1e-9 mm")
+HERE = Row("accuracy", "", "", **WHERE)
 ROW = Row(
     part="accuracy",
     scene="steer",
     way="series",
     setting="1e-9 mm",
     value=1e-9,
-    configurations=81,
     dense=True,
-    errors={"position": QuantityError(1.0 / 3.0, 1e-300, 5e-30, 123)},
-    not_given={"wheel": "why"},
-    times={"solve": Time(0.1, 0.09, 0.2, 7)},
-    counts={"factorisations": 3},
+    poses=81,
+    quantity="position",
+    error=1.0 / 3.0,
+    rms=1e-300,
+    radius=5e-30,
+    numbers=123,
+    time=0.1,
+    digest="abc",
+    **WHERE,
 )
-GROWTH = Row("growth", "steer", "newton", against="instants", size=1000, peak_bytes=12_345, configurations=1)
-FAILED = Row("accuracy", "steer", "printed", status="failed", reason='it said "no"')
+FAILED = replace(ROW, way="printed", verdict="failed", reason='it said "no} {"', time=None, error=None)
 
 
-def test_rows_come_back_as_they_were_with_every_digit(tmp_path: Path) -> None:
-    store = Store(tmp_path / "rows", HEADER)
-    keys = [KEY, replace(KEY, part="growth", against="instants", size=1000), replace(KEY, way="printed")]
-    for key, row in zip(keys, (ROW, GROWTH, FAILED), strict=True):
-        store.write(key, row)
-    again = Store(tmp_path / "rows", replace(HEADER, command="another"))
-    assert again.rows() == store.rows() == (ROW, GROWTH, FAILED)
-    assert again.rows("growth") == (GROWTH,)
-    assert again.header.command == "pointcoord cost"
-    assert read_rows(tmp_path / "rows")[1] == tuple(zip(keys, (ROW, GROWTH, FAILED), strict=True))
+def test_rows_come_back_as_they_were_with_every_digit_and_pandas_reads_them(tmp_path: Path) -> None:
+    path = tmp_path / "rows"
+    store = Store(path, HERE)
+    assert not path.exists()
+    store.write([ROW, FAILED])
+    assert read_rows(path) == store.rows == Store(path, HERE).rows == [ROW, FAILED]
+    assert pd.read_json(path, lines=True, precise_float=True).error.dropna().tolist() == [1.0 / 3.0]
 
 
-def test_a_row_is_found_by_everything_that_makes_it_another_measurement() -> None:
-    store = Store(None, HEADER)
-    store.write(KEY, ROW)
-    assert store.row(KEY) == ROW
-    others = {"part": "growth", "scene": "b", "digest": "d", "way": "w", "setting": "s"}
-    more = {"against": "designs", "size": 3, "quick": True, "configurations": 10}
-    for name, value in {**others, **more}.items():
-        assert store.row(replace(KEY, **{name: value})) is None, name
-    assert store.rows(quick=True) == ()
-
-
-def test_what_is_begun_comes_back_with_its_samples(tmp_path: Path) -> None:
-    store = Store(tmp_path / "rows", HEADER)
-    store.begin(KEY, Begun(ROW, 12, 3))
-    store.sample(KEY, 0, {"solve": 0.1})
-    store.sample(KEY, 4, {"solve": 1.0 / 3.0, "rates": 0.0})
-    again = Store(tmp_path / "rows", HEADER)
-    assert again.begun(KEY) == Begun(ROW, 12, 3)
-    assert again.samples(KEY) == {0: {"solve": 0.1}, 4: {"solve": 1.0 / 3.0, "rates": 0.0}}
-    assert again.rows() == ()
+def test_a_row_is_measured_again_where_anything_makes_it_another_run() -> None:
+    store = Store(None, HERE)
+    store.write([ROW])
+    assert store.has(replace(ROW, quantity="velocity", time=3.0))
+    words = {"part": "growth", "scene": "b", "digest": "d", "way": "w", "setting": "s"}
+    others: dict[str, Any] = {**words, "against": "designs", "size": 3, "quick": True}
+    for name, value in others.items():
+        assert not store.has(replace(ROW, **{name: value})), name
 
 
 def test_a_file_cut_anywhere_gives_what_was_whole_and_takes_more(tmp_path: Path) -> None:
     path = tmp_path / "rows"
-    store = Store(path, HEADER)
-    store.begin(KEY, Begun(ROW, 12, 3))
-    store.sample(KEY, 0, {"solve": 0.1})
-    store.write(KEY, ROW)
+    Store(path, HERE).write([ROW, FAILED])
     whole = path.read_bytes()
-    for cut in (*range(0, len(whole), 13), len(whole) - 1, len(whole)):
+    for cut in (*range(0, len(whole), 13), len(whole) - 2, len(whole) - 1, len(whole)):
         path.write_bytes(whole[:cut])
-        again = Store(path, HEADER)
-        assert again.rows() in ((), (ROW,))
-        assert (again.rows() == (ROW,)) == (cut >= len(whole) - 1)
-        again.write(replace(KEY, way="newton"), FAILED)
-        assert FAILED in Store(path, HEADER).rows()
+        again = Store(path, HERE)
+        assert again.rows == [ROW, FAILED][: len(again.rows)]
+        assert (len(again.rows) == 2) == (cut >= len(whole) - 1)
+        more = replace(ROW, way="newton")
+        again.write([more])
+        assert read_rows(path)[-1] == more
+
+
+@pytest.mark.parametrize("what", ["program", "machine", "python", "packages"])
+def test_rows_that_do_not_compare_are_not_gone_on_with_but_can_be_read(tmp_path: Path, what: str) -> None:
+    path = tmp_path / "rows"
+    Store(path, HERE).write([ROW])
+    before = path.read_bytes()
+    with pytest.raises(StoreError, match="; here: another; give another file, or delete this one"):
+        Store(path, replace(HERE, **{what: "another"}))
+    assert path.read_bytes() == before
+    assert read_rows(path) == [ROW]
+    # Another command adds to the same file.
+    Store(path, replace(HERE, command="another")).write([replace(ROW, way="newton")])
+
+
+def broken(**changed: object) -> str:
+    return json.dumps({**asdict(ROW), **changed})
 
 
 @pytest.mark.parametrize(
-    ("other", "words"),
+    ("text", "words"),
     [
-        (replace(HEADER, program="p 2"), "program: p 1; here: p 2"),
-        (replace(HEADER, machine="n"), "machine: m; here: n"),
-        (replace(HEADER, python="PyPy 3"), "python: CPython 3; here: PyPy 3"),
-        (replace(HEADER, packages={"numpy": "2.1"}), "numpy: 2.0; here: 2.1"),
-        (replace(HEADER, threads={"OMP_NUM_THREADS": "2"}), "OMP_NUM_THREADS: 1; here: 2"),
-        (replace(HEADER, threads={}), "OMP_NUM_THREADS: 1; here: not known"),
+        ("hello", "it is not JSON"),
+        ("\x89PNG", "it is not JSON"),
+        ("[1, 2]", "it is no object"),
+        ("[" * 100_000, "line 2 is no row"),
+        (
+            '{"cost of accuracy": 1, "part": "accuracy", "scene": "", "way": ""}',
+            "'cost of accuracy', which is no",
+        ),
+        ('{"part": "accuracy", "scene": ""}', "it has no 'way'"),
+        (broken(time="quick"), "time is 'quick'; allowed: a number from 0 up, or null"),
+        (broken(time=True), "time is True; allowed: a number"),
+        (broken(time=-1.0), "time is -1.0; allowed: a number"),
+        (broken(error={"largest": 1.0}), "error is {'largest': 1.0}; allowed: a number"),
+        (broken(poses=1.5), "poses is 1.5; allowed: a whole number"),
+        (broken(poses=None), "poses is None; allowed: a whole number"),
+        (broken(dense=1), "dense is 1; allowed: true or false"),
+        (broken(way=None), "way is None; allowed: text"),
+        (broken(part="speed"), "part is 'speed'; allowed: accuracy, effects, growth, loading, unrelated"),
+        (broken(verdict="fine"), "verdict is 'fine'; allowed: measured, failed, left out"),
+        (broken(time=1.0).replace('"time": 1.0', f'"time": {"9" * 5000}'), "time is too large a number"),
+        (broken(poses=7).replace('"poses": 7', f'"poses": {"9" * 5000}'), "poses is too large a number"),
+        (broken(time=1.0).replace('"time": 1.0', '"time": 1e999'), "time is too large a number"),
+        (broken(time=1.0).replace('"time": 1.0', '"time": NaN'), "time is nan"),
     ],
 )
-def test_rows_that_do_not_compare_are_not_gone_on_with_but_can_be_read(
-    tmp_path: Path, other: Header, words: str
-) -> None:
+def test_a_line_that_is_no_row_is_told_with_its_number_and_why(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "rows"
-    Store(path, HEADER).write(KEY, ROW)
-    before = path.read_bytes()
-    with pytest.raises(StoreError) as caught:
-        Store(path, other)
-    assert words in str(caught.value)
-    assert "give another file, or delete this one" in str(caught.value)
-    assert path.read_bytes() == before
-    assert read_rows(path)[0] == HEADER
-
-
-@pytest.mark.parametrize(
-    "text", ["hello\n", "[1, 2]\n", '{"chunk": 1}\n', "\x89PNG\n", '{"row": {}, "key": 3}\n']
-)
-def test_a_file_of_something_else_is_refused_and_left_alone(tmp_path: Path, text: str) -> None:
-    path = tmp_path / "rows"
-    path.write_text(text, encoding="utf-8")
-    for use in (lambda: Store(path, HEADER), lambda: read_rows(path)):
-        with pytest.raises(StoreError, match=r"line 1 is no row of what accuracy costs; give another file"):
+    path.write_text(f"{json.dumps(asdict(ROW))}\n{text}\n", encoding="utf-8")
+    for use in (lambda: Store(path, HERE), lambda: read_rows(path)):
+        with pytest.raises(StoreError, match="line 2 is no row of what accuracy costs: ") as caught:
             use()
-    assert path.read_text(encoding="utf-8") == text
+        assert words in str(caught.value)
+        assert len(str(caught.value)) < 400
+        assert str(caught.value).endswith("; give another file")
 
 
-def test_a_line_of_something_else_among_rows_is_told_with_its_number(tmp_path: Path) -> None:
-    path = tmp_path / "rows"
-    Store(path, HEADER).write(KEY, ROW)
-    with path.open("a", encoding="utf-8") as file:
-        file.write('{"key": {"part": "accuracy"}}\n')
-    with pytest.raises(StoreError, match="line 5 is no row"):
-        Store(path, HEADER)
-
-
-def test_another_form_of_the_file_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "rows"
-    Store(path, HEADER)
-    path.write_text(path.read_text(encoding="utf-8").replace(": 1,", ": 2,", 1), encoding="utf-8")
-    with pytest.raises(StoreError, match="form 2 of such files, this program knows the form 1"):
-        Store(path, HEADER)
-
-
-def test_nothing_to_read_is_told(tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="holds no rows; measure them first"):
-        read_rows(tmp_path / "none")
+def test_of_a_scene_that_was_changed_the_last_rows_count_and_quick_ones_are_apart() -> None:
+    old, new, quick = replace(ROW, digest="old"), replace(ROW, digest="new"), replace(ROW, quick=True)
+    assert latest([old, quick, new], quick=False) == [new]
+    assert latest([old, quick, new], quick=True) == [quick]
 
 
 def test_this_process_says_where_it_is() -> None:
-    here = Header.here("command")
-    assert here.differences(Header.here("another command")) == []
+    here = measured_here("command")
+    assert here == replace(measured_here("another"), command="command")
     assert here.program.startswith("pointcoord 0.")
-    assert {"numpy", "pin", "mujoco", "exudyn"} <= set(here.packages)
-    assert here.threads == {"every part": "1"}
+    for package in ("numpy", "pin", "mujoco", "exudyn"):
+        assert package in here.packages
 
 
 def test_the_digest_of_a_scene_is_of_all_that_it_says_but_not_of_its_title() -> None:

@@ -405,10 +405,10 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
     given = held.with_numbers(camber(held, np.degrees))
     outcome = compare_solutions(scene, held, given, "degrees")
     found = explain_outcome(scene, outcome)
-    text = report.outcome_text(outcome, found * 5)
+    text = report.outcome_text(replace(outcome, explanations=found * 5))
     assert text.count("what would explain it: ") == 3
     assert text.splitlines()[-1].endswith("camber: degrees for radians")
-    (one,) = report.outcome_data(outcome, found)["explanations"]
+    (one,) = report.outcome_data(replace(outcome, explanations=found))["explanations"]
     assert one == {
         "words": "camber: degrees for radians",
         "kind": "unit",

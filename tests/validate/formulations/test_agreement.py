@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
+from built_in_cars import STEERED_CARS
 from hypothesis import assume, given, note, settings
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene, built_in_scenes, simulate
 from validate.cars.car import moved, turned
-from validate.cars.scene_content import scene_content
-from validate.cars.strategies import scenes
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
-from validate.hard.cars import PAPER_CAR
+from validate.hard.cars import PAPER_CAR, scene_content
 from validate.paper.scenes import DEFAULT_SCENES
+from validate.strategies import scenes
 
 # Rows that an effect makes beside those of every point.
 WHAT_IT_GIVES = {
@@ -32,7 +32,7 @@ PAIRS = [
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-@pytest.mark.parametrize("name", DEFAULT_SCENES)
+@pytest.mark.parametrize("name", STEERED_CARS)
 def test_formulations_agree_in_everything_that_the_built_in_scenes_ask_for(
     name: str, pair: tuple[str, str]
 ) -> None:
@@ -109,7 +109,7 @@ def test_a_tolerance_is_no_wider_than_its_derivation_needs() -> None:
     The numbers are rounded to 1.1e-16 of themselves, and the car amplifies that by some ten: with a hundred
     roundings on the way, a tolerance is some 1e-13 of the largest number of its quantity.
     """
-    for name in DEFAULT_SCENES:
+    for name in STEERED_CARS:
         outcome = compare(Scene.load(name), "pointcoord", "absolute")
         solution = outcome.solutions[1]
         for row in outcome.rows:

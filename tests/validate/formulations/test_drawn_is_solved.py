@@ -10,6 +10,7 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
+from cars_in_closed_form import DRAWN, FORMS, PUT_IN_PLACE, Linkage, Variant, cars_of
 from hypothesis import assume, given, note, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -17,13 +18,9 @@ from numpy.typing import NDArray
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.car import Car, any_rotation, as_tuple, moved, other_side, scaled, turned
-from validate.cars.input_limits import Linkage
-from validate.cars.registry import SUSPENSIONS, VARIANTS, Variant
-from validate.cars.scene_content import car_of, scene_content
-from validate.cars.strategies import cars
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR
+from validate.hard.cars import BESIDE_CAR, PAPER_CAR, scene_content
 from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
@@ -32,9 +29,6 @@ Places = Mapping[str, Array]
 EPS = float(np.finfo(float).eps)
 MODELS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 SHARES = st.floats(-1.0, 1.0)
-DRAWN = [variant for variant in VARIANTS if variant.closure == "drawn"]
-PUT_IN_PLACE = [variant for variant in VARIANTS if variant.closure != "drawn"]
-CLOSING = cars(DRAWN, left_over=0.0)
 # A car is solved by four models at one or two places, so the short profile searches briefly.
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
@@ -87,15 +81,15 @@ def off(one: Places, two: Places) -> dict[str, float]:
 
 
 def exact_pose(scene: Scene) -> Places:
-    car = car_of(scene)
-    form = SUSPENSIONS[car.suspension].form.of(car, mpmath.mpf)
+    car = Car.of(scene)
+    form = FORMS[car.suspension].of(car, mpmath.mpf)
     angle, rack = (
         np.array([mpmath.mpf(inputs_at(scene, 0.0)[n][0])], dtype=object) for n in ("arm_angle", "rack")
     )
     return {n: np.array([float(x) for x in place[0]]) for n, place in form.pose(angle, rack).items()}
 
 
-@given(CLOSING)
+@given(cars_of(DRAWN))
 def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(car: Car) -> None:
     note(repr(car))
     linkage = Linkage.of(car)
@@ -117,7 +111,7 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
         assert distance <= rounding, ("reference", point)
 
 
-@given(cars(DRAWN), SHARES, SHARES)
+@given(cars_of(DRAWN), SHARES, SHARES)
 def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float, rack: float) -> None:
     note(repr(car))
     linkage = Linkage.of(car)
@@ -135,7 +129,7 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
 
 
 @searched
-@given(cars(PUT_IN_PLACE), SHARES, SHARES)
+@given(cars_of(PUT_IN_PLACE), SHARES, SHARES)
 def test_a_car_that_was_put_in_place_and_is_drawn_so_moves_as_before(
     car: Car, arm: float, rack: float
 ) -> None:
@@ -172,7 +166,7 @@ def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
 
 @searched
 @pytest.mark.parametrize("law", LAWS)
-@given(cars(DRAWN), SHARES, SHARES)
+@given(cars_of(DRAWN), SHARES, SHARES)
 def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: float, rack: float) -> None:
     linkage = Linkage.of(car)
     angle, travel = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack

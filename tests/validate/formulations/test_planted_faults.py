@@ -6,6 +6,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from built_in_cars import STEERED_CARS
 
 import absolute
 import pointcoord.effects.rigid
@@ -29,7 +30,7 @@ from validate.formulations.asked_numbers import per_second
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
+from validate.paper.scenes import PAPER_SCENES
 
 # The module; the package's attribute of this name is the function.
 solver = import_module("pointcoord.simulation")
@@ -213,8 +214,8 @@ def _in_relative_inputs(change: Callable[[np.ndarray], np.ndarray], late: float 
 def _in_relative_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
     build = validate.formulations.relative_coordinates.build
 
-    def wrong(kind: str, points: dict, **options: object) -> validate.relative.model.Model:
-        return build(kind, change(dict(points)), **(options | axes))
+    def wrong(plain: dict) -> validate.relative.model.Model:
+        return build({**plain, "points": change(dict(plain["points"])), **axes})
 
     return lambda patch: patch.setattr(validate.formulations.relative_coordinates, "build", wrong)
 
@@ -238,23 +239,27 @@ def _relative_body_frame(patch: pytest.MonkeyPatch) -> None:
     """The relative model's angular velocity in the knuckle's axes."""
     numbers = validate.relative.model.Model.numbers
 
-    def wrong(model: validate.relative.model.Model, poses: object, motion: object) -> dict:
-        right = numbers(model, poses, motion)
-        body = model.tree.bodies.index("knuckle")
-        turned = np.einsum("nji,nj->ni", poses.rotations[:, body], right["angular_velocity"]["knuckle"])
+    def wrong(model: validate.relative.model.Model, poses: object, *rest: object) -> dict:
+        right = numbers(model, poses, *rest)
+        turn = poses.matrices.reshape(len(poses.q), 3, -1, 4)[:, :, model.tree.number["knuckle"], :3]
+        turned = np.einsum("nji,nj->ni", turn, right["angular_velocity"]["knuckle"])
         return right | {"angular_velocity": {"knuckle": turned}}
 
     patch.setattr(validate.relative.model.Model, "numbers", wrong)
 
 
 def _no_chassis_rates(patch: pytest.MonkeyPatch) -> None:
-    right = validate.formulations.relative_coordinates._chassis_motion
+    right = validate.formulations.relative_coordinates.ChassisMotion.of
 
-    def wrong(*args: object) -> np.ndarray | None:
+    def wrong(*args: object) -> object:
         moved = right(*args)
-        return None if moved is None else moved * np.array([1.0, 0.0, 0.0])[None, :, None]
+        return (
+            None
+            if moved is None
+            else replace(moved, shift=moved.shift * np.array([1.0, 0.0, 0.0])[:, None, None])
+        )
 
-    patch.setattr(validate.formulations.relative_coordinates, "_chassis_motion", wrong)
+    patch.setattr(validate.formulations.relative_coordinates.ChassisMotion, "of", wrong)
 
 
 @dataclass(frozen=True)
@@ -364,7 +369,7 @@ def heaving(scene: Scene) -> Scene:
 
 
 OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
-OTHER_CARS = {name: heaving(Scene.load(name)) for name in DEFAULT_SCENES if name not in PAPER_SCENES}
+OTHER_CARS = {name: heaving(Scene.load(name)) for name in STEERED_CARS if name not in PAPER_SCENES}
 
 
 @pytest.mark.parametrize("car", ["paper", *OTHER_CARS])
@@ -422,7 +427,7 @@ def _off_in_relative(quantity: str) -> Plant:
     return lambda patch: patch.setattr(validate.relative.model.Model, "numbers", wrong)
 
 
-@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+@pytest.mark.parametrize("scene", STEERED_CARS)
 @pytest.mark.parametrize("quantity", RATES)
 @pytest.mark.parametrize(
     ("plant", "method", "other"),

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cars_in_closed_form import Linkage
 
 from pointcoord import Motion, MotionTooRough, PointcoordError, Scene, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
 from pointcoord.simulation import Task
 from validate.cars.car import Car
-from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
 from validate.formulations.point_coordinates import PointCoordinates, started

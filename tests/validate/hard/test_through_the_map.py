@@ -17,7 +17,7 @@ from validate.hard.case import REFUSED, RIGHT, Case, decades
 from validate.hard.report import summary_parts
 from validate.hard.run import MAP, OURS, as_expected, examine
 from validate.hard.trial import scene_case
-from validate.output.terminal import text_of
+from validate.output.table import text_of
 
 
 def steered(far: Callable[[float], float], expected: str = OURS) -> Case:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from foreign_files import OPTIMUMK, STRUT, WISHBONE, table
 
+from pointcoord import Scene
 from validate.cli import main
 from validate.hardpoint_files.contents import HardpointFileError
 from validate.hardpoint_files.format import formats
@@ -216,43 +217,40 @@ def lettered(before: bool, cars: Mapping[str, Mapping[str, Sequence[float]]]) ->
 
 
 @pytest.mark.parametrize("before", [True, False])
-def test_a_lonely_r_is_right_beside_an_l_and_rear_beside_an_f(before: bool, tmp_path: Path) -> None:
+def test_a_lonely_r_is_right_beside_an_l_and_asked_about_beside_an_f(before: bool, tmp_path: Path) -> None:
     rear, left = WHEELS["rear", "right"], WHEELS["front", "left"]
-    text = lettered(before, {"F": CAR, "R": rear})
-    assert drawn(imported(tmp_path, text, axes=OURS, part="rear")) == rear
-    assert drawn(imported(tmp_path, text, axes=OURS, part="front")) == CAR
     text = lettered(before, {"L": left, "R": CAR})
     assert drawn(imported(tmp_path, text, axes=OURS, side="right")) == CAR
-    # Beside both nobody knows: it is listed, and neither the right wheel nor the rear one.
-    found = imported(tmp_path, lettered(before, {"L": left, "F": CAR, "R": rear}), axes=OURS)
-    assert drawn(found) == left
-    assert len(found.unknown) == 2 * len(CAR)
-
-
-@pytest.mark.parametrize(("letters", "label"), [("FR", "part"), ("LR", "side")])
-def test_a_letter_over_columns_is_read_by_the_other_letter(letters: str, label: str, tmp_path: Path) -> None:
-    cars = {
-        "part": {"front": CAR, "rear": WHEELS["rear", "right"]},
-        "side": {"left": WHEELS["front", "left"], "right": CAR},
-    }[label]
-    titles = "Point," + ",".join(f"{letter} {axis}" for letter in letters for axis in "XYZ")
-    both = [f"{WORDS[name]}," + ",".join(cells(car[name]) for car in cars.values()) for name in CAR]
-    for chosen, car in cars.items():
-        found = imported(tmp_path, "\n".join([titles, *both]), axes=OURS, **{label: chosen})
-        assert drawn(found) == car
+    text = lettered(before, {"F": CAR, "R": rear})
+    with pytest.raises(HardpointFileError, match=r"lacks .*not known in it: .*--names"):
+        imported(tmp_path, text, axes=OURS, suspension="double_wishbone")
+    names = tmp_path / "names.toml"
+    lines = (f'{ours} = "{f"R_{word}" if before else f"{word} R"}"' for ours, word in WORDS.items())
+    names.write_text("\n".join(["[names]", *lines]))
+    assert drawn(imported(tmp_path, text, axes=OURS, names=str(names))) == rear
 
 
 BOTH = [f"{WORDS[name]},{cells(WHEELS['front', 'left'][name])},{cells(CAR[name])}" for name in CAR]
 
 
-@pytest.mark.parametrize(
-    "titles",
-    ["XL,YL,ZL,XR,YR,ZR", "LX,LY,LZ,RX,RY,RZ", "xLeft,yLeft,zLeft,xRight,yRight,zRight", "xl,yl,zl,xr,yr,zr"],
-)
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_a_wheel_written_to_its_axis_has_its_own_columns(titles: str, side: str, tmp_path: Path) -> None:
-    found = imported(tmp_path, "\n".join([f"Point,{titles}", *BOTH]), axes=OURS, side=side)
-    assert drawn(found) == WHEELS["front", side]
+@pytest.mark.parametrize("titles", ["xl,yl,zl,xr,yr,zr", "L x,L y,L z,R x,R y,R z", "x,y,z,hoch,quer,lang"])
+@pytest.mark.parametrize("by", ["title", "number"])
+def test_columns_that_are_not_known_are_those_that_the_user_names(
+    titles: str, by: str, tmp_path: Path
+) -> None:
+    text, words = "\n".join([f"Point,{titles}", *BOTH]), titles.split(",")
+    names = tmp_path / "names.toml"
+    for first, car in ((0, WHEELS["front", "left"]), (3, CAR)):
+        at: Sequence[str | int] = range(first + 2, first + 5)
+        if by == "title":
+            at = [f'"{word}"' for word in words[first : first + 3]]
+        x, y, z = at
+        name = 1 if by == "number" else '"Point"'
+        names.write_text(f"[table]\nname = {name}\nx = {x}\ny = {y}\nz = {z}\n")
+        assert drawn(imported(tmp_path, text, axes=OURS, names=str(names))) == car
+    names.write_text('[table]\nname = "Point"\nx = "X"\ny = "Y"\n')
+    with pytest.raises(HardpointFileError, match=r"\[table\] is"):
+        imported(tmp_path, text, names=str(names))
 
 
 @pytest.mark.parametrize("ahead", ["", "Point,,,,,,\n", "Point,X,Y,Z\n"])
@@ -264,12 +262,45 @@ def test_numbers_of_another_wheel_without_a_title_are_refused(ahead: str, mark: 
 
 
 def test_titles_that_are_not_known_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(HardpointFileError, match=r"line 1: has two columns of x \(the second is 'X2'\)"):
-        imported(tmp_path, "\n".join(["Point,X1,Y1,Z1,X2,Y2,Z2", *BOTH]), axes=OURS)
+    with pytest.raises(HardpointFileError, match=r"line 1: has two columns of x \(the second is '2 X'\)"):
+        imported(tmp_path, "\n".join(["Point,1 X,1 Y,1 Z,2 X,2 Y,2 Z", *BOTH]), axes=OURS)
+    for titles in ("X1,Y1,Z1,X2,Y2,Z2", "XL,YL,ZL,XR,YR,ZR"):
+        with pytest.raises(HardpointFileError, match=r"titles that are not known.* \[table\]"):
+            imported(tmp_path, "\n".join([f"Point,{titles}", *BOTH]), axes=OURS)
     with pytest.raises(
         HardpointFileError, match=r"line 1: has titles that are not known: 'Hoch, Quer, Laengs'"
     ):
         imported(tmp_path, "\n".join(["Punkt,Hoch,Quer,Laengs", *rows(str)]), axes=OURS)
+
+
+def test_a_column_of_corners_under_another_title_is_the_one_that_the_user_names(tmp_path: Path) -> None:
+    names = tmp_path / "names.toml"
+    names.write_text('[table]\nname = "Point"\nx = "x_mm"\ny = "y_mm"\nz = "z_mm"\ncorner = "Ecke"\n')
+    for (part, side), car in WHEELS.items():
+        choices = {"axes": OURS, "part": part, "side": side, "names": str(names)}
+        assert drawn(imported(tmp_path, one_column(corner, "Ecke"), **choices)) == car
+
+
+def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table, names, scene = (tmp_path / name for name in ("car.csv", "names.toml", "car.toml"))
+    text = "\n".join(["Punkt,Hoch,Quer,Laengs", *rows(str)])
+    table.write_text(text.replace("LCA_OUT", "Traggelenk"))
+    words = ["import", str(table), "--names", str(names), "--axes", OURS, "-o", str(scene)]
+    assert main(words) == 2
+    assert "names.toml was not there: it is written" in capsys.readouterr().err
+    filled = names.read_text().replace("# [table]", "[table]").replace('# name = "Point"', "name = 1")
+    for axis, title in (("x", "Hoch"), ("y", "Quer"), ("z", "Laengs")):
+        filled = filled.replace(f'# {axis} = "{axis.upper()}"', f'{axis} = "{title}"')
+    names.write_text(filled)
+    assert main(words) == 2  # one name is not known yet
+    assert "lacks lower_ball_joint" in capsys.readouterr().err
+    names.write_text(
+        names.read_text().replace('# lower_ball_joint = "its name", or', 'lower_ball_joint = "Traggelenk" #')
+    )
+    assert main(words) == 0
+    assert Scene.load(str(scene)).mechanism.points.items() >= CAR.items()
 
 
 @pytest.mark.parametrize("others", ["RX,RY,RZ", "FX,FY,FZ", "Mass,Stiffness,Preload"])
@@ -433,18 +464,7 @@ def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path)
 # Other forms of a table.
 
 
-def on_its_side() -> str:
-    names = ",".join(WORDS.values())
-    return "\n".join(
-        [
-            f"Point,{names}",
-            *(f"{axis} (mm)," + cells([CAR[n][i] for n in WORDS]) for i, axis in enumerate("XYZ")),
-        ]
-    )
-
-
 FORMS = {
-    "on its side": on_its_side(),
     "in one cell": "\n".join(["Point;Coordinates", *(f"{WORDS[n]};({cells(p)})" for n, p in CAR.items())]),
     "in one cell of commas": "\n".join(
         ["Point,Place", *(f"{WORDS[n]},[{cells(p)}]" for n, p in CAR.items())]
@@ -500,8 +520,8 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     [
         ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
         ("-3.5\t529\t122.84", "line 1: has coordinates without a name"),
-        (on_its_side() + "\n" + on_its_side(), "line 6: has a second table that lies on its side"),
-        ("Point;Left;Right\nLBJ;(1, 2, 3);(1, -2, 3)", "line 2: has 2 places for 'LBJ'"),
+        ("Point,LCA_IN,LCA_OUT,LBJ\nX,1,2,3\nY,4,5,6", "titles that are not known: .* a point a line"),
+        ("Point;Left;Right\nLBJ;(1, 2, 3);(1, -2, 3)", "line 2: has 6 numbers for 'LBJ'"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
         (
             "VERSION\n  15\nTEMP_SETTINGS\n  14\nDouble Wishbone, Push Rod",

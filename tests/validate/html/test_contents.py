@@ -12,10 +12,12 @@ import jsonschema
 import made_rows
 import numpy as np
 import pytest
+from page_runs import run_of
 
 import validate.html
 import validate.published
 from pointcoord import Scene
+from validate.ci.record import Record
 from validate.cli import main
 from validate.commands.reporting import Page
 from validate.comparison.examined import Examined, examine
@@ -27,10 +29,11 @@ from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.plot import Plots
 from validate.html.run import FIRST, FURTHER, Run, Telling
-from validate.html.section import Grid, Paragraph
+from validate.html.section import Paragraph
 from validate.html.sections.motion import Spatial
 from validate.output.console import Console
 from validate.output.document import Head, schema_text
+from validate.output.table import Table
 from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper
 from validate.published.tables import compare_published
 
@@ -130,7 +133,7 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
             telling.add(Examined(name=name, problem=f"{name}: is broken at line {i}"), None)
         else:
             telling.add(replace(spoiled(wide) if i % 20 == 13 else wide, name=name), scene)
-    run = Run(head(), tuple(telling.told))
+    run = run_of(*telling.told)
     text = page(run, {})
     assert len(text.encode()) < 8e6
     drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
@@ -147,9 +150,9 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
         rows = shown.of(f"a folder of mine/with a long name of a scene {i:03d}.toml")
         assert [cell for row in rows for cell in row if cell[0] == "disagrees" and "disagrees" in cell[1]]
     (broken,) = shown.of("a folder of mine/with a long name of a scene 370.toml")
-    assert broken[1][0] == "not-tested"
-    assert "is broken at line 370" in broken[1][1]
-    assert all("not tested" in cell[1] for cell in broken[1:])
+    assert broken[2][0] == "not-tested"
+    assert "is broken at line 370" in broken[2][1]
+    assert all("not tested" in cell[1] for cell in broken[2:])
     assert shown.verdict[0] == "verdict disagrees"
     assert shown.verdict[1] == run.sentence
     assert "and 10 more" in run.sentence
@@ -182,10 +185,13 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
         k: v for k, v in document.items() if k != "written"
     }
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
-    assert shown.verdict == ("verdict disagrees", "0 of 1 scene agrees; disagrees: steer.")
+    assert shown.verdict == (
+        "verdict disagrees",
+        "0 of 1 scene agrees; disagrees: steer; 1 of 34 numbers compared, 33 not given.",
+    )
     (row,) = shown.of("steer")[:1]
     assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
-    assert "disagree in position of tie_rod_inner" in shown.text
+    assert "position of tie_rod_inner: 1.00e-03 mm apart" in shown.text
     assert [words for words in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
 
 
@@ -203,8 +209,8 @@ def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> Non
     assert "Exit status 2: wrong input" in shown.text
     for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
         row = next(row for row in shown.rows if row and name in row[0][1])
-        assert row[1][0] == "not-tested"
-        assert said in row[1][1]
+        assert row[2][0] == "not-tested"
+        assert said in row[2][1]
     with (tmp_path / "out" / "comparisons.csv").open(newline="") as stream:
         assert not list(csv.DictReader(stream))
 
@@ -295,8 +301,8 @@ def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path
         ("[" * 100_000, "is no JSON"),
         ("[]", "holds no hard cases"),
         ('{"kind": "hard", "schema_version": 99}', "schema version 99"),
-        ('{"kind": "hard", "schema_version": 1, "complete": false}', "did not come to its end"),
-        ('{"kind": "hard", "schema_version": 1, "complete": true, "cases": [1]}', "is damaged"),
+        ('{"kind": "hard", "schema_version": 2, "complete": false}', "did not come to its end"),
+        ('{"kind": "hard", "schema_version": 2, "complete": true, "cases": [1]}', "is damaged"),
     ],
 )
 def test_a_file_that_holds_no_hard_cases_is_refused_in_a_line(
@@ -312,34 +318,36 @@ def test_a_file_that_holds_no_hard_cases_is_refused_in_a_line(
 
 def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> None:
     rows = tuple(
-        made_rows.measured("bounce", way, setting, {"position": error}, solve, rates=0.0)
+        row
         for way, setting, error, solve in (
             ("series", "a", 1e-3, 1e-5),
             ("series", "b", 1e-9, 5e-5),
             (f"mine{NASTY}", "a", 1e-6, 2e-4),
         )
+        for row in made_rows.measured("bounce", way, setting, {"position": error}, solve)
     )
-    report = Report("rows", None, "pointcoord cost", False, rows)
+    report = Report("rows", "pointcoord cost", False, rows)
     shown = read(Run(head("cost"), cost=report))
     ((_, plot),) = shown.plots.items()
     series, mine = plot["data"]
-    # Solving and output, in us.
-    assert series["x"] == pytest.approx([10.1, 50.1])
+    # In us.
+    assert series["x"] == pytest.approx([10.0, 50.0])
     assert series["y"] == [1e-3, 1e-9]
     assert mine["y"] == [1e-6]
     assert "<" not in json.dumps(plot)
     # Times are neither right nor wrong.
     assert shown.verdict[0] == "verdict measured"
-    assert "Exit status 0" in shown.text
+    assert "Exit status 0: nothing compared" in shown.text
     assert shown.of("command")[0][1][1] == "pointcoord cost"
 
 
 def test_every_way_of_a_page_is_told_from_every_other_by_its_line_and_by_its_mark() -> None:
     rows = tuple(
-        made_rows.measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5, dense=way.dense)
+        row
         for k, way in enumerate(WAYS)
+        for row in made_rows.measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5, dense=way.dense)
     )
-    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", None, "", False, rows))).plots.items()
+    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", "", False, rows))).plots.items()
     assert len(plot["data"]) == len(WAYS) > 12
     lines = {(one["line"]["color"], one["line"].get("dash")) for one in plot["data"]}
     symbols = {one["marker"]["symbol"].removesuffix("-open") for one in plot["data"]}
@@ -382,7 +390,7 @@ def spoiled_outcome(outcome: Any) -> Any:
 
 
 def test_the_figures_have_the_printed_rows_and_the_errata_their_numbers() -> None:
-    shown = read(Run(head(), paper=compare_with_paper()))
+    shown = read(Run(head(), record=Record([], paper=compare_with_paper())))
     by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots.items()}
     for number, table in ((6, TABLE_2), (8, TABLE_3)):
         curve, crosses = by_number[f"Figure {number}"]
@@ -413,7 +421,7 @@ def test_the_figures_have_the_printed_rows_and_the_errata_their_numbers() -> Non
 def test_what_a_page_is_made_of_is_installed_with_it() -> None:
     templates = Path(validate.html.__file__).with_name("templates")
     needed = {"page.html", "page.css"}
-    for block in (Grid, Paragraph, Plots, Spatial):
+    for block in (Table, Paragraph, Plots, Spatial):
         needed |= {block.template, *(name for name in block.scripts if name.endswith(".js"))}
     assert needed <= {file.name for file in templates.iterdir()}
     published = {file.suffix for file in Path(validate.published.__file__).parent.iterdir()}
@@ -457,7 +465,8 @@ def test_what_a_page_of_validate_does_not_hold_is_named_with_the_command_that_ad
         "other programs' tables": "pointcoord report DIR",
     }
     headings = {given.get("id") for tag, given in shown.tags if tag == "section"}
-    assert not headings & {"hard", "cost", "paper", "figures", "published"}
+    assert not headings & {"hard", "cost", "published"}
+    assert "Figures 5 to 8" not in shown.text
     for command in told.values():
         assert main([command.split()[1], "--help"]) == 0
 
@@ -465,7 +474,7 @@ def test_what_a_page_of_validate_does_not_hold_is_named_with_the_command_that_ad
 def test_a_page_of_validate_that_holds_the_papers_tables_still_names_those_of_other_programs(
     tmp_path: Path,
 ) -> None:
-    run = Page(str(tmp_path)).write(Run(head(), paper=compare_with_paper()), Console())
+    run = Page(str(tmp_path)).write(Run(head(), record=Record([], paper=compare_with_paper())), Console())
     assert [what for what, _ in run.left_out] == [
         "hard cases",
         "accuracy against time",
@@ -553,7 +562,7 @@ def test_a_refused_scene_is_drawn_as_far_as_it_goes_and_says_why_no_farther(
     out = tmp_path / "out"
     main([str(out) if word == "OUT" else word for word in words] + [str(tmp_path / "far.toml"), "-q"])
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
-    assert "far.toml: stopped: the motion cannot pass a singular pose" in shown.text
+    assert "Stopped: the motion cannot pass a singular pose" in shown.text
     assert "Stopped: the motion cannot pass a singular pose" in shown.text
     (line,) = shown.plots["camber over rack"]["data"]
     assert line["name"] == "pointcoord"
@@ -605,10 +614,10 @@ def test_a_verdict_tells_disagreements_first_and_each_reason_once_with_its_scene
         if "</p>" in part
     ]
     lines = [line for line in lines if "need JavaScript" not in line]
-    assert "disagree in position of tie_rod_inner" in lines[0]
+    assert "position of tie_rod_inner: 1.28e+02 mm apart" in lines[0]
     assert len({line.partition(": ")[2] for line in lines}) == len(lines)
-    (velocity,) = [line for line in lines if line.endswith("made_solver:rack_only gives no velocity")]
-    assert velocity.startswith("steer, double-wishbone, bounce: not given: ")
+    given = [line for line in lines if line.endswith("not given: made_solver:rack_only gives no velocity")]
+    assert {name for line in given for name in line.partition(": ")[0].split(", ")} == {*words[3:]}
     (closing,) = [line for line in lines if "closing the drawing moves wheel_centre" in line]
     assert closing.startswith("steer, bounce: ")
 
@@ -620,6 +629,6 @@ def test_a_drawing_that_closes_to_rounding_is_told_so_and_no_number_of_rounding_
     assert 0.0 < wide.closing["largest"] < 1e-6
     telling = Telling(1)
     telling.add(wide, Scene.load("double-wishbone"))
-    text = read(Run(head(), tuple(telling.told))).text
+    text = read(run_of(*telling.told)).text
     assert "it closes, no point moves by more than rounding" in text
     assert "closing it moves" not in text

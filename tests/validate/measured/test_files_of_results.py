@@ -1,17 +1,19 @@
 """`pointcoord validate --data` as its users meet it."""
 
 import json
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import jsonschema
 import numpy as np
 import pytest
 
-from pointcoord import Scene, simulate
+from pointcoord import Scene, simulate, solve_poses, standing
 from validate.cli import main
-from validate.measured.comparing import as_solution, compare_results
+from validate.measured.comparing import DataOutcome, as_solution, compare_results
 from validate.measured.errors import ResultsError
 from validate.measured.mapping import understood
 from validate.measured.reading import columns_of_text
@@ -127,7 +129,7 @@ def test_the_papers_tables_do_not_come_from_its_hardpoints(scene: str, table: tu
 
 def test_times_that_are_rounded_widen_by_what_the_motion_does_meanwhile() -> None:
     motion = simulate(STEER)
-    times = np.array([0.1, 0.2, 0.3])
+    times = np.array([0.1, 0.3])
     at = motion.at(times)
     x = at.position["wheel_centre"][:, 0]
     text = "time [s],position.wheel_centre.x [mm]\n" + "".join(
@@ -161,6 +163,77 @@ def test_numbers_that_are_none_and_rows_outside_the_time_are_counted_and_the_oth
     assert "no number in 1 of 3 rows" in notes
     assert "line 4 is left out: t = 77 s is outside the scene's time" in notes
     assert found.absent[0] == "velocity"
+
+
+def steered(racks: Sequence[float], wrong: float = 0.0, digits: int = 2) -> str:
+    """Toe over the rack, deg and mm, wrong on purpose at one row; the rack is written without decimals."""
+    car = Scene.load("double-wishbone")
+    place = solve_poses(car, {"arm_angle": np.full(len(racks), DRAWN), "rack": np.array(racks)}).position
+    x, y, _ = (place["wheel_centre"] - place["wheel_axis_inner"]).T
+    toe = -np.degrees(np.arctan2(x, y)) + wrong * (np.arange(len(racks)) == 3)
+    rows = (f"{rack:.0f},{value:.{digits}f}" for rack, value in zip(racks, toe, strict=True))
+    return "\n".join(["rack [mm],toe [deg]", *rows])
+
+
+DRAWN = standing(Scene.load("double-wishbone")).inputs["arm_angle"]
+EVEN, UNEVEN = tuple(range(-30, 31, 5)), (-30.2, -23.7, -16.3, -9.6, 0.3, 7.8, 14.9, 22.4, 30.1)
+
+
+def held(text: str, map: Mapping[str, Any]) -> DataOutcome:
+    car = Scene.load("double-wishbone")
+    return compare_results(understood(columns_of_text(text, "mine.csv"), map, car, "map.toml"), car, "car")
+
+
+@pytest.mark.parametrize("wrong", [0.0, 0.3, 0.02])
+def test_a_column_in_even_steps_is_set_and_not_rounded(wrong: float) -> None:
+    found = held(steered(EVEN, wrong), {})
+    (row,) = found.outcome.rows
+    assert row.verdict == ("disagrees" if wrong else "agrees")
+    assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
+    assert "rack: in even steps, taken as exact" in " / ".join(found.outcome.notes)
+
+
+def test_what_agrees_only_by_a_rounding_that_nobody_stated_is_not_tested_and_the_line_is_told() -> None:
+    text = steered(UNEVEN)
+    (row,) = held(text, {}).outcome.rows
+    assert row.verdict == "not tested"
+    line = "columns.rack.printed = 0"
+    assert row.why.count(line) == 1
+    (row,) = held(text, {"columns": {"rack": {"printed": 1}}}).outcome.rows
+    assert row.verdict == "agrees"
+    found = held(text, tomllib.loads(line))
+    assert found.outcome.rows[0].verdict == "disagrees"
+    # What has been followed is not advised again.
+    assert not any("printed" in note for note in found.outcome.notes)
+
+
+@pytest.mark.parametrize("command", ["validate", "fit"])
+def test_a_map_that_is_not_there_is_written_to_be_filled_in(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, map = tmp_path / "x.csv", tmp_path / "map.toml"
+    data.write_text(steered(EVEN).replace("rack [mm]", "Lenkung"))
+    free = ["--free", "tie_rod_outer.z"] if command == "fit" else []
+    words = [command, "double-wishbone", "--data", str(data), "--map", str(map), "--quiet", *free]
+    words += ["--json", str(tmp_path / "x.json")]
+    assert main(words) == 2
+    assert "map.toml was not there: it is written" in capsys.readouterr().err
+    text = map.read_text()
+    assert '\ntoe = { is = "wheel.toe", unit = "deg" }' in text
+    line = '# Lenkung = { is = "", unit = "" }'
+    assert line in text
+    map.write_text(text.replace(line, 'Lenkung = { is = "input.rack", unit = "mm" }'))
+    assert main(words) == 0
+
+
+@pytest.mark.parametrize("number", ["1e308", "-1e300", "1e14"])
+@pytest.mark.parametrize("cells", ["0.1,{}", "{},1.0"])
+def test_a_number_that_no_car_has_is_named_by_line_and_column(number: str, cells: str) -> None:
+    text = "time [s],camber [deg]\n0.0,1.0\n" + cells.format(number)
+    with pytest.raises(ResultsError) as caught:
+        understood(columns_of_text(text, "mine.csv"), {}, STEER, "map")
+    column = "camber" if cells.endswith("{}") else "time"
+    assert f"mine.csv: line 3, column '{column}': is {float(number):g}" in str(caught.value)
 
 
 BUMP = "bump [mm],camber [deg]\n"
@@ -321,3 +394,14 @@ def test_the_same_file_gives_the_same_bytes(tmp_path: Path) -> None:
         assert main([*words, "double-wishbone", "--quiet", *ends]) == 1
         found.append([file.read_bytes() for file in files])
     assert found[0] == found[1]
+
+
+def test_a_contact_point_of_a_mechanism_without_a_wheel_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, mapping = tmp_path / "x.csv", tmp_path / "x.toml"
+    data.write_text("h,y\n0.0,1.0\n1.0,1.0\n")
+    point = Scene.load("slider-crank").mechanism.topology.moving[0]
+    mapping.write_text(f'rolling_radius = 300.0\n[columns]\nh = "travel.contact"\ny = "position.{point}.y"\n')
+    assert main(["validate", "--data", str(data), "--map", str(mapping), "slider-crank", "--quiet"]) == 2
+    assert "travel.contact" in capsys.readouterr().err

@@ -70,6 +70,10 @@ def test_cells_without_a_number_are_none() -> None:
         ("time,camber\n0,1\n1,1.O\n", ("line 3, column 'camber'", "'1.O' is no finite number")),
         ("time,camber\n0,1\n1,1e999\n", ("line 3, column 'camber'", "'1e999'")),
         ("time,camber\n0,1\n1,2,3\n", ("line 3", "3 cells", "2, one for each of time, camber")),
+        (
+            "time,who,camber\n0,me,1\n1,me,1\n2,3\n",
+            ("line 4", "2 cells", "3, one for each of time, who, camber"),
+        ),
         ("time,time\n0,1\n", ("'time' is there 2 times",)),
         ("a,b,c\n0,1\n", ("2 columns of numbers under 3 names",)),
         ("time,camber\ns,furlong\n0,1\n", ("line of units", "'furlong'")),

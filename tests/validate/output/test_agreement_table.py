@@ -4,12 +4,12 @@ import math
 from dataclasses import replace
 
 import pytest
+from built_in_cars import STEERED_CARS
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
 from validate.comparison.findings import findings
 from validate.output.report import heading, outcome_text
-from validate.paper.scenes import DEFAULT_SCENES
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_what_is_not_given_takes_no_place_from_what_is(heaving: Outcome) -> None
     assert (where, difference, used, verdict) == ("wheel_centre", "2.0e-13 mm", "2.5e-01", "not given")
 
 
-@pytest.mark.parametrize("scene", DEFAULT_SCENES)
+@pytest.mark.parametrize("scene", STEERED_CARS)
 def test_the_table_of_a_built_in_scene_fits_110_characters(scene: str) -> None:
     outcome = compare(Scene.load(scene), "pointcoord", "absolute", scene)
     lines = outcome_text(outcome).splitlines()

@@ -11,18 +11,19 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from counted_study import worked_out
 from program import PAST_ITS_END, short_scene
-from worked_out import worked_out
 
 from validate.cli import main
 from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
-from validate.long_studies.bounds import BoundsStudy
-from validate.long_studies.hard_runs import HardStudy
-from validate.long_studies.random_runs import RandomStudy
-from validate.long_studies.study import Study
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.paper.scenes import DEFAULT_SCENES
+from validate.studies.bounds import bounds
+from validate.studies.claims import claims
+from validate.studies.hard_cases import hard
+from validate.studies.random_cars import random_cars
+from validate.studies.study import Study
 
 SCHEMA = json.loads(schema_text())
 CHECK = jsonschema.Draft202012Validator(SCHEMA)
@@ -45,7 +46,10 @@ def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) ->
     assert json.loads(capsys.readouterr().out) == SCHEMA
     assert SCHEMA["properties"]["schema_version"]["const"] == SCHEMA_VERSION
     assert set(SCHEMA["$defs"]["status"]["enum"]) == set(ExitStatus)
-    assert set(SCHEMA["$defs"]["verdict"]["enum"]) == {status.verdict for status in ExitStatus}
+    assert set(SCHEMA["$defs"]["verdict"]["enum"]) == {
+        "nothing compared",
+        *(status.verdict for status in ExitStatus),
+    }
 
 
 def test_the_schema_is_in_the_wheel() -> None:
@@ -122,9 +126,13 @@ def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureF
     assert data["kind"] == ("hard-list" if "--list" in words else "hard")
 
 
-@pytest.mark.parametrize("study", [RandomStudy(4), BoundsStudy(4, motions=1), HardStudy(("at-rest",))])
+@pytest.mark.parametrize(
+    "study",
+    [random_cars(2), bounds(1, motions=0), claims(1), hard(["link-twice"])],
+    ids=lambda study: study.name,
+)
 def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:
-    findings = study.findings(worked_out(study))
+    findings = study.summary(worked_out(study))
     text = json_text(Head.of(study.name, ("pointcoord",)).document(findings.data, findings.status, True))
     assert document(text)["kind"] == study.name
 

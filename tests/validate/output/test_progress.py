@@ -7,30 +7,20 @@ import pytest
 
 from validate.output import progress
 from validate.output.console import Console
-from validate.output.lines import Lines
-from validate.output.progress import Progress
+from validate.output.progress import Lines, Pace
 
 
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """What time it is, in seconds."""
-    now = [0.0]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
-    return now
-
-
-def test_the_rest_is_told_at_the_pace_since_this_run_began(clock: list[float]) -> None:
-    said: list[str] = []
-    told = Progress(lambda what, done, of: said.append(what), pause=1.0)
-    told("scenes", 1000, 2000)
+def test_the_rest_is_told_at_the_pace_since_this_run_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
+    pace = Pace()
+    assert pace.rest(1000, 2000) == ""
     clock[0] = 10.0
-    told("scenes", 1100, 2000)
-    clock[0] = 10.5
-    told("scenes", 1101, 2000)  # too soon after the one before
-    clock[0] = 20.0
-    told("scenes", 2000, 2000)
     # Of the 1,000 that were there before none took any time.
-    assert said == ["1,000 of 2,000: scenes", "1,100 of 2,000, 90 s left: scenes", "2,000 of 2,000: scenes"]
+    assert pace.rest(1100, 2000) == ", 90 s left"
+    clock[0] = 20.0
+    assert pace.rest(1150, 2000) == ", 2 min left"
+    assert pace.rest(2000, 2000) == ""
 
 
 def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_quick_one() -> None:
@@ -38,7 +28,7 @@ def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_qu
     lines = Lines(said.append, "processes start", first=0.05, pause=0.2)
     while len(said) < 2:
         time.sleep(0.01)
-    lines.told("scenes, 3 s left", 1000, 2000)
+    lines.told("scenes", 1000, 2000)
     while len(said) < 4:
         time.sleep(0.01)
     lines.end()
@@ -46,7 +36,7 @@ def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_qu
     time.sleep(0.3)
     assert len(said) == count
     assert re.fullmatch(r"after \d+ s: processes start", said[0])
-    assert re.fullmatch(r"after \d+ s: scenes, 3 s left, 1,000 of 2,000 done", said[-1])
+    assert re.fullmatch(r"after \d+ s: scenes, 1,000 of 2,000 done", said[-1])
     quick = Lines(said.append, "processes start", first=60.0)
     quick.end()
     assert len(said) == count
@@ -56,7 +46,10 @@ def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     console = Console()
-    with console.working("scenes", 2, lines=True, first=0.05), progress.progress(console, "cost") as told:
+    with (
+        progress.progress(console, "scenes", total=2, first=0.05),
+        progress.progress(console, "cost") as told,
+    ):
         # What is done inside is said in the same lines.
         told("series", 60, 150)
         err = ""
@@ -65,7 +58,7 @@ def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
             out, more = capsys.readouterr()
             err += more
             assert out == ""
-    assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done\n", err)
+    assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done(, \d+ s left)?\n", err)
     console.quiet = True
     with progress.progress(console, "processes start", first=0.05):
         time.sleep(0.3)

@@ -1,5 +1,6 @@
 """The paper's formulas as printed: which of them hold and which fail, and where."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -7,16 +8,19 @@ import pytest
 from numpy.typing import NDArray
 from rate_sensitivity import rate_sensitivities
 
-from pointcoord import Scene, simulate
+from pointcoord import Scene, SceneError, simulate
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mechanism import mechanism_file
+from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.pointwise import square_velocity_term
-from pointcoord.suspensions.macpherson import COLLINEAR
 from validate.cars.paper_car import PAPER
 from validate.paper.printed import PRINTED, TOPOLOGY, PrintedQuotients, printed_square_velocity_term
 from validate.paper.printed_parallel import PrintedParallel
+
+COLLINEAR = mechanism_file("macpherson").topology("collinear", points=PAPER)
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -144,3 +148,21 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
         # v65 x v75 = omega (v65 . r75): a few roundings over the cosine that the quotient divides by.
         spread = np.abs(np.cross(exact, points[1] - points[0]) @ r)
         assert np.abs(value - exact).max() <= 200 * EPS * (1 + np.linalg.norm(omega) ** 2) * 30 / spread**2
+
+
+def with_tables(name: str, **changes: object) -> Scene:
+    """A built-in scene that holds its mechanism's tables itself."""
+    content = Scene.load(name).model_dump(exclude_none=True)
+    part = content["mechanism"]
+    part |= tomllib.loads((MECHANISMS / f"{part.pop('type')}.toml").read_text())
+    part.pop("driven", None)
+    part |= changes
+    return Scene.from_mapping(content)
+
+
+def test_the_papers_strut_is_known_by_its_linkage_and_not_by_its_name() -> None:
+    motion, own = simulate(Scene.load("bounce"), PRINTED), simulate(with_tables("bounce"), PRINTED)
+    for name, rate in motion.angular_velocity.items():
+        assert np.array_equal(rate, own.angular_velocity[name], equal_nan=True)
+    with pytest.raises(SceneError, match="cannot solve a macpherson with closure = 'drawn'"):
+        simulate(with_tables("off-axis-strut", title="macpherson"), PRINTED)

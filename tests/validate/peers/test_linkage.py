@@ -1,139 +1,78 @@
-"""What programs are told of a suspension: how far its arm is turned, and which assembly is the drawing's."""
+"""What programs are told of a mechanism, and what none of them holds or drives."""
 
-from collections.abc import Iterator
-from fractions import Fraction
 from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sample_cars import SAMPLES, SampleCar
-from suspensions_in_closed_form import FORMS, ClosedForm, rounded
+from mechanism_files import mechanism_file, plain, plain_scene
+from relative_cars import plain_car
+from sample_cars import SAMPLES, SampleCar, by_car
 
-from validate.peers.linkage import Linkage, PeerError, linkage_of
+from validate.peers.linkage import Driven, PeerError, linkage_of
+from validate.spanning_tree.cut import CHASSIS, Drive, Place
 
 EPS = float(np.finfo(float).eps)
 
 
-@pytest.fixture(autouse=True)
-def digits() -> Iterator[None]:
-    with mpmath.workdps(30):
-        yield
-
-
-def of_sample(car: SampleCar, **points: tuple[float, float, float]) -> Linkage:
-    return linkage_of(car.type, {**car.points, **points}, (0, 0, 1), (0, 1, 0), car.closure)
-
-
-def of_form(car: Any, form: ClosedForm) -> Linkage:
-    points = {name: [float(c) for c in place] for name, place in car.points.items()}
-    return linkage_of(form.type, points, [float(c) for c in car.up], [float(c) for c in car.right])
-
-
-@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
-@given(data=st.data())
-def test_every_assembly_but_the_drawings_is_told_apart(form: ClosedForm, data: st.DataObject) -> None:
-    """The closed form has two answers in each of three steps; the side of the arm is told by its turn."""
-    car = rounded(data.draw(form.cars), form)
-    linkage, (theta, travel) = of_form(car, form), car.drawn
-    wanted = car.drawn_sides
-    seen = 0
-    for pose in car.poses(theta, travel + Fraction(1, 8)):
-        if pose.sides[0] != wanted[0]:
-            continue
-        places = {
-            n: (np.array([float(c) for c in pose.points[n]]) - linkage.origin) / linkage.unit
-            if n in pose.points
-            else linkage.drawn[n]
-            for n in linkage.drawn
-        }
-        margin = np.abs(linkage.sides(places)).min()
-        if margin > 1e-6:  # nearer to where two meet the places are rounded to either side
-            seen += 1
-            assert bool(linkage.on_other_side(places)) == (pose.sides != wanted), pose.sides
-    assert seen
-
-
-@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
-@given(data=st.data(), away=st.floats(-0.3, 0.3), rate=st.floats(-3.0, 3.0), bend=st.floats(-9.0, 9.0))
-def test_the_turn_of_the_arm_and_its_rates_are_those_of_the_closed_form(
-    form: ClosedForm, data: st.DataObject, away: float, rate: float, bend: float
-) -> None:
-    car = rounded(data.draw(form.cars), form)
-    linkage, start = of_form(car, form), float(car.drawn[0]) + away
-    try:
-        turn, off = linkage.turns(np.array([[start, rate, bend]]))
-    except PeerError:
-        return
-    p = {n: [mpmath.mpf(c.numerator) / c.denominator for c in place] for n, place in car.points.items()}
-    front, rear, ball = (
-        mpmath.matrix(p[n]) for n in ("lower_arm_front", "lower_arm_rear", "lower_ball_joint")
-    )
-    n, r = (rear - front) / mpmath.norm(rear - front), ball - front
-    up = mpmath.matrix([mpmath.mpf(c.numerator) / c.denominator for c in car.up])
-    along = n * (n.T * r)[0]
-    across = r - along
-    turned = mpmath.matrix([n[1] * r[2] - n[2] * r[1], n[2] * r[0] - n[0] * r[2], n[0] * r[1] - n[1] * r[0]])
-    d = mpmath.norm(r)
-
-    def height(phi: mpmath.mpf) -> mpmath.mpf:
-        return (up.T * (along + across * mpmath.cos(phi) + turned * mpmath.sin(phi)))[0]
-
-    def phi_at(t: mpmath.mpf) -> mpmath.mpf:
-        theta = mpmath.mpf(start) + mpmath.mpf(rate) * t + mpmath.mpf(bend) * t * t / 2
-        return mpmath.findroot(lambda phi: height(phi) - d * mpmath.cos(theta), mpmath.mpf(turn[0, 0]))
-
-    exact = [phi_at(mpmath.mpf(0)), *(mpmath.diff(phi_at, 0, k) for k in (1, 2))]
-    # A numerical derivative of 30 digits keeps 10 of them in the second.
-    for found, known, room in zip(turn[0], exact, off[0], strict=True):
-        assert abs(found - float(known)) <= room + 1e-9 * EPS + 1e-13 * abs(found)
-
-
-@pytest.mark.parametrize("car", SAMPLES, ids=lambda car: car.name)
-def test_the_drawing_is_turned_by_nothing(car: SampleCar) -> None:
-    linkage = of_sample(car)
-    theta = car.drawn_inputs["arm_angle"]
-    turn, off = linkage.turns(np.array([[theta, 0.0, 0.0]]))
+@by_car
+def test_the_drawing_is_driven_by_nothing(car: SampleCar) -> None:
+    linkage = linkage_of(plain_car(car))
+    laws = {name: np.array([[value, 0.0, 0.0]]) for name, value in car.drawn_inputs.items()}
+    inputs = linkage.inputs(laws)
     # The angle is rounded, and so is its cosine.
-    assert (np.abs(turn) <= off + 4.0 * EPS).all()
-    assert np.allclose(linkage.drawn_inputs[1] * linkage.unit, car.drawn_inputs["rack"], rtol=0, atol=1e-12)
+    assert (np.abs(inputs.driven - linkage.drawn_inputs) <= inputs.doubt + 4.0 * EPS).all()
+    assert np.abs(linkage.drawn_inputs).max() < 1e-15 or car.closure == "collinear"
+
+
+@given(st.floats(0.1, 3.0), st.floats(-3.0, 3.0), st.floats(-9.0, 9.0), st.sampled_from(["angle", "travel"]))
+def test_rates_of_a_driven_coordinate_are_its_derivatives(
+    value: float, rate: float, bend: float, kind: Any
+) -> None:
+    still = Place(CHASSIS, np.zeros(3))
+    drive = Drive("it", kind, still, still, np.array([0.0, 0.0, 1.0]), CHASSIS, 1.0, 0.0)
+    driven, step = Driven("it", drive, 0.4, 0.1), 1e-3
+    t = step * np.arange(-2.0, 3.0)
+    law = np.stack([value + rate * t + bend * t * t / 2.0, rate + bend * t, np.full(5, bend)], axis=-1)
+    x = driven.coordinate(law)
+    first = (x[0, 0] - 8.0 * x[1, 0] + 8.0 * x[3, 0] - x[4, 0]) / (12.0 * step)
+    second = (-x[0, 0] + 16.0 * x[1, 0] - 30.0 * x[2, 0] + 16.0 * x[3, 0] - x[4, 0]) / (12.0 * step**2)
+    # step^4 of fifth derivatives, below 1e4; rounding over step and step^2.
+    assert x[2, 1] == pytest.approx(first, abs=1e-7)
+    assert x[2, 2] == pytest.approx(second, abs=1e-6)
+    assert (driven.doubt(law) >= 0.0).all()
 
 
 def test_what_makes_no_mechanism_is_told_by_name() -> None:
-    strut, wishbone = SAMPLES[1], SAMPLES[2]
-    front = strut.points["lower_arm_front"]
-    with pytest.raises(PeerError, match="lower_arm_front and lower_arm_rear are at the same place"):
-        of_sample(strut, lower_arm_rear=front)
-    with pytest.raises(PeerError, match="strut_lower and strut_top are at the same place"):
-        of_sample(strut, strut_lower=strut.points["strut_top"])
-    with pytest.raises(PeerError, match="no multi_link"):
-        linkage_of("multi_link", wishbone.points, (0, 0, 1), (0, 1, 0))
-    rear = (front[0] + 100.0, front[1], front[2])
-    straight_down = (front[0], front[1], front[2] - 300.0)
-    dead = of_sample(strut, lower_arm_rear=rear, lower_ball_joint=straight_down)
-    with pytest.raises(PeerError, match="dead point"):
-        dead.turns(np.array([[3.0, 0.0, 0.0]]))
+    strut = SAMPLES[1]
+    with pytest.raises(PeerError, match="lower_arm_front is where lower_arm_rear is"):
+        linkage_of(plain_car(strut, lower_arm_rear=strut.points["lower_arm_front"]))
+    with pytest.raises(PeerError, match="strut_lower is where strut_top is"):
+        linkage_of(plain_car(strut, strut_lower=strut.points["strut_top"]))
 
 
-def test_a_height_beyond_the_arms_reach_is_refused_at_its_instant() -> None:
-    linkage = of_sample(SAMPLES[1])
-    theta = np.stack([np.linspace(1.6, 0.01, 5), np.zeros(5), np.zeros(5)], axis=-1)
-    with pytest.raises(PeerError, match="does not reach such a height") as caught:
-        linkage.turns(theta)
-    assert caught.value.instant == 4
+def test_an_angle_outside_half_a_turn_is_refused_at_its_instant() -> None:
+    theta = np.stack([np.linspace(1.6, 0.1, 5), np.zeros(5), np.zeros(5)], axis=-1)
     theta[2, 0] = 3.2
-    with pytest.raises(PeerError, match="outside 0 to pi") as caught:
-        linkage.turns(theta)
+    with pytest.raises(PeerError, match="arm_angle is outside 0 to pi") as caught:
+        linkage_of(plain_car(SAMPLES[1])).inputs({"arm_angle": theta, "rack": np.zeros((5, 3))})
     assert caught.value.instant == 2
 
 
-def test_a_drawing_where_two_assemblies_meet_is_refused() -> None:
-    car = SAMPLES[2]
-    # The tie rod's outer end on the line from the ball joint to its inner end.
-    inner, ball = (np.array(car.points[n]) for n in ("tie_rod_inner", "lower_ball_joint"))
-    x, y, z = (ball + 0.25 * (inner - ball)).tolist()
-    linkage = of_sample(car, tie_rod_outer=(x, y, z))
-    with pytest.raises(PeerError, match="two assemblies meet"):
-        linkage.on_other_side(linkage.drawn)
+def test_what_no_program_drives_or_holds_is_refused_with_the_reason() -> None:
+    tables = mechanism_file("five_link")
+    tables["inputs"]["lift"] = {"contact": ["wheel_axis_inner", "wheel_centre"]}
+    points = plain_scene("five-link")["points"]
+    with pytest.raises(PeerError, match="no program drives lift, the height of a wheel's contact point"):
+        linkage_of(plain(tables, {"points": points, "wheel_radius": 300.0, "right": (0, -1, 0)}, ["lift"]))
+    tables = mechanism_file("double_wishbone")
+    tables["inputs"]["lean"] = {
+        "angle": "knuckle",
+        "of": "upper_ball_joint",
+        "about": "lower_ball_joint",
+        "from": "up",
+    }
+    points = plain_scene("double-wishbone")["points"]
+    with pytest.raises(PeerError, match="lean, an angle about a point that moves"):
+        linkage_of(plain(tables, {"points": points}, ["lean", "rack"]))

@@ -7,9 +7,8 @@ import pytest
 from flint import arb
 
 from validate.reference.dual import Dual
-from validate.reference.effects.camber import CAMBER
-from validate.reference.effects.effect import Axes, angle
-from validate.reference.effects.kingpin import KINGPIN
+from validate.reference.effects.effect import STEERING, WHEEL, Axes, angle
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import Vector
 
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
@@ -19,8 +18,8 @@ def axes(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Axe
     def balls(vector: tuple[float, ...]) -> Vector:
         return arb(vector[0]), arb(vector[1]), arb(vector[2])
 
-    outboard = (0, out, 0)
-    return Axes(*(balls(vector) for vector in (wheel, steering, UP, FORWARD, outboard)))
+    lines = {WHEEL: balls(wheel), STEERING: balls(steering)}
+    return Axes(lines, balls(UP), balls(FORWARD), balls((0, out, 0)))
 
 
 @pytest.mark.parametrize("out", [-1, 1])
@@ -30,8 +29,8 @@ def test_a_wheel_leans_out_at_the_top_and_its_steering_axis_in(lean: float, out:
     # The spin axis of a wheel that leans out points down on its way out; the steering axis leads in on its
     # way up. Neither angle sees what is along the car.
     turned = axes((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
-    for effect in (CAMBER, KINGPIN):
-        assert float(effect.value(turned)) == pytest.approx(lean, abs=1e-15)
+    for name in ("camber", "kingpin"):
+        assert float(EFFECTS[name].value(turned)) == pytest.approx(lean, abs=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The certificate proves what is true and rejects what is false."""
+"""The certificates prove what is true and reject what is false."""
 
 from __future__ import annotations
 
@@ -6,28 +6,29 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-import mpmath
 import pytest
-from flint import arb, ctx
+from flint import arb, arb_poly, ctx
+from mechanism_drawings import DRAWINGS, described
 from mpmath import mpf
-from reference_cars import CARS, OFF_AXIS, ReferenceCar
+from reference_cars import ReferenceCar
 
-from validate.reference import InfeasibleError, NotDecidedError, SingularPoseError, solve_reference
-from validate.reference.candidates import choices_of_table, every_candidate
-from validate.reference.certificate import certify, refine
+from validate.reference import (
+    InfeasibleError,
+    NotDecidedError,
+    SingularPoseError,
+    instants_of,
+    solve_reference,
+)
+from validate.reference.certificate import certify
+from validate.reference.design import Known, values_only
 from validate.reference.exact import as_fraction, bits
-from validate.reference.instant import prove_instant
-from validate.reference.linkage import Choices, Known
-from validate.reference.macpherson import DRAWN
-from validate.reference.macpherson.collinear import LAMBDA, MU
-from validate.reference.macpherson.drawn import AXIS, SLIDE
-from validate.reference.macpherson.points import END, LOWER, OUTER, TOP
-from validate.reference.vectors import dot, minus, plus, times
+from validate.reference.fold import Fold, fold_ahead, pose_before
+from validate.reference.krawczyk import newton
+from validate.reference.route import closed
+from validate.reference.way import Way, next_pose, proven_tube, series_of, start_pose
 
 Table = dict[str, tuple[int, int, int]]
 BOX = Fraction(1, 10**60)
-# Unknowns that place no point: the box leaves them room, and the proof finds them by itself.
-FREE = {"strut as drawn": {SLIDE}, "collinear strut": {MU, LAMBDA}}
 ORDERS = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
@@ -37,145 +38,106 @@ def _precision() -> Iterator[None]:
         yield
 
 
-def drawn(car: ReferenceCar) -> Choices:
-    """The choices of the drawing."""
-    return choices_of_table(car.design.table, car.design.up, car.linkage)
+def drawn(name: str) -> tuple[Known, list[arb]]:
+    """What is given as drawn, and a refined solution at the present precision."""
+    design = DRAWINGS[name]()
+    known = values_only(design.known_as_drawn())
+    return known, newton(known.system, closed(design).pose.unknown)[0]
 
 
-def posed(car: ReferenceCar, **changed: object) -> tuple[Known, list[arb]]:
-    """What is given, some inputs changed, and a refined solution at the present precision, local."""
-    known = car.known(**changed)
-    chosen = car.linkage.candidate(known, drawn(car))
-    return known, refine(car.linkage.unknown_of(chosen.points, known), known)
+def wrong(known: Known, which: int) -> Known:
+    """With one coefficient of one row a little off."""
+    rows = [list(row) for row in known.equations.rows]
+    places = [(i, k) for i, row in enumerate(rows) for k in range(len(row))]
+    i, k = places[which % len(places)]
+    monomial, coefficient = rows[i][k]
+    rows[i][k] = (monomial, coefficient + arb("1e-40"))
+    return replace(known, equations=replace(known.equations, rows=tuple(tuple(row) for row in rows)))
 
 
-def test_a_refined_solution_is_certified_and_the_enclosure_is_far_inside_the_box(car: ReferenceCar) -> None:
-    known, solution = posed(car)
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_refined_solution_is_certified_and_the_enclosure_is_far_inside_the_box(name: str) -> None:
+    known, solution = drawn(name)
     certificate = certify(solution, known, BOX)
     assert all(ball.rad() < arb("1e-70") for ball in certificate.enclosure)
 
 
-@pytest.mark.parametrize(
-    ("name", "place"), [(n, i) for n, car in CARS.items() for i in range(car.linkage.size)]
-)
-def test_a_planted_error_in_any_unknown_is_rejected_or_if_it_places_no_point_mended(
-    name: str, place: int
-) -> None:
-    known, solution = posed(CARS[name])
-    right = solution[place]
-    solution[place] = (right + arb("1e-58")).mid()
-    if place in FREE.get(name, ()):
-        assert abs(certify(solution, known, BOX).enclosure[place] - right) < arb("1e-75")
-    else:
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_planted_error_in_any_unknown_is_rejected_or_if_it_places_no_point_mended(name: str) -> None:
+    known, solution = drawn(name)
+    for place in range(len(solution)):
+        off = list(solution)
+        off[place] = (off[place] + arb("1e-50")).mid()
+        try:
+            mended = certify(off, known, BOX).enclosure[place]
+        except NotDecidedError:
+            continue
+        # It places no point, so that the box leaves it room: the proof finds it by itself.
+        assert abs(mended - solution[place]) < arb("1e-75")
+        assert not known.mechanism.lengths[place]
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_wrong_input_is_rejected(name: str) -> None:
+    known, solution = drawn(name)
+    for i in range(len(known.numbers)):
+        moved = [w + (arb("1e-40") if i == j else 0) for j, w in enumerate(known.numbers)]
+        # A number that is multiplied by 0 in this pose, the length of a turn's direction, says nothing.
+        if all(abs(x) < arb("1e-60") for x in replace(known, numbers=moved).residual(solution)):
+            continue
         with pytest.raises(NotDecidedError):
-            certify(solution, known, BOX)
+            certify(solution, replace(known, numbers=moved), BOX)
 
 
-def test_a_wrong_length_is_rejected(car: ReferenceCar) -> None:
-    known, solution = posed(car)
-    # The rod's length is not in the equations of the strut as drawn: it only says where its end is.
-    for link in set(car.linkage.links) - ({(END, TOP)} if car.linkage is DRAWN else set()):
-        lengths = {**known.squared_length, link: known.squared_length[link] + arb("1e-50")}
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_wrong_number_in_any_row_is_rejected(name: str) -> None:
+    known, solution = drawn(name)
+    count = sum(len(row) for row in known.equations.rows)
+    for which in range(0, count, 7):
+        planted = wrong(known, which)
+        if all(abs(x) < arb("1e-60") for x in planted.residual(solution)):
+            continue  # it multiplies an unknown that is 0 as drawn
         with pytest.raises(NotDecidedError):
-            certify(solution, replace(known, squared_length=lengths), BOX)
+            certify(solution, planted, BOX)
 
 
-def test_a_wrong_input_is_rejected(car: ReferenceCar) -> None:
-    known, solution = posed(car)
-    for name, number in known.driven.items():
-        with pytest.raises(NotDecidedError):
-            certify(solution, replace(known, driven={**known.driven, name: number + arb("1e-50")}), BOX)
+def near_the_last_rack(car: ReferenceCar) -> tuple[Way, Fold]:
+    """The way beyond the last rack travel, and the fold on it."""
+    design = car.design
+    here = closed(design)
+    begin = values_only(design.known_as_drawn())
+    end = values_only(design.known(design.driven({**car.still, "rack": (2 * car.last_rack, 0, 0)})))
+    numbers = [begin.numbers[0], end.numbers[1]]
+    way = Way(begin.equations, begin.numbers, numbers)
+    pose = start_pose(way, here.pose.unknown, arb(0))
+    while (fold := fold_ahead(way, pose)) is None:
+        pose = next_pose(way, pose, arb(1))
+    return way, fold
 
 
-@pytest.mark.parametrize("place", [OUTER, LOWER, AXIS])
-@pytest.mark.parametrize("component", range(3))
-def test_a_wrong_shape_of_the_knuckle_is_rejected(place: str, component: int) -> None:
-    known, solution = posed(CARS["strut as drawn"])
-    k = list(known.knuckle[place])
-    k[component] += arb("1e-50")
-    with pytest.raises(NotDecidedError):
-        certify(solution, replace(known, knuckle={**known.knuckle, place: tuple(k)}), BOX)
-
-
-def test_a_mirrored_knuckle_meets_the_equations_and_is_not_certified() -> None:
-    # With 6 in the plane of 5 and the axis, the knuckle's mirror image in that plane keeps 5, 6, 7 and u.
-    b, t, lower = (OFF_AXIS[n] for n in ("lower_ball_joint", "strut_top", "strut_lower"))
-    outer = plus(b, plus(times(minus(t, b), Fraction(1, 16)), times(minus(lower, b), Fraction(-1))))
-    flat = {**OFF_AXIS, "tie_rod_outer": outer}
-    car = replace(CARS["strut as drawn"], points=flat)
-    theta = car.close().inputs["arm_angle"]
-    known, solution = posed(car, arm_angle=theta, rack=230)
-    certify(solution, known, BOX)
-    k, u = known.knuckle[LOWER], known.knuckle[AXIS]
-    n = (k[1] * u[2] - k[2] * u[1], k[2] * u[0] - k[0] * u[2], k[0] * u[1] - k[1] * u[0])
-    columns = [tuple(solution[3 + 3 * i : 6 + 3 * i]) for i in range(3)]
-    image = plus(plus(times(columns[0], n[0]), times(columns[1], n[1])), times(columns[2], n[2]))
-    mirrored = [minus(c, times(image, 2 * n[i] / dot(n, n))) for i, c in enumerate(columns)]
-    wrong = refine([*solution[:3], *(x for c in mirrored for x in c), solution[12]], known)
-    assert all(abs(row) < arb("1e-80") for row in DRAWN.residual(wrong, known))
-    with pytest.raises(NotDecidedError):
-        certify(wrong, known, BOX)
-
-
-def test_a_box_that_holds_two_assemblies_is_rejected(car: ReferenceCar) -> None:
-    # Close to the end of the rack's travel the two answers of the tie rod come together.
-    choices = drawn(car)
-    near, beyond = car.inputs["rack"][0], car.last_rack
-    while beyond - near > Fraction(1, 1000):
-        middle = (near + beyond) / 2
-        gap = car.linkage.candidate(car.known(rack=middle), choices).gaps["tie_rod"]
-        near, beyond = (middle, beyond) if gap < 0 else (near, middle)
-    known = car.known(rack=near)
-    one, other = (
-        refine(car.linkage.unknown_of(car.linkage.candidate(known, c).points, known), known)
-        for c in (choices, replace(choices, tie=-choices.tie))
-    )
-    width = max(float(abs(a - b).mid()) for a, b in zip(one, other, strict=True))
-    assert 1e-5 < width < 0.02
-    certify(one, known, BOX)
-    certify(other, known, BOX)
-    with pytest.raises(NotDecidedError):
-        certify(one, known, Fraction(width))
-
-
-def test_an_assembly_other_than_the_expected_one_is_rejected(car: ReferenceCar) -> None:
-    design, expected = car.design, drawn(car)
-    known, solution = design.known(design.driven(car.still)), posed(car)[1]
-    assert prove_instant(design, known, solution, expected, 60, 60).choices == expected
-    for other in every_candidate(car.known()):
-        if other.choices != expected:
-            with pytest.raises(NotDecidedError, match="choices"):
-                prove_instant(design, known, solution, other.choices, 60, 60)
-
-
-@pytest.mark.parametrize("digits", [60, 200])
-def test_a_knuckle_all_but_on_one_line_costs_digits_and_no_wrong_number(table: Table, digits: int) -> None:
-    # The strut is straight, and point 6 lies 1e-20 mm beside its line: the wheel centre magnifies
-    # every error of point 6. At the table's own angle the table is the answer.
-    sliver = Fraction(1, 10**20)
-    thin = {
-        **table,
-        "strut_lower": (451, -315, 11),
-        "strut_rod_end": (455, -255, 215),
-        "tie_rod_outer": (452 + sliver, -300, 62),
-    }
-    theta = mpmath.acos(mpf(-30) / mpmath.sqrt(180**2 + 325**2 + 30**2))
-    reference = solve_reference(
-        thin, {"arm_angle": (theta, 0, 0)}, guess=thin, digits=digits, closure="collinear"
-    )
-    assert reference.condition > 1e18
-    assert reference.digits > digits or digits == 200
-    for name, place in thin.items():
-        for got, want in zip(reference.position[name], place, strict=True):
-            q = as_fraction(want, name)
-            exact = mpf(q.numerator) / q.denominator
-            assert abs(got - exact) <= reference.radius + mpf("1e-100")  # theta has 150 digits
-
-
-def test_newton_from_nonsense_never_ends_in_a_number_without_proof(car: ReferenceCar) -> None:
-    known = car.known()
-    with pytest.raises(NotDecidedError):
-        certify(refine([arb(0)] * car.linkage.size, known), known, BOX)
+def test_near_a_fold_the_two_branches_are_told_apart_and_no_box_or_tube_holds_both(car: ReferenceCar) -> None:
+    with ctx.workprec(212):
+        way, fold = near_the_last_rack(car)
+        t = (fold.t - arb("1e-12")).mid()
+        pose = pose_before(way, fold, t)
+        s = pose.unknown[fold.index] - fold.unknown[fold.index]
+        other = start_pose(way, [one((-s).mid()) for one in fold.curve[:-1]], t)
+        assert not pose.holds(other.box)
+        assert not other.holds(pose.box)
+        width = max(abs(a - b).upper() for a, b in zip(pose.unknown, other.unknown, strict=True))
+        assert arb("1e-8") < width < arb("1e-3")
+        # A tube between both, as wide as to hold them, is none; nor is a step across the fold.
+        between = replace(
+            pose, unknown=[((a + b) / 2).mid() for a, b in zip(pose.unknown, other.unknown, strict=True)]
+        )
+        still = [arb_poly([x]) for x in between.unknown]
+        assert proven_tube(way, between, still, (t + arb("1e-30")).mid()) is None
+        assert proven_tube(way, pose, series_of(way, pose, 7), (fold.t + arb("1e-12")).mid()) is None
+        short = (t + arb("1e-14")).mid()
+        tube = proven_tube(way, pose, series_of(way, pose, 7), short)
+        assert tube is not None
+        assert tube.holds(t, pose.box)
+        assert not tube.holds(t, other.box)
 
 
 @pytest.mark.parametrize("digits", [15, 50, 60, 100, 150])
@@ -190,16 +152,13 @@ def test_more_digits_stay_within_the_radius_of_fewer(car: ReferenceCar, digits: 
 
 
 def edge(car: ReferenceCar, name: str) -> Fraction:
-    """The greatest feasible input to 1e-40, by bisection on proven infeasibility."""
-    near, beyond = car.inputs[name][0], {"arm_angle": Fraction(3), "rack": car.last_rack}[name]
-    while beyond - near > Fraction(1, 10**40):
-        middle = (near + beyond) / 2
-        try:
-            car.solve({**car.still, name: (middle, 0, 0)}, digits=15)
-            near = middle
-        except InfeasibleError:
-            beyond = middle
-    return near
+    """The greatest feasible input, from the fold on the way beyond it."""
+    beyond = {"arm_angle": Fraction(3), "rack": car.last_rack}[name]
+    instants = instants_of(car.design, [car.still, {**car.still, name: (beyond, 0, 0)}])
+    next(instants)
+    with pytest.raises(InfeasibleError) as caught:
+        next(instants)
+    return as_fraction(caught.value.inputs[name], name)
 
 
 @pytest.mark.parametrize("name", ["arm_angle", "rack"])
@@ -207,7 +166,7 @@ def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasib
     car: ReferenceCar, name: str
 ) -> None:
     at = edge(car, name)
-    for distance in (Fraction(1, 10**6), Fraction(1, 10**12), Fraction(1, 10**30)):
+    for distance in (Fraction(1, 10**6), Fraction(1, 10**12), Fraction(1, 10**20)):
         near = car.solve({**car.still, name: (at - distance, 1, 0)})
         # A fold: the condition grows as the inverse square root of the distance.
         assert near.condition > 0.1 * float(distance) ** -0.5
@@ -216,17 +175,30 @@ def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasib
             car.solve({**car.still, name: (at + distance, 0, 0)})
 
 
-def test_an_exactly_singular_pose_is_an_error_that_says_so(table: Table) -> None:
-    # The arm's axis is level and the arm stands upright: p5 is on top of its circle.
-    upright = {
-        **table,
-        "lower_arm_front": (0, 0, 0),
-        "lower_arm_rear": (200, 0, 0),
-        "lower_ball_joint": (0, -300, 0),
-    }
+# An arm of 300 mm about a level line, driven by the height of its end: 300 is its dead point.
+ARM = described(
+    {"front": (-100, 0, 0), "rear": (100, 0, 0), "end": (0, -300, 0), "beside": (50, -100, 20)},
+    {"chassis": ["front", "rear"], "arm": ["front", "rear", "end", "beside"]},
+    {"height": {"height": "end"}},
+)
+
+
+def test_an_exactly_singular_pose_is_an_error_that_says_so() -> None:
     with pytest.raises(SingularPoseError, match="400 digits") as caught:
-        solve_reference(upright, {"arm_angle": (0, 1, 0)}, closure="collinear")
+        solve_reference(ARM, {"height": (300, 1, 0)})
     assert isinstance(caught.value.reason, NotDecidedError)
+
+
+@pytest.mark.parametrize("power", [6, 30, 80])
+def test_a_pose_all_but_at_its_dead_point_keeps_all_digits_and_beyond_it_is_none(power: int) -> None:
+    hair = Fraction(1, 10**power)
+    end = solve_reference(ARM, {"height": (300 - hair, 0, 0)}).position["end"]
+    want = 600 * mpf(10) ** -power - mpf(10) ** (-2 * power)
+    assert end[1] < 0  # on the side of the drawing
+    assert abs(end[1] ** 2 / want - 1) < mpf("1e-15")
+    with pytest.raises(InfeasibleError) as caught:
+        solve_reference(ARM, {"height": (300 + hair, 0, 0)})
+    assert abs(caught.value.inputs["height"] - 300) < mpf("1e-20")
 
 
 @pytest.mark.parametrize("power", [-18, 0, 11])

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from plain_mechanisms import count_car
 from reference_cars import OFF_AXIS, ReferenceCar
 
 from validate.reference import (
@@ -13,9 +14,10 @@ from validate.reference import (
     InfeasibleError,
     NotDecidedError,
     SingularPoseError,
-    count_assemblies,
+    instants_of,
 )
-from validate.reference.candidates import every_candidate
+from validate.reference.exact import as_fraction
+from validate.reference.route import CLEAR, reached
 from validate.reference.solve import with_enough_digits
 
 
@@ -53,7 +55,7 @@ def test_a_ladder_that_does_not_reach_its_top_ends_and_says_so(monkeypatch: pyte
 @pytest.mark.parametrize("starts", [0, -1])
 def test_a_search_needs_a_start(starts: int) -> None:
     with pytest.raises(BadInputError, match=f"starts is {starts}; allowed is at least 1"):
-        count_assemblies(OFF_AXIS, {"arm_angle": (1.5, 0, 0)}, starts=starts, closure="drawn")
+        count_car(OFF_AXIS, {"arm_angle": (1.5, 0, 0)}, starts=starts, closure="drawn")
 
 
 def test_one_start_is_a_search_of_one_start(car: ReferenceCar) -> None:
@@ -63,17 +65,24 @@ def test_one_start_is_a_search_of_one_start(car: ReferenceCar) -> None:
         assert len(listed.found) == listed.converged <= 1
 
 
+def last_rack(car: ReferenceCar) -> Fraction:
+    """The greatest rack travel at the arm angle of the inputs: the fold on the way beyond it."""
+    instants = instants_of(car.design, [car.still, {**car.still, "rack": (car.last_rack, 0, 0)}])
+    next(instants)
+    with pytest.raises(InfeasibleError) as caught:
+        next(instants)
+    return as_fraction(caught.value.inputs["rack"], "rack")
+
+
 @pytest.mark.parametrize("turn", [Fraction(-1, 5), Fraction(0), Fraction(1, 5)])
 def test_the_condition_is_numpy_s_in_the_maximum_norm_of_the_scaled_rows(
     car: ReferenceCar, turn: Fraction
 ) -> None:
     angle = car.inputs["arm_angle"][0] + turn
     reference = car.solve({**car.still, "arm_angle": (angle, 0, 0)})
-    known, linkage = car.known(arm_angle=angle), car.linkage
-    y = linkage.unknown_of(linkage.candidate(known, reference.choices).points, known)
-    matrix = np.zeros((linkage.size, linkage.size))
-    for row, column, entry in linkage.jacobian(y, known):
-        matrix[row, column] = float(entry)
+    known = car.known(arm_angle=angle)
+    y = reached(car.design, CLEAR, car.design.driven({**car.still, "arm_angle": (angle, 0, 0)})).pose.unknown
+    matrix = np.array(known.matrix(y).tolist(), dtype=float)
     scaled = matrix / np.abs(matrix).sum(axis=1, keepdims=True)
     # numpy's inverse is off by about eps times the condition, which is below 1e4 here.
     assert reference.condition < 1e4
@@ -84,23 +93,6 @@ def test_the_condition_of_a_knuckle_near_its_dead_point_grows_as_the_inverse_roo
     def condition(rack: Fraction) -> float:
         return car.solve({**car.still, "rack": (rack, 0, 0)}).condition
 
-    near, beyond = car.inputs["rack"][0], car.last_rack
-    for _ in range(100):
-        middle = (near + beyond) / 2
-        try:
-            condition(middle)
-            near = middle
-        except InfeasibleError:
-            beyond = middle
+    near = last_rack(car)
     far, close = (condition(near - Fraction(1, 10**n)) for n in (8, 12))
     assert close / far == pytest.approx(100, rel=0.05)
-
-
-def test_a_search_finds_assemblies_and_the_closed_forms_count_those_that_exist(car: ReferenceCar) -> None:
-    listed = car.count(car.still, starts=150)
-    feasible = {c.choices for c in every_candidate(car.known()) if max(c.gaps.values()) < 0}
-    assert listed.possible == len(feasible)
-    found = [one.choices for one in listed.found]
-    assert len(set(found)) == len(found) >= 2
-    assert set(found) <= feasible
-    assert len(found) <= listed.converged <= listed.starts == 150

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from reference_cars import ReferenceCar
 
-from validate.reference.design import HEAVE, values_only
+from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of
 from validate.reference.in_doubles import (
-    Constant,
     changes_of,
     inverse_of,
     jacobian_of,
@@ -28,6 +27,14 @@ from validate.reference.in_doubles import (
 from validate.reference.jet import Jet
 
 QUANTITIES = ("position", "velocity", "acceleration")
+HEAVE = "heave"
+
+
+def unknowns(car: ReferenceCar, places: dict[str, np.ndarray], still: Known) -> np.ndarray:
+    """The unknowns of points, (size, N)."""
+    count = len(next(iter(places.values())))
+    read = car.design.mechanism.unknown_of(local_places(car.design, places, still), float)
+    return np.array([np.broadcast_to(x, count) for x in read], dtype=float)
 
 
 def inputs_of(car: ReferenceCar, heave: bool) -> list[dict[str, tuple[Any, ...]]]:
@@ -47,11 +54,11 @@ def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: Refere
     places = {name: np.array([one.position_as_float(name) for one in instants]) for name in design.names}
     known = known_in_doubles(design, laws, 3)
     still = values_only(known)
-    values = np.array(car.linkage.unknown_of(local_places(design, places), still), dtype=float)
-    inverse = inverse_of(jacobian_of(list(values), still))
+    values = unknowns(car, places, still)
+    inverse = inverse_of(jacobian_of(list(values), still.numbers, still.equations))
     # Local coordinates are of the size of 1; their rounding times the equations' condition, below 1e4.
     assert np.abs(newton_step(values, inverse, still)).max() < 1e-11
-    points = car.linkage.points_of(unknown_jets_of(list(values), inverse, known), known)
+    points = known.points_of(unknown_jets_of(list(values), inverse, known))
     unit = float(design.unit)
     origin = np.array([float(x) for x in design.origin])
     for order, quantity in enumerate(QUANTITIES):
@@ -65,25 +72,6 @@ def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: Refere
             np.testing.assert_allclose(found, vectors, rtol=0.0, atol=1e-10 * largest)
 
 
-def test_a_chassis_without_heave_stands_where_it_is_drawn_and_with_heave_beside_it(car: ReferenceCar) -> None:
-    design = car.design
-    laws = {"arm_angle": np.array([[1.5, 1.0, 0.0]] * 2)}
-    moving = {**laws, HEAVE: np.array([[32.0, -8.0, 4.0], [0.0, 1.0, 2.0]])}
-    known, lifted = (known_in_doubles(design, inputs, 2) for inputs in (laws, moving))
-    up = np.array([float(x) for x in design.up])
-    for name, place in known.chassis.items():
-        for axis in range(3):
-            drawn = float(design.table[name][axis])
-            for part, other, law in zip(
-                ("value", "rate", "acceleration"),
-                (drawn, 0.0, 0.0),
-                moving[HEAVE].T / float(design.unit),
-                strict=True,
-            ):
-                assert np.all(getattr(place[axis], part) == other)
-                assert getattr(lifted.chassis[name][axis], part) == pytest.approx(other + law * up[axis])
-
-
 def test_a_matrix_without_an_inverse_has_the_one_that_comes_nearest() -> None:
     good, flat = np.diag([2.0, 4.0]), np.diag([2.0, 0.0])
     assert inverse_of(np.array([good])).tolist() == [[[0.5, 0.0], [0.0, 0.25]]]
@@ -93,12 +81,6 @@ def test_a_matrix_without_an_inverse_has_the_one_that_comes_nearest() -> None:
     ]
 
 
-def test_a_constant_has_a_root_alone_and_after_a_quotient() -> None:
-    assert Constant(9.0).sqrt() == 3.0
-    assert (Constant(18.0) / 2.0).sqrt() == 3.0
-    assert (36.0 / Constant(4.0)).sqrt() == 3.0
-
-
 @pytest.mark.parametrize("name", ["arm_angle", "rack"])
 def test_what_an_input_changes_is_the_proven_derivative(car: ReferenceCar, name: str) -> None:
     proven, instant, design = car.sensitivities()[name, "value"], car.solve(car.inputs), car.design
@@ -106,21 +88,21 @@ def test_what_an_input_changes_is_the_proven_derivative(car: ReferenceCar, name:
     places = {n: np.array([instant.position_as_float(n)] * 2) for n in design.names}
     known = known_in_doubles(design, laws, 2)
     still = values_only(known)
-    values = np.array(car.linkage.unknown_of(local_places(design, places), still), dtype=float)
-    inverse = inverse_of(jacobian_of(list(values), still))
+    values = unknowns(car, places, still)
+    inverse = inverse_of(jacobian_of(list(values), still.numbers, still.equations))
     jets = unknown_jets_of(list(values), inverse, known)
     # The derivative of what the equations take for the input, by its own value.
-    step = 1e-6
+    step, which = 1e-6, list(design.mechanism.drives).index(name)
     ahead, behind = (
-        known_in_doubles(design, {**laws, name: laws[name] + [sign * step, 0.0, 0.0]}, 2).driven[name]
+        known_in_doubles(design, {**laws, name: laws[name] + [sign * step, 0.0, 0.0]}, 2).numbers[which]
         for sign in (1.0, -1.0)
     )
     slopes = [(part_of(ahead, d) - part_of(behind, d))[None] / (2.0 * step) for d in range(3)]
-    dual = Jet(*(Dual(part_of(known.driven[name], d), slopes[d]) for d in range(3)))
-    changed = replace(known, driven={**known.driven, name: dual})
+    dual = Jet(*(Dual(part_of(known.numbers[which], d), slopes[d]) for d in range(3)))
+    changed = replace(known, numbers=[dual if i == which else w for i, w in enumerate(known.numbers)])
     found = changes_of(jets, inverse, changed, 1)
-    assert found.shape == (3, car.linkage.size, 1, 2)
-    points = car.linkage.points_of(with_slopes(jets, found), changed)
+    assert found.shape == (3, design.mechanism.size, 1, 2)
+    points = changed.points_of(with_slopes(jets, found))
     for d, quantity in enumerate(QUANTITIES):
         exact = {n: np.array(getattr(proven, quantity)[n], dtype=float) for n in design.names}
         largest = max(np.abs(v).max() for v in exact.values())

@@ -10,8 +10,9 @@ import mpmath
 import pytest
 from exact_time_functions import time_function_value
 from mpmath import mpf
+from plain_mechanisms import design_of, solve_car
 
-from validate.reference import InfeasibleError, Instant, solve_reference
+from validate.reference import InfeasibleError, Instant, instants_of
 from validate.reference.vectors import cross, dot, minus
 
 Table = dict[str, tuple[int, int, int]]
@@ -51,7 +52,7 @@ def table_angle() -> mpf:
 
 def test_table_1_is_reached_at_94_617_degrees_in_all_but_the_strut(table: Table) -> None:
     assert mpmath.degrees(table_angle()) == pytest.approx(94.617, abs=5e-4)
-    reference = solve_reference(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    reference = solve_car(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
     for name in ("lower_ball_joint", "tie_rod_inner"):
         assert max(abs(x) for x in minus(reference.position[name], table[name])) < mpf("1e-57")
     for name in ("strut_lower", "strut_rod_end", "tie_rod_outer"):
@@ -66,50 +67,50 @@ def test_table_1_bends_the_strut_by_7_94_degrees_and_the_assembly_does_not(table
 
     given = {name: (mpf(x), mpf(y), mpf(z)) for name, (x, y, z) in table.items()}
     assert bend(given) == pytest.approx(7.94, abs=0.005)
-    reference = solve_reference(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
+    reference = solve_car(table, {"arm_angle": (table_angle(), 0, 0)}, closure="collinear")
     assert abs(bend(dict(reference.position))) < mpf("1e-35")
 
 
 def test_the_printed_wheel_centres_differ_from_table_1_by_10_3_mm_mostly_in_y(table: Table) -> None:
     apart = []
     for t, x, y, z in TABLE_2:
-        reference = solve_reference(table, {"arm_angle": time_function_value(THETA, t)}, closure="collinear")
+        reference = solve_car(table, {"arm_angle": time_function_value(THETA, t)}, closure="collinear")
         apart.append([float(x) for x in minus((x, y, z), reference.position["wheel_centre"])])
     for t, x, y, z in TABLE_3:
         inputs = {"arm_angle": (math.pi / 2, 0, 0), "rack": time_function_value(RACK, t)}
-        reference = solve_reference(table, inputs, closure="collinear")
+        reference = solve_car(table, inputs, closure="collinear")
         apart.append([float(x) for x in minus((x, y, z), reference.position["wheel_centre"])])
     squares = [x * x for row in apart for x in row]
     assert math.sqrt(sum(squares) / len(squares)) == pytest.approx(10.3, abs=0.1)
     assert sum(row[1] for row in apart) / len(apart) == pytest.approx(-15, abs=2)
 
 
-def test_the_reachable_range_ends_where_a_closure_does(table: Table) -> None:
-    def reach(name: str, near: float, beyond: float) -> tuple[float, str]:
-        closure = ""
-        while abs(beyond - near) > 1e-4:
-            middle = (near + beyond) / 2
-            inputs = {"arm_angle": (math.pi / 2, 0, 0), name: (middle, 0, 0)}
-            try:
-                solve_reference(table, inputs, digits=15, closure="collinear")
-                near = middle
-            except InfeasibleError as error:
-                beyond, closure = middle, error.closure
-        return near, closure
-
-    for beyond, degrees in ((0.1, 32.228), (3.0, 152.013)):
-        angle, closure = reach("arm_angle", 1.5, beyond)
-        assert math.degrees(angle) == pytest.approx(degrees, abs=0.01)
-        assert closure == "arm"
-    for beyond, travel in ((-200.0, -89.066), (200.0, 130.101)):
-        rack, closure = reach("rack", 0.0, beyond)
-        assert rack == pytest.approx(travel, abs=0.01)
-        assert closure == "tie_rod"
+@pytest.mark.parametrize(
+    ("name", "beyond", "last"),
+    [
+        ("arm_angle", 0.1, math.radians(32.228)),
+        ("arm_angle", 3.0, math.radians(152.013)),
+        ("rack", -200.0, -89.066),
+        ("rack", 200.0, 130.101),
+    ],
+)
+def test_a_way_beyond_the_reachable_range_ends_at_its_last_value(
+    table: Table, name: str, beyond: float, last: float
+) -> None:
+    # The other input first, so that only one is left to go.
+    design = design_of(table, closure="collinear")
+    there = {"arm_angle": (math.pi / 2, 0, 0), "rack": (0, 0, 0)}
+    instants = instants_of(design, [there, {**there, name: (beyond, 0, 0)}], digits=15)
+    next(instants)
+    with pytest.raises(InfeasibleError) as caught:
+        next(instants)
+    assert float(caught.value.inputs[name]) == pytest.approx(last, abs=0.01 if name == "rack" else 2e-4)
+    assert 0 < caught.value.share < 1
 
 
 def test_angles_follow_equations_16_and_17_and_are_those_of_the_mirrored_right_wheel(table: Table) -> None:
     inputs = {"arm_angle": (1.5, 0, 0), "rack": (20, 0, 0)}
-    left = solve_reference(table, inputs, closure="collinear")
+    left = solve_car(table, inputs, closure="collinear")
     names = ("lower_ball_joint", "strut_lower", "wheel_centre")
     (y5, z5), (y7, z7), (y10, z10) = (left.position[name][1:] for name in names)
     assert abs(left.effects["kingpin"] - mpmath.atan((y7 - y5) / (z7 - z5))) < mpf("1e-58")
@@ -117,21 +118,21 @@ def test_angles_follow_equations_16_and_17_and_are_those_of_the_mirrored_right_w
     assert left.effects["kingpin"] > 0  # point 5 lies outboard of 7
 
     mirrored = {name: (x, -y, z) for name, (x, y, z) in table.items()}
-    right = solve_reference(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
+    right = solve_car(mirrored, {**inputs, "rack": (-20, 0, 0)}, side="right", closure="collinear")
     assert abs(right.effects["kingpin"] - left.effects["kingpin"]) < mpf("1e-58")
     assert abs(right.effects["camber"] - left.effects["camber"]) < mpf("1e-58")
 
 
 def test_a_wheel_that_leans_out_at_the_top_has_positive_camber(table: Table) -> None:
     # The design's spin axis is level in the table; jounce (a smaller theta) leans this wheel out.
-    assert solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").effects["camber"] > 0
-    reference = solve_reference(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
+    assert solve_car(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear").effects["camber"] > 0
+    reference = solve_car(table, {"arm_angle": (0.8, 0, 0)}, closure="collinear")
     outward = minus(reference.position["wheel_centre"], reference.position["strut_lower"])
     assert outward[2] < 0  # the axle points down and out
 
 
 def test_the_knuckle_keeps_the_shape_and_handedness_of_the_table(table: Table) -> None:
-    reference = solve_reference(table, {"arm_angle": (2.2, 0, 0), "rack": (-40, 0, 0)}, closure="collinear")
+    reference = solve_car(table, {"arm_angle": (2.2, 0, 0), "rack": (-40, 0, 0)}, closure="collinear")
     names = ("lower_ball_joint", "tie_rod_outer", "strut_lower", "wheel_centre")
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
@@ -150,7 +151,7 @@ def test_the_knuckle_keeps_the_shape_and_handedness_of_the_table(table: Table) -
 
 
 def test_floats_are_the_nearest_to_the_reference(table: Table) -> None:
-    reference = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    reference = solve_car(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
     for value, number in zip(
         reference.position_as_float("wheel_centre"), reference.position["wheel_centre"], strict=True
     ):
@@ -162,7 +163,7 @@ def test_floats_are_the_nearest_to_the_reference(table: Table) -> None:
 def steering(table: Table, t: Fraction) -> Instant:
     """The paper's steering scene."""
     inputs = {"arm_angle": (1.5707963267948966, 0, 0), "rack": time_function_value(RACK, t, 100)}
-    return solve_reference(table, inputs, digits=90, closure="collinear")
+    return solve_car(table, inputs, digits=90, closure="collinear")
 
 
 def test_steering_turns_the_knuckle_about_the_axis_5_4_at_1_46_rad_per_s(table: Table) -> None:

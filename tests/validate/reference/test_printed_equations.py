@@ -8,11 +8,24 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
+from plain_mechanisms import solve_car
 
-from validate.reference import Instant, solve_reference
-from validate.reference.macpherson.points import POINTS
+from validate.reference import Instant
 
 Table = dict[str, tuple[int, int, int]]
+# As the paper's Table 1 numbers them.
+POINTS = (
+    "lower_arm_front",
+    "lower_arm_rear",
+    "rack_centre",
+    "strut_top",
+    "lower_ball_joint",
+    "tie_rod_outer",
+    "strut_lower",
+    "strut_rod_end",
+    "tie_rod_inner",
+    "wheel_centre",
+)
 NUMBER_OF = {name: number for number, name in enumerate(POINTS, start=1)}
 LINKS = ((5, 1), (5, 2), (6, 5), (7, 5), (7, 6), (8, 4), (9, 6))  # eqs. (1)-(7)
 
@@ -43,9 +56,7 @@ def printed_residual(
 def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
     table: Table, theta: float, rack: float
 ) -> None:
-    reference = solve_reference(
-        table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear"
-    )
+    reference = solve_car(table, {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}, closure="collinear")
     bound = reference.error_bound["position"]
     for value, degree in printed_residual(reference, table, theta, rack):
         # A row changes by at most 12 coordinates' errors times differences below 700 mm.
@@ -53,7 +64,7 @@ def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
 
 
 def test_the_printed_equations_expose_a_shifted_answer(table: Table) -> None:
-    reference = solve_reference(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
+    reference = solve_car(table, {"arm_angle": (1.5, 0, 0)}, closure="collinear")
     shifted = dict(reference.position)
     x, y, z = shifted["tie_rod_outer"]
     shifted["tie_rod_outer"] = (x + mpf("1e-50"), y, z)
@@ -65,10 +76,10 @@ def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equation
     table: Table,
 ) -> None:
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
-    upright = solve_reference(table, inputs, closure="collinear")
+    upright = solve_car(table, inputs, closure="collinear")
     # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
     turned_table = {name: (x, -z, y) for name, (x, y, z) in table.items()}
-    turned = solve_reference(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
+    turned = solve_car(turned_table, inputs, up=(0, -1, 0), right=(0, 0, 1), closure="collinear")
     bound = upright.radius + turned.radius
     for name in table:
         x, y, z = upright.position[name]

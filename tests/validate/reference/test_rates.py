@@ -69,11 +69,8 @@ def test_the_angular_acceleration_is_the_derivative_of_the_angular_velocity(
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_one_turn_explains_all_points_of_a_body(car: ReferenceCar, motion: str) -> None:
     now = at(car, motion, Fraction(1, 4))
-    inner, centre = car.linkage.wheel_axis
-    knuckle = ("lower_ball_joint", "tie_rod_outer", next(n for n in inner if n in now.position), centre)
-    bodies = {"knuckle": knuckle, **car.linkage.arms}
-    assert set(now.angular_velocity) == set(bodies)
-    for body, points in bodies.items():
+    assert set(now.angular_velocity) == set(car.bodies)
+    for body, points in car.bodies.items():
         omega, alpha = now.angular_velocity[body], now.angular_acceleration[body]
         for name in points[1:]:
             r, v, a = (minus(q[name], q[points[0]]) for q in (now.position, now.velocity, now.acceleration))

@@ -19,9 +19,9 @@ from validate.reference.vectors import cross, minus, plus, times
 
 def edges(car: ReferenceCar, instant: Instant) -> tuple[tuple[mpf, ...], tuple[mpf, ...]]:
     """The foremost and the rearmost point of the wheel's level diameter; x rearward, y right, z up."""
-    inner, centre = car.linkage.wheel_axis
+    inner, centre = car.wheel_axis
     p = instant.position
-    axis = minus(p[centre], next(p[name] for name in inner if name in p))
+    axis = minus(p[centre], p[inner])
     level = times(unit(cross(axis, (0, 0, 1))), 300)
     one, other = plus(p[centre], level), minus(p[centre], level)
     return (one, other) if one[0] < other[0] else (other, one)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from cars_in_closed_form import Linkage
 from relative_cars import model_of, swing
 from sample_cars import SampleCar, by_car
 
 import validate.relative.follow
 from validate.cars.car import Car
-from validate.cars.input_limits import Linkage
 from validate.relative.accuracy import point_derivatives
 from validate.relative.errors import PoseError
 from validate.relative.model import Model
@@ -53,7 +53,7 @@ def test_angular_velocity_moves_every_line_of_the_knuckle(car: SampleCar) -> Non
 
 def with_rows_off(model: Model, row: int, by: float, laws: dict[str, np.ndarray]) -> dict:
     """Everything, with one row of the closure equations held to another value than zero."""
-    right = validate.relative.follow.row_targets
+    right = validate.relative.follow.targets_at
 
     def wrong(tree: Tree, inputs: np.ndarray) -> np.ndarray:
         targets = right(tree, inputs)
@@ -61,7 +61,7 @@ def with_rows_off(model: Model, row: int, by: float, laws: dict[str, np.ndarray]
         return targets
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validate.relative.follow, "row_targets", wrong)
+        patch.setattr(validate.relative.follow, "targets_at", wrong)
         poses = model.poses(laws, TIMES)
     return model.numbers(poses, model.rates(poses, laws))
 
@@ -78,8 +78,8 @@ def test_derivatives_by_the_rows_are_what_an_error_in_a_row_does(car: SampleCar)
     scales = [model.unit * np.ldexp(1.0, -order * motion.exponent)[:, None] for order in range(3)]
     for row in range(model.tree.size):
         ahead, behind = (with_rows_off(model, row, s * step, laws) for s in (1.0, -1.0))
-        for name, place in model.linkage.points.items():
-            found = point_derivatives(poses, known.motion, model.tree.together((place,)))
+        for name, place in model.tree.cut.points.items():
+            found = point_derivatives(known.motion, model.tree.together((place,)))
             for order, quantity in enumerate(("position", "velocity", "acceleration")):
                 slope = (ahead[quantity][name] - behind[quantity][name]) / (2.0 * step)
                 largest = max(np.abs(a).max() for a in ahead[quantity].values()) + model.unit

@@ -3,39 +3,34 @@
 import numpy as np
 import pinocchio
 import pytest
-from relative_cars import model_of, swing
+from mechanism_files import SCENES, plain_scene
+from relative_cars import model_of, plain_car, swing
 from sample_cars import SampleCar, by_car
 
 from validate.relative.errors import HardpointsError
-from validate.relative.follow import row_targets
-from validate.relative.linkage import Coincide
+from validate.relative.follow import targets_at
 from validate.relative.model import build
-from validate.relative.rates import row_jacobian, screws_by_joint
-from validate.relative.tree import Tree
 
 TIMES = np.linspace(0.0, 1.0, 9)
 
 
-@by_car
-def test_the_jacobian_is_the_derivative_of_the_rows(car: SampleCar) -> None:
-    model = model_of(car)
-    poses = model.poses(swing(car, TIMES), TIMES)
-    tree = model.tree
-    targets, step = np.zeros(tree.size), 1e-5
-    batch = row_jacobian(tree, screws_by_joint(poses), poses)
-    for k, q in enumerate(poses.q):
-        tree.rows(q, targets)
-        found = tree.jacobian().copy()
-        for column in range(tree.size):
-            change = np.zeros(tree.size)
-            change[column] = step
-            ahead, behind = (
-                tree.rows(pinocchio.integrate(tree._model, q, s * change), targets).copy()
-                for s in (1.0, -1.0)
-            )
-            # Central differences leave step^2 of third derivatives, some ten, and rounding over the step.
-            np.testing.assert_allclose((ahead - behind) / (2.0 * step), found[:, column], atol=1e-8)
-        np.testing.assert_allclose(batch[k], found, atol=1e-14)
+@pytest.mark.parametrize("name", SCENES)
+def test_the_jacobian_is_the_derivative_of_the_rows(name: str) -> None:
+    """Of every row there is, away from the drawing."""
+    tree = build(plain_scene(name)).tree
+    rng, step = np.random.default_rng(1), 1e-5
+    q = pinocchio.integrate(tree._model, tree.neutral, 0.05 * rng.standard_normal(tree.size))
+    tree.matrices(q)
+    found = tree.jacobian()
+
+    def rows(change: np.ndarray) -> np.ndarray:
+        near = pinocchio.integrate(tree._model, q, change)
+        return tree.rows.values(tree.matrices(near), near, np.zeros(tree.size))
+
+    for column, change in enumerate(step * np.eye(tree.size)):
+        slope = (rows(change) - rows(-change)) / (2.0 * step)
+        # Central differences leave step^2 of third derivatives, some ten, and rounding over the step.
+        np.testing.assert_allclose(slope, found[:, column], atol=1e-8)
 
 
 @by_car
@@ -78,15 +73,6 @@ def test_a_drawing_that_closes_comes_back_at_its_own_inputs_and_another_moves_as
 
 
 @by_car
-def test_a_linkage_has_as_many_rows_as_joint_coordinates(car: SampleCar) -> None:
-    linkage = model_of(car).linkage
-    rows = sum(3 if isinstance(c, Coincide) else 1 for c in linkage.closures) + len(linkage.drives)
-    assert rows == sum(3 if joint.kind == "spherical" else 1 for joint in linkage.joints)
-    with pytest.raises(ValueError, match="rows for"):
-        Tree(type(linkage)(**{**vars(linkage), "drives": linkage.drives[:1]}))
-
-
-@by_car
 @pytest.mark.parametrize(
     ("moved", "onto"),
     [
@@ -96,9 +82,8 @@ def test_a_linkage_has_as_many_rows_as_joint_coordinates(car: SampleCar) -> None
     ],
 )
 def test_points_in_one_place_are_refused_by_name(car: SampleCar, moved: str, onto: str) -> None:
-    points = dict(car.points) | {moved: car.points[onto]}
     with pytest.raises(HardpointsError, match="allowed") as caught:
-        build(car.type, points, side=car.side, closure=car.closure)
+        build(plain_car(car, **{moved: car.points[onto]}))
     assert caught.value.name in (moved, onto)
     assert moved in str(caught.value)
 
@@ -106,7 +91,14 @@ def test_points_in_one_place_are_refused_by_name(car: SampleCar, moved: str, ont
 @by_car
 def test_targets_are_those_of_the_drawing_in_the_reference_pose(car: SampleCar) -> None:
     tree = model_of(car).tree
-    drawn = np.array([drive.drawn for drive in tree.linkage.drives])
-    gaps = [closure.gap for closure in tree.linkage.closures]
-    rows = tree.rows(tree.neutral, row_targets(tree, drawn), gaps)
-    assert np.abs(rows).max() < 4e-15
+    targets = targets_at(tree, np.array([drive.drawn for drive in tree.drives]))
+    rows = tree.rows.values(tree.matrices(tree.neutral), tree.neutral, targets)
+    # The collinear strut is drawn beside its line.
+    assert np.abs(rows[tree.rows.drives] if car.closure == "collinear" else rows).max() < 4e-15
+
+
+def test_inputs_that_do_not_drive_the_mechanism_are_refused_by_name() -> None:
+    with pytest.raises(HardpointsError, match="is free to move"):
+        build(plain_scene("double-wishbone", ["rack"]))
+    with pytest.raises(HardpointsError, match="does not move the mechanism as drawn"):
+        build(plain_scene("double-wishbone", ["rack", "arm_angle", "wheel_travel"]))

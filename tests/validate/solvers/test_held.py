@@ -2,19 +2,18 @@
 
 import numpy as np
 import pytest
+from cars_in_closed_form import VARIANTS, Linkage
 from plain_solvers import closed_form, less_exact
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate import check
-from validate.cars.input_limits import Linkage
-from validate.cars.registry import SUSPENSIONS
-from validate.cars.scene_content import scene_content
 from validate.comparison.compare import Outcome
+from validate.hard.cars import scene_content
 from validate.solvers.held import claims_for
 
 # Every closure of each: the closed form has a collinear strut's axis through the ball joint.
-CARS = [car for suspension in SUSPENSIONS.values() for car in suspension.base.values()]
+CARS = [variant.base for variant in VARIANTS]
 MOVING = {"arm_angle": (1.6, 0.12, -0.3), "rack": (4.0, -25.0, 40.0), "heave": (0.0, 30.0, -20.0)}
 
 

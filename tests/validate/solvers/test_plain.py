@@ -10,12 +10,11 @@ from plain_solvers import closed_form
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate import FormulationError, check, compare
-from validate.cars.registry import SUSPENSIONS
-from validate.cars.scene_content import scene_content
+from validate.hard.cars import BESIDE_CAR, scene_content
 from validate.output import report
 from validate.solvers.plain import NoSolver, given_to_solver
 
-CAR = SUSPENSIONS["macpherson"].base["drawn"]
+CAR = BESIDE_CAR
 SCENE = Scene.from_mapping(
     scene_content(CAR, (1.6, 0.12, -0.3), (4.0, -25.0), start=-0.5, stop=0.5, samples=5), "moving"
 )

@@ -1,1 +1,1 @@
-"""How time and memory grow with instants, with designs and with unknowns."""
+"""Time and peak memory against instants, designs and unknowns, each size in a process of its own."""

@@ -92,7 +92,6 @@ class FourBarChain:
             knuckle="",
             steering_axis=("pivot_0", "axis_0"),
             wheel_axis=("pivot_0", "axis_0"),
-            wheel_centre=tips[-1],
             inboard="pivot_0",
             front_and_rear=("pivot_0", "axis_0"),
         )
@@ -110,7 +109,8 @@ class FourBarChain:
 
     def mechanism(self) -> Mechanism:
         """The chain as point coordinates."""
-        return build_mechanism(self.topology, self.points, {"up": np.array([0.0, 0.0, 1.0])})
+        axes = {"up": np.array([0.0, 0.0, 1.0]), "right": np.array([0.0, 1.0, 0.0])}
+        return build_mechanism(self.topology, self.points, axes)
 
     def closed_form(self, instants: Array) -> Array:
         """Tips at instants of shape (N,) in many digits, each rounded once: (N, rockers, 3), mm."""

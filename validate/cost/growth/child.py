@@ -1,6 +1,8 @@
-"""A task in a fresh process, so that points do not hurt each other: its numbers come back as JSON.
+"""A size of something that grows, timed with its peak of memory in a fresh process: none hurts another.
 
-A process that dies is a failed point with the reason.
+The system's own record of a process' peak starts with what the process that started it held, and counts
+what imports held and gave back; so the least size runs first, and then the peak is started anew where the
+system can do that. A process that dies is a failed row with the reason.
 """
 
 from __future__ import annotations
@@ -8,31 +10,42 @@ from __future__ import annotations
 import json
 import os
 import pickle
+import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-import validate
-from pointcoord import PointcoordError
-from validate.cost.errors import NoNumbers
-from validate.cost.growth.memory import limit_memory
-from validate.cost.growth.task import Measured, Task, WrongNumber, measure
-from validate.cost.row import QuantityError, Time
-from validate.cost.store import THREADS
-from validate.cost.way import LeftOut
+from validate.cost.parts.loading import environment
+from validate.cost.race import Effort, Found, Runner, race
+from validate.cost.row import Row
 
 PROGRAM = "from validate.cost.growth.child import answer; answer()"
-# Beyond what the point itself may take: Python, imports, the check of the numbers.
-GRACE = 60.0
+GRACE = 60.0  # s, beyond what the runs may take: Python, imports, the check of the numbers
+STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
+RESTART_PEAK = "5"  # proc(5): the peak of resident memory becomes what is resident now
+
+
+class Task(Protocol):
+    """Work of some size. It travels to another process, so it is plain data."""
+
+    @property
+    def smallest(self) -> Task:
+        """The same work of the least size, which loads all that it needs."""
+        ...
+
+    def runner(self, row: Row) -> Runner:
+        """What is timed; what it is given is made here, and is no part of it."""
+        ...
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one point may take.
+    """What one size may take.
 
     Attributes:
         seconds: for one run, and for all its repeats together as far as there is more than one.
@@ -42,66 +55,94 @@ class Limits:
     seconds: float = 20.0
     memory: int = 8 * 2**30
 
-    @property
-    def patience(self) -> float:
-        """After how many seconds a process is ended: one run may take some times what was foreseen."""
-        return 5.0 * self.seconds + GRACE
 
-
-def measure_apart(task: Task, limits: Limits) -> Measured:
-    """Measure a task in a process of its own, with one thread."""
-    source = str(Path(validate.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
+def measure_apart(task: Task, row: Row, limits: Limits) -> list[Row]:
+    """The rows of a task that is measured in a process of its own, by one thread."""
+    # One run may take some times what was foreseen.
+    patience = 5.0 * limits.seconds + GRACE
+    failed = replace(row, poses=0, verdict="failed")
     try:
         done = subprocess.run(
             [sys.executable, "-c", PROGRAM],
-            input=pickle.dumps((task, limits)),
+            input=pickle.dumps((task, row, limits)),
             capture_output=True,
-            timeout=limits.patience,
-            env={**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": path},
+            timeout=patience,
+            env=environment(),
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return Measured("failed", f"was ended after {limits.patience:.0f} s")
+        return [replace(failed, reason=f"was ended after {patience:.0f} s")]
     if done.returncode < 0:
-        number = -done.returncode
-        name = signal.Signals(number).name if number in set(signal.Signals) else str(number)
-        hint = ", as a system out of memory does" if number == signal.SIGKILL else ""
-        return Measured("failed", f"its process was ended by the signal {name}{hint}")
+        name = signal.Signals(-done.returncode).name
+        hint = ", as a system out of memory does" if name == "SIGKILL" else ""
+        return [replace(failed, reason=f"its process was ended by the signal {name}{hint}")]
     try:
-        return _measured(json.loads(done.stdout))
-    except (ValueError, KeyError, TypeError):
+        return [Row(**content) for content in json.loads(done.stdout)]
+    except (ValueError, TypeError):
         lines = done.stderr.decode(errors="replace").strip().splitlines()
         last = f": {lines[-1]}" if lines else ""
-        return Measured("failed", f"its process ended with status {done.returncode} and no answer{last}")
+        reason = f"its process ended with status {done.returncode} and no answer{last}"
+        return [replace(failed, reason=reason)]
 
 
 def answer() -> None:
-    """In the process: measure the task that standard input brings, and write what comes of it."""
+    """In the process: measure the task that standard input brings, and write its rows."""
     # What libraries print must not mix with the answer.
     out = os.dup(1)
     os.dup2(2, 1)
-    task, limits = pickle.load(sys.stdin.buffer)
+    task, row, limits = pickle.load(sys.stdin.buffer)
     limit_memory(limits.memory)
-    text = json.dumps(asdict(_outcome(task, limits)), allow_nan=False)
+    text = json.dumps([asdict(one) for one in measured(task, row, limits)], allow_nan=False)
     with open(out, "w", encoding="utf-8") as stream:
         stream.write(text)
 
 
-def _outcome(task: Task, limits: Limits) -> Measured:
+def measured(task: Task, row: Row, limits: Limits) -> Sequence[Row]:
+    """A task's rows in this process, with the peak of its first run."""
+    race([task.smallest.runner(row)], Effort(repeats=0))
+    runner = task.runner(row)
+    held = restart_peak()
+    most = [0]
+
+    def found(one: Any) -> Found:
+        most[0] = max(peak() - held, 0)
+        return runner.found(one)
+
+    rows = race([replace(runner, found=found)], Effort(repeats=7, least=0.01, most=limits.seconds))
+    return [replace(one, peak_bytes=most[0]) if one.verdict == "measured" else one for one in rows]
+
+
+def restart_peak() -> int:
+    """Start the peak anew where the system can, and return it, bytes."""
+    with suppress(OSError):
+        CLEAR.write_text(RESTART_PEAK)
+    return peak()
+
+
+def peak() -> int:
+    """The most memory that was resident since `restart_peak`, or else since the process began, bytes."""
+    found = _of_status("VmHWM")
+    if found is not None:
+        return found
+    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return largest if sys.platform == "darwin" else 1024 * largest
+
+
+def limit_memory(more: int) -> None:
+    """Let this process have so many bytes more than it has; beyond, it gets a MemoryError.
+
+    Does nothing where the system does not say what a process has.
+    """
+    held = _of_status("VmSize")
+    if held is not None:
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (held + more, hard))
+
+
+def _of_status(name: str) -> int | None:
+    """A line of what Linux says of this process, bytes; None elsewhere."""
     try:
-        return measure(task, limits.seconds)
-    except (LeftOut, ImportError) as reason:
-        return Measured("left out", str(reason))
-    except MemoryError:
-        return Measured("failed", f"needs more memory than the {limits.memory / 2**30:g} GiB allowed")
-    except (PointcoordError, NoNumbers, WrongNumber) as error:
-        return Measured("failed", str(error))
-    except Exception as error:  # whatever a way fails with is its row's reason
-        return Measured("failed", f"{type(error).__name__}: {error}")
-
-
-def _measured(content: Mapping[str, Any]) -> Measured:
-    times = {name: Time(**time) for name, time in content["times"].items()}
-    errors = {name: QuantityError(**error) for name, error in content["errors"].items()}
-    return Measured(**{**content, "times": times, "errors": errors})
+        lines = STATUS.read_text(encoding="ascii", errors="replace").splitlines()
+    except OSError:
+        return None
+    return next((1024 * int(line.split()[1]) for line in lines if line.startswith(f"{name}:")), None)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from validate.cost.looks import Look, looks
+if TYPE_CHECKING:
+    from validate.cost.looks import Look
 
 # Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
 ORANGE, SKY, GREEN, BLUE, RED, PINK = (
@@ -49,24 +48,13 @@ def style(look: Look, dense: bool) -> dict[str, Any]:
     return {
         "color": look.colour,
         "marker": look.marker,
-        "markersize": look.size,
+        "markersize": 5.5,
         "markerfacecolor": look.colour if dense else "white",
         "markeredgecolor": look.colour,
         "markeredgewidth": 1.1,
-        "linewidth": look.width,
+        "linewidth": 1.3,
         "linestyle": (0, look.dash) if look.dash else "-",
     }
-
-
-def handles(ways: Iterable[tuple[str, bool]]) -> list[Line2D]:
-    """Entries of a legend, of ways and whether they are dense."""
-    named = list(ways)
-    found = looks(way for way, _ in named)
-    dense = {way: any(d for w, d in named if w == way) for way in found}
-    return [
-        Line2D([], [], label=f"{way}*" if dense[way] else way, **style(look, dense[way]))
-        for way, look in found.items()
-    ]
 
 
 def plain(axes: Axes) -> None:
@@ -75,36 +63,6 @@ def plain(axes: Axes) -> None:
     axes.grid(True, which="major", color=FAINT, linewidth=0.4)
     axes.set_axisbelow(True)
     axes.minorticks_off()
-
-
-def short(number: float) -> str:
-    """A number of an axis in few letters: 0.5, 500, 1e4."""
-    return f"{number:g}" if number < 9999.0 else f"{number:.0e}".replace("e+0", "e").replace("e+", "e")
-
-
-def spread(places: Sequence[float], room: float) -> list[float]:
-    """Places between 0 and 1 moved apart until each has room, as far as there is any; their order stays.
-
-    Those that crowd stand around their middle.
-    """
-    order = sorted(range(len(places)), key=lambda i: places[i])
-    groups: list[list[int]] = []
-
-    def bottom(group: Sequence[int]) -> float:
-        high = room * (len(group) - 1)
-        middle = sum(places[i] for i in group) / len(group)
-        return max(min(middle - 0.5 * high, 1.0 - high), 0.0)
-
-    for i in order:
-        groups.append([i])
-        while len(groups) > 1 and bottom(groups[-1]) - bottom(groups[-2]) < room * len(groups[-2]):
-            last = groups.pop()
-            groups[-1] += last
-    found = [0.0] * len(places)
-    for group in groups:
-        for k, i in enumerate(group):
-            found[i] = bottom(group) + k * room
-    return found
 
 
 def drawn(figure: Figure, ending: str) -> bytes:

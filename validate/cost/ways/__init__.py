@@ -1,1 +1,1 @@
-"""The ways that are raced, one family a file; `registry` lists them."""
+"""The ways that are raced, a file for each family."""

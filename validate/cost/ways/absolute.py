@@ -1,15 +1,11 @@
 """The absolute-coordinate model, without its claims: of short motions they take several times as long.
 
-The set-up describes the bodies and their rows and assembles the drawing. The model refines many instants at
-once and solves for their rates with the factors that the last correction leaves, so its rates are part of
-`solve`, some tenth of it; `output` reads points from the bodies and puts them where the chassis is.
+The set-up describes the bodies and their rows and assembles the drawing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,101 +13,59 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import QUANTITIES
-from validate.cost.way import Ready, Setting
-from validate.cost.ways.inputs import chassis_motion, laws_at
+from validate.cost.way import Answer, Solve, Way
+from validate.cost.ways.inputs import laws_at
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import Numbers
-
-if TYPE_CHECKING:
-    from absolute.mechanism import Mechanism
-    from absolute.results import Record
-    from absolute.tracking import Tracking
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Absolute:
+def in_bodies(scene: Scene, _: float | None) -> Solve:
     """Poses of rigid bodies in Pinocchio."""
+    from absolute.effects import effects_of
+    from absolute.input_arrays import chassis_series, input_series
+    from absolute.mechanism import Mechanism
+    from absolute.results import Asked, Record
+    from absolute.solve import solve_instants
+    from absolute.tracking import Tracking
+    from validate.formulations.absolute_coordinates import near_model, near_origin
 
-    name: str = "absolute"
-    words: str = "poses of rigid bodies (absolute coordinates), with Pinocchio"
-    package: str | None = "pinocchio"
-    settings: tuple[Setting, ...] = (Setting(),)
-    dense: bool = False
+    part, asked = scene.mechanism, asked_numbers(scene)
+    origin = near_origin(part)
+    mechanism = Mechanism(near_model(part, tuple(scene.inputs), origin))
+    tracking = Tracking(mechanism)
+    rates = plan_effects(scene.effects).derivative > 0
+    wanted = [name for quantity in asked if QUANTITIES[quantity].of == "car" for name in asked[quantity]]
+    told = Asked(rates, conditions=False, doubts=None, effects=effects_of(wanted))
+    moves, axes = part.topology.chassis_motion, {"up": part.up, "right": part.right}
 
-    def prepare(self, scene: Scene, setting: Setting) -> Ready:
-        """Describe the model and assemble its drawing.
-
-        Raises:
-            AbsoluteError: the model refuses the drawing.
-        """
-        import absolute
-        from absolute.mechanism import Mechanism
-        from absolute.tracking import Tracking
-        from validate.formulations.absolute_coordinates import near_origin
-
-        part, origin = scene.mechanism, near_origin(scene.mechanism)
-        near = {name: (np.array(point) - origin).tolist() for name, point in part.points.items()}
-        model = absolute.suspension_of(part.type)(
-            near, up=part.up, right=part.right, side=part.side, closure=part.closure
-        )
-        mechanism = Mechanism(model)
-        return _Ready(scene, origin, mechanism, Tracking(mechanism))
-
-
-@dataclass(frozen=True)
-class _Ready:
-    scene: Scene
-    origin: Array
-    mechanism: Mechanism
-    tracking: Tracking
-    asked: Mapping[str, tuple[str, ...]] = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "asked", asked_numbers(self.scene))
-
-    def solve(self, instants: Array) -> Record:
-        """Find the poses, and the rates if any are asked for."""
-        from absolute.effects import effects_of
-        from absolute.input_arrays import chassis_series, input_series
-        from absolute.results import Asked, Record
-        from absolute.solve import solve_instants
-
-        laws = laws_at(self.scene, instants)
-        chassis = chassis_motion(self.scene, laws)
-        moves = self.scene.mechanism.topology.chassis_motion
-        series = input_series(
-            tuple(self.mechanism.model.inputs), {name: law for name, law in laws.items() if name not in moves}
-        )
-        wanted = [n for q, names in self.asked.items() if QUANTITIES[q].of == "car" for n in names]
-        rates = plan_effects(self.scene.effects).derivative > 0
-        asked = Asked(rates, conditions=False, doubts=None, effects=effects_of(wanted))
-        record = Record(self.mechanism, series, chassis_series(chassis, len(instants)), asked)
-        solve_instants(self.tracking, series, rates, record)
-        return record
-
-    def rates(self, solved: Record) -> Record:
-        """Nothing: `solve` found them."""
-        return solved
-
-    def output(self, solved: Record) -> Numbers:
-        """Points in the user's axes, from his origin."""
-        solution = solved.solution()
+    def solve(instants: Array) -> Answer:
+        laws = laws_at(scene, instants)
+        shifts = [
+            laws.pop(name)[..., None] * np.array(axes[axis]) for name, axis in moves.items() if name in laws
+        ]
+        chassis = chassis_series(np.sum(shifts, axis=0) if shifts else None, len(instants))
+        series = input_series(tuple(mechanism.model.inputs), laws)
+        record = Record(mechanism, series, chassis, told)
+        solve_instants(tracking, series, rates, record)
+        solved = record.solution()
         numbers: dict[str, Mapping[str, Array]] = {}
-        for quantity in self.asked:
-            if QUANTITIES[quantity].of == "car":
-                numbers[quantity] = solution.effects
-            elif quantity == "position":
-                numbers[quantity] = {name: place + self.origin for name, place in solution.position.items()}
-            else:
-                numbers[quantity] = getattr(solution, quantity)
-        return numbers
+        for quantity in asked:
+            of_car = QUANTITIES[quantity].of == "car"
+            numbers[quantity] = solved.effects if of_car else getattr(solved, quantity)
+        places = numbers["position"].items()
+        numbers["position"] = {name: place + origin for name, place in places}
+        return Answer(numbers, {"newton_steps": int(solved.iterations.sum())})
 
-    def counts(self, solved: Record) -> Mapping[str, int]:
-        """Newton's corrections, each with a Jacobian and its factors."""
-        steps = int(solved.solution().iterations.sum())
-        return {"newton_steps": steps, "jacobians": steps, "factorisations": steps}
+    return solve
 
 
-WAYS = (Absolute(),)
+WAYS = (
+    Way(
+        "absolute",
+        "poses of rigid bodies (absolute coordinates), with Pinocchio",
+        in_bodies,
+        values=(None,),
+        package="pinocchio",
+    ),
+)

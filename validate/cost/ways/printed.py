@@ -1,16 +1,18 @@
-"""The paper's algorithm with its formulas as printed, some of which are wrong."""
+"""The paper's algorithm with its formulas as printed, some of which are wrong at any tolerance."""
 
 from __future__ import annotations
 
-from validate.cost.ways.point_coordinates import AtInstants, tolerance_settings
+from functools import partial
+
+from validate.cost.way import Way
+from validate.cost.ways.point_coordinates import by_method
 from validate.paper.printed import PRINTED
 
 WAYS = (
-    AtInstants(
-        name="printed",
-        words="Newton's method with the paper's formulas as printed",
-        method=PRINTED,
-        # What is wrong with them is wrong at any tolerance.
-        settings=tolerance_settings((1e-3, 1e-6, 1e-9, 1e-12)),
+    Way(
+        "printed",
+        "Newton's method with the paper's formulas as printed",
+        partial(by_method, PRINTED),
+        values=(1e-3, 1e-6, 1e-9, 1e-12),
     ),
 )

@@ -1,8 +1,8 @@
-"""The ways that are raced: a line for each family."""
+"""The ways that are raced, in the order in which tables show them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
@@ -25,18 +25,18 @@ WAYS: tuple[Way, ...] = (
     *scipy_solvers.WAYS,
     *peers.WAYS,
 )
-"""All of them, in the order in which tables show them. Optional packages are imported when they are used."""
+OURS = tuple(way.name for way in point_coordinates.WAYS)
+"""The ways of this project's solver; every other way is a contestant."""
 
 
-def ways_named(names: Iterable[str]) -> tuple[Way, ...]:
+def ways_named(names: Sequence[str]) -> tuple[Way, ...]:
     """Some of them, in the order of the registry.
 
     Raises:
         UnknownName: there is no such way.
     """
     known = {way.name: way for way in WAYS}
-    asked = set(names)
     for name in names:
         if name not in known:
             raise UnknownName("way", name, known)
-    return tuple(way for way in WAYS if way.name in asked)
+    return tuple(way for way in WAYS if way.name in names)

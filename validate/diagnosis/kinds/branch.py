@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.method import AUTO
-from pointcoord.simulation import prepare_task, solve_task
+from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
 from validate.diagnosis.evidence import Evidence, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind
-from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Branch(Kind):
             return
         first = int(np.argmax(away > ELSEWHERE * size))
         pose = drawn | {
-            name: evidence.given[placed[name]][first] - self._chassis(evidence, first)
+            name: self._in_chassis(evidence, evidence.given[placed[name]][first], first)
             for name in (*topology.moving, *topology.carried)
         }
         links = {ends for constraint in topology.constraints for ends in constraint.squared_lengths}
@@ -83,14 +83,12 @@ class Branch(Kind):
         return np.asarray(np.linalg.norm(evidence.given[row] - evidence.held[row], axis=-1))
 
     @staticmethod
-    def _chassis(evidence: Evidence, instant: int) -> Array:
-        """Where the chassis is."""
-        part, moved = evidence.scene.mechanism, np.zeros(3)
-        for name, along in part.topology.chassis_motion.items():
-            if name in evidence.scene.inputs:
-                when = evidence.times[instant : instant + 1]
-                moved += rates(evidence.scene.inputs[name], when)[0, 0] * np.array(getattr(part, along))
-        return moved
+    def _in_chassis(evidence: Evidence, place: Array, instant: int) -> Array:
+        """Where a place of the moved car is on a chassis that stands still."""
+        mechanism = scene_mechanism(evidence.scene)
+        chassis, when = ChassisMotion.of(mechanism, evidence.scene.functions), evidence.times[[instant]]
+        local = (place - mechanism.origin)[None]
+        return np.asarray(chassis.taken_back(when, local)[0] + mechanism.origin)
 
     @staticmethod
     def _scene(scene: Scene, pose: dict[str, Array]) -> Scene:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pointcoord import PointcoordError
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, solve_task
-from pointcoord.suspensions import SUSPENSIONS
 from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds.inputs import rows_of
@@ -22,7 +21,7 @@ class Closure(Kind):
         """The whole car, closed by each of them."""
         scene = evidence.solved.fine
         part = scene.mechanism
-        for closure in SUSPENSIONS[part.type].closures:
+        for closure in part.file.closures:
             if closure == part.closure:
                 continue
             mechanism = part.model_copy(update={"closure": closure})

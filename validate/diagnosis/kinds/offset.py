@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.simulation import scene_mechanism
 from validate.diagnosis.evidence import Evidence, Row, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind, WouldBe
-from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
 
@@ -77,18 +77,14 @@ class Offset(Kind):
         yield Hypothesis(self.name, "origin", words, moved, fitted, 1.0 + 0.5 * fitted)
 
     def _relative(self, evidence: Evidence) -> Iterator[Hypothesis]:
-        """Relative to the chassis, where an input moves that."""
-        part = evidence.scene.mechanism
-        laws = [
-            (rates(evidence.scene.inputs[name], evidence.times), np.array(getattr(part, along)))
-            for name, along in part.topology.chassis_motion.items()
-            if name in evidence.scene.inputs
-        ]
+        """Relative to the chassis, where an input displaces that and none turns it."""
+        scene = evidence.scene
+        chassis = ChassisMotion.of(scene_mechanism(scene), scene.functions)
+        moved = () if chassis.turns else chassis.states(evidence.times, 2)
         rows: dict[Row, WouldBe] = {}
         for row in evidence.wrong:
-            if kind_of(row) == "point" and laws:
-                moved = reduce(np.add, [law[:, order(row), None] * along for law, along in laws])
-                rows[row] = self._less(evidence, row, moved)
+            if kind_of(row) == "point" and moved:
+                rows[row] = self._less(evidence, row, moved[order(row)])
         if rows:
             words = "relative to the chassis, whose own motion is left out"
             yield Hypothesis(self.name, "chassis", words, rows)

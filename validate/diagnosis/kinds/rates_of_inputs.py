@@ -42,7 +42,7 @@ class RatesOfInputs(Kind):
         laws = {name: rates(law, evidence.times) for name, law in evidence.scene.inputs.items()}
         names = [name for name, law in laws.items() if law[:, 1:].any()]
         scene = evidence.scene.model_copy(update={"points": None})
-        driving = [name for name in laws if name not in scene.mechanism.topology.chassis_motion]
+        driving = [name for name in laws if name not in scene.mechanism.topology.chassis_inputs]
         map = kinematic_map(
             scene, {name: (float(laws[name][:, 0].min()), float(laws[name][:, 0].max())) for name in driving}
         )

@@ -9,24 +9,23 @@ as near to the strut's top as it lies beside the axis, and two places of the top
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.car import Car, as_tuples
-from validate.cars.input_limits import Linkage
-from validate.cars.macpherson import BESIDE
-from validate.cars.scene_content import scene_content
-from validate.hard.cars import BESIDE_CAR
+from validate.cars.car import as_tuples
+from validate.hard.cars import BESIDE, BESIDE_CAR, drawn_angle
 from validate.hard.case import RIGHT, Case, Expected, decades
+from validate.hard.cases.near_points import motion_from
+from validate.hard.family import SOLVERS, Content
 from validate.hard.trial import scene_case
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
 
 GROUP = "The strut's axis beside the ball joint"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 OFF = 37.0  # mm: how far the axis is from the ball joint in the car that the cases are made from
 # A millimetre or so, as there may be in a car, must be solved; nearer a model may decline.
 SOLVED = Expected(("right", "refused"), right_from=1e-2)
@@ -141,11 +140,16 @@ def slide_drawn_run_out(value: float) -> Points:
     }
 
 
-def motion(points: Points, arm: float, rack: float) -> dict[str, Any]:
+def motion(points: Points, arm: float, rack: float) -> Content:
     """From the drawing by `arm` rad and `rack` mm in a second, with accelerations as large."""
-    car = Car(as_tuples(dict(points)), "left", BESIDE_CAR.up, BESIDE_CAR.right)
-    angle = Linkage.of(car).drawn_angle
-    return scene_content(car, (angle, 0.5 * arm, 0.5 * arm), (0.0, 0.5 * rack, 0.5 * rack), stop=1.0)
+    car = replace(BESIDE_CAR, points=as_tuples(dict(points)))
+    return motion_from(drawn_angle(car), car, (0.5 * arm,) * 2, (0.5 * rack,) * 2)
+
+
+def _content(points: Callable[[float], Points], shrinking: bool, value: float) -> Content:
+    # A knuckle that is steered by a short arm follows no more than that arm's own length.
+    share = value if shrinking else 1.0
+    return motion(points(value), 0.1 * share, 20.0 * share)
 
 
 def _case(
@@ -157,11 +161,6 @@ def _case(
     values: tuple[float, ...] = EVERY,
     shrinking: bool = False,
 ) -> Case:
-    def scene(value: float) -> Mapping[str, Any]:
-        # A knuckle that is steered by a short arm follows no more than that arm's own length.
-        share = value if shrinking else 1.0
-        return motion(points(value), 0.1 * share, 20.0 * share)
-
     right_from = expected.right_from
     return scene_case(
         name=name,
@@ -173,7 +172,7 @@ def _case(
         behaviour="right within the bound"
         if expected == RIGHT
         else f"right within the bound, or refused with a reason; right from {right_from:g} up",
-        scene=scene,
+        scene=partial(_content, points, shrinking),
     )
 
 

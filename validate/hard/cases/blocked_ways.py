@@ -15,15 +15,13 @@ from functools import partial
 from typing import Any
 
 from pointcoord import Scene
-from validate.cars.scene_content import scene_content
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.cars import CARS
 from validate.hard.case import RIGHT, Answer, Case, Trial
-from validate.hard.last_values import home, last_value, reachable
+from validate.hard.family import NAMED, SOLVERS
+from validate.hard.last_values import last_value, reachable
 
 SHARE = 1e-9  # of the way: how exactly its end must be found
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 BY_ANGLE = ("absolute", "relative")
 ARM = 1.3  # rad: where the arm is to be, besides the rack beyond its end
 Values = Mapping[str, float]
@@ -31,14 +29,14 @@ Values = Mapping[str, float]
 
 def goal(overshoot: float, car: str = "paper") -> dict[str, float]:
     """An arm angle well inside its range, and a rack travel beyond what it can be at any such angle."""
-    return {"arm_angle": ARM, "rack": last_value(car, "rack", True).beyond(0.5 + overshoot)}
+    return {"arm_angle": ARM, "rack": last_value(NAMED[car], "rack", True).beyond(0.5 + overshoot)}
 
 
 def moved_on(
     name: str, here: Values, end: Values, share: float, car: str = "paper"
 ) -> dict[str, float | Fraction]:
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
-    start = home(car, level=False)
+    start = NAMED[car].drawn
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
     if name in BY_ANGLE:
         return {
@@ -51,7 +49,7 @@ def moved_on(
 
 def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tuple[float, float]:
     """How far along the way the arm is, and how far the rack; equal if the place lies on it."""
-    start = home(car, level=False)
+    start = NAMED[car].drawn
 
     def measure(values: Values) -> float:
         return values["arm_angle"] if name in BY_ANGLE else math.cos(values["arm_angle"])
@@ -62,8 +60,7 @@ def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tu
 
 def content(overshoot: float, car: str = "paper") -> dict[str, Any]:
     """Of the scene that asks for it."""
-    end = goal(overshoot, car)
-    return scene_content(CARS[car], end["arm_angle"], end["rack"])
+    return NAMED[car].absolute(goal(overshoot, car))
 
 
 def examine(overshoot: float, car: str = "paper") -> Trial:
@@ -94,9 +91,9 @@ def judged(name: str, reason: Exception, end: Values, car: str = "paper") -> Ans
         faults.append(
             f"what is reached does not lie on the way: the arm at {arm!r} of it, the rack at {rack!r}"
         )
-    if not reachable(car, moved_on(name, here, end, -SHARE, car)):
+    if not reachable(NAMED[car], moved_on(name, here, end, -SHARE, car)):
         faults.append("there is no pose just before what is reached")
-    if reachable(car, moved_on(name, here, end, SHARE, car)):
+    if reachable(NAMED[car], moved_on(name, here, end, SHARE, car)):
         faults.append("there is a pose just beyond what is reached")
     return Answer(
         name,

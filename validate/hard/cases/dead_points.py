@@ -7,21 +7,19 @@ the condition number with them. A value held inside an end has a pose, one beyon
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
-from typing import Any
+from functools import partial
 
-from validate.cars.input_limits import Linkage
-from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.cars import CARS
+from validate.hard.cars import SQUARE
 from validate.hard.case import REFUSED, Case, Expected, decades
+from validate.hard.family import NAMED, OTHERS, Content, Subject, hyphens
+from validate.hard.last_values import ends_of, last_value
 from validate.hard.trial import scene_case
 
 ARM_GROUP = "The arm at its dead points"
 TOGGLE_GROUP = "Tie rod and steering arm in line"
 UPPER_GROUP = "The knuckle's upper end out of reach"
+OTHER_GROUP = "Inputs at their ends, of every mechanism"
 DISTANCE = "distance from the end, in parts of the input's range"
-ARM_ANGLES = (1.25, SQUARE, 1.9)  # rad, at which the rack is driven to its ends
 
 # Where pointcoord has to be right, by how it comes near the end. Held: a path is followed until its steps
 # shrink below 1e-13 of it, which is at 1e-12 of the way to the end from the drawing, half a range away; ten
@@ -62,76 +60,46 @@ def inside(law: str) -> str:
     )
 
 
-@cache
-def ends(car: str, driven: str, arm_angle: float | None = None) -> tuple[float, float]:
-    """The least and the greatest value of an input of a car of `CARS`, rad or mm.
+def near_content(
+    subject: Subject, driven: str, ahead: bool, arm_angle: float | None, law: str, value: float
+) -> Content:
+    """The scene near an end of an input, or beyond it.
 
     Args:
-        arm_angle: at which the rack is driven; as drawn if not given.
+        ahead: whether the upper end.
+        arm_angle: at which a rack is driven; the other inputs are as drawn.
+        law: held near the end, moving from the middle of the range to there in one second, or held beyond.
     """
-    linkage = Linkage.of(CARS[car])
-    held = linkage.home | ({} if arm_angle is None else {"arm_angle": arm_angle})
-    low, high = (linkage.end(held, driven, ahead) for ahead in (False, True))
-    if low is None or high is None:
-        raise ValueError(f"{driven} of the car {car!r} has no end on one of its sides")
-    return low[0], high[0]
+    held = dict(subject.drawn) | ({} if arm_angle is None else {"arm_angle": arm_angle})
+    last = last_value(subject, driven, ahead, held)
+    end = float(last.value)
+    across = -last.reach if ahead else last.reach
+    near = end + (-value if law == "beyond" else value) * across
+    middle = end + 0.5 * across
+    way: float | Sequence[float] = [middle, near - middle] if law == "moving" else near
+    return subject.absolute({**held, driven: way}, stop=1.0 if law == "moving" else None)
 
 
-def rack_ends(car: str, arm_angle: float = SQUARE) -> tuple[float, float]:
-    """Least and greatest rack travel, mm, at an arm angle."""
-    return ends(car, "rack", arm_angle)
-
-
-@dataclass(frozen=True)
-class Approach:
-    """A way to one end of an input of a car.
-
-    Attributes:
-        car: its name in `CARS`.
-        upper: whether to the greatest value.
-        arm_angle: at which the rack is driven.
-    """
-
-    car: str
-    driven: str
-    upper: bool
-    arm_angle: float | None = None
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """This end and the opposite one."""
-        low, high = ends(self.car, self.driven, self.arm_angle)
-        return (high, low) if self.upper else (low, high)
-
-    def content(self, value: float, law: str) -> dict[str, Any]:
-        """The scene near the end, or beyond it."""
-        end, other = self.ends
-        near = end + (-value if law == "beyond" else value) * (other - end)
-        middle = 0.5 * (end + other)
-        # From the middle of the range to the place near its end at a constant rate, in one second.
-        way: float | Sequence[float] = [middle, near - middle] if law == "moving" else near
-        stop = 1.0 if law == "moving" else None
-        if self.driven == "arm_angle":
-            return scene_content(CARS[self.car], way, 0.0, stop=stop)
-        return scene_content(CARS[self.car], self.arm_angle or SQUARE, way, stop=stop)
+MORE = {
+    "held": "",
+    "moving": "; the motion ends near it, with rates as the inverse root of the distance",
+    "beyond": "; the input is beyond that",
+}
 
 
 def _cases(
     name: str,
     group: str,
     why: str,
-    approach: Approach,
+    car: str,
+    driven: str,
+    ahead: bool,
+    arm_angle: float | None = None,
     values: tuple[float, ...] | None = None,
     newton: bool = False,
     laws: Sequence[str] = LAWS,
     suffix: str = "",
 ) -> tuple[Case, ...]:
-    more = {
-        "held": "",
-        "moving": "; the motion ends near it, with rates as the inverse root of the distance",
-        "beyond": "; the input is beyond that",
-    }
-
     def expected(law: str) -> dict[str, Expected]:
         found = (
             dict.fromkeys(("pointcoord", "absolute", "relative"), REFUSED)
@@ -140,83 +108,100 @@ def _cases(
         )
         return found | ({"pointcoord-newton": found["pointcoord"]} if newton else {})
 
-    def case(law: str) -> Case:
-        return scene_case(
+    return tuple(
+        scene_case(
             name=f"{name}{f'-{law}' if len(laws) > 1 else ''}{suffix}",
             group=group,
-            why=why + more[law],
+            why=why + MORE[law],
             parameter=DISTANCE + (", beyond it" if law == "beyond" else ""),
             # A motion takes longest; with another car than the first few values must do.
             values=values or (COARSE if law == "moving" and suffix else FULL),
-            scene=lambda value: approach.content(value, law),
+            scene=partial(near_content, NAMED[car], driven, ahead, arm_angle, law),
             expected=expected(law),
             behaviour=OUTSIDE if law == "beyond" else inside(law),
         )
-
-    return tuple(case(law) for law in laws)
-
-
-HIGHEST = ("highest", "lowest")
-TRAVEL = ("at its least", "at its greatest")
-
-
-def _arm_cases(car: str, suffix: str, values: tuple[float, ...] | None = None) -> tuple[Case, ...]:
-    # The ball joint is highest at the least angle.
-    return tuple(
-        case
-        for upper in (False, True)
-        for case in _cases(
-            f"arm-{HIGHEST[upper]}",
-            ARM_GROUP,
-            f"the ball joint is {HIGHEST[upper]} on its circle: its height says no more",
-            Approach(car, "arm_angle", upper),
-            values,
-            suffix=suffix,
-        )
+        for law in laws
     )
 
 
-def _rack_cases(
-    car: str, suffix: str, angle: float = SQUARE, where: str = "", values: tuple[float, ...] | None = None
-) -> tuple[Case, ...]:
-    return tuple(
+WAYS = (False, True)
+HIGHEST, LEAST = ("highest", "lowest"), ("least", "greatest")  # the ball joint is highest at the least angle
+ARMS = (("paper", "", None), ("other", "-turned", None), ("short-arm", "-wishbone", SPARSE))
+RACKS = (
+    ("paper", "", SQUARE, "", None),
+    ("other", "-turned", SQUARE, "", None),
+    ("wishbone", "-wishbone", SQUARE, "", SPARSE),
+    ("paper", "", 1.25, "-arm-high", None),
+    ("paper", "", 1.9, "-arm-low", None),
+)
+CASES: tuple[Case, ...] = (
+    *(
         case
-        for upper in (False, True)
+        for car, suffix, values in ARMS
+        for ahead in WAYS
         for case in _cases(
-            f"rack-{('least', 'greatest')[upper]}{where}",
+            f"arm-{HIGHEST[ahead]}",
+            ARM_GROUP,
+            f"the ball joint is {HIGHEST[ahead]} on its circle: its height says no more",
+            car,
+            "arm_angle",
+            ahead,
+            values=values,
+            suffix=suffix,
+        )
+    ),
+    *(
+        case
+        for car, suffix, angle, where, values in RACKS
+        for ahead in WAYS
+        for case in _cases(
+            f"rack-{LEAST[ahead]}{where}",
             TOGGLE_GROUP,
-            f"the rack is {TRAVEL[upper]} travel at {angle:.4g} rad: tie rod and steering arm lie in line",
-            Approach(car, "rack", upper, angle),
+            f"the rack is at its {LEAST[ahead]} travel at {angle:.4g} rad: "
+            "tie rod and steering arm lie in line",
+            car,
+            "rack",
+            ahead,
+            angle,
             values,
             laws=("held",) if where else LAWS,
             suffix=suffix,
         )
-    )
-
-
-CASES: tuple[Case, ...] = (
-    *_arm_cases("paper", ""),
-    *_arm_cases("other", "-turned"),
-    *_arm_cases("short-arm", "-wishbone", SPARSE),
-    *_rack_cases("paper", ""),
-    *_rack_cases("other", "-turned"),
-    *_rack_cases("wishbone", "-wishbone", values=SPARSE),
-    *_rack_cases("paper", "", ARM_ANGLES[0], "-arm-high"),
-    *_rack_cases("paper", "", ARM_ANGLES[2], "-arm-low"),
+    ),
     *_cases(
         "slide-runs-out",
         UPPER_GROUP,
         "the ball joint is as near to the strut's top as it lies beside the axis: it has no more way",
-        Approach("wide", "arm_angle", False),
-        FULL,
+        "wide",
+        "arm_angle",
+        False,
+        values=FULL,
         newton=True,
     ),
     *_cases(
         "upper-arm-locks",
         UPPER_GROUP,
         "upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
-        Approach("wishbone", "arm_angle", True),
-        COARSE[::2],
+        "wishbone",
+        "arm_angle",
+        True,
+        values=COARSE[::2],
         newton=True,
+    ),
+    *(
+        case
+        for subject in OTHERS
+        for driven, ahead in ends_of(subject)
+        for case in _cases(
+            f"{hyphens(driven)}-{LEAST[ahead]}",
+            OTHER_GROUP,
+            f"{driven} is at its {LEAST[ahead]} and goes no further, the other inputs as drawn",
+            subject.name,
+            driven,
+            ahead,
+            values=(1e-4,),
+            laws=("held", "beyond"),
+            suffix=subject.suffix,
+        )
     ),
 )

@@ -2,45 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from validate.cars.car import Car
-from validate.cars.input_limits import Linkage
-from validate.cars.scene_content import SQUARE, scene_content
 from validate.hard.case import RIGHT, Case, decades
 from validate.hard.cases.dead_points import inside, near_end
 from validate.hard.cases.laws import OURS, law_cases
+from validate.hard.family import SUBJECTS, Content, Subject
+from validate.hard.last_values import ends_of, last_value
 
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
 
 
-def _far_in_time(car: Car, start: float) -> dict[str, Any]:
-    wave = {"amplitude": 0.2, "angular_frequency": 1.0, "offset": SQUARE}
-    swing = wave | {"amplitude": 20.0, "offset": 0.0}
-    return scene_content(car, {"sine": wave}, {"sine": swing}, start=start, stop=start + 1.0)
+def _far_in_time(subject: Subject, start: float) -> Content:
+    swings = ({"sine": {"amplitude": size, "angular_frequency": 1.0}} for size in (0.2, 20.0))
+    return subject.content(*swings, start=start, stop=start + 1.0)
 
 
-def _heaving(car: Car, value: float) -> dict[str, Any]:
+def _heaving(subject: Subject, value: float) -> Content:
     wave = {"amplitude": 100.0 * value, "angular_frequency": 3.0}
-    return scene_content(car, SQUARE, 0.0, {"sine": wave}, stop=1.0)
+    return subject.content(heave={"sine": wave}, stop=1.0)
 
 
-def _short(car: Car, value: float) -> dict[str, Any]:
-    return scene_content(car, [SQUARE, 0.3, 0.2], [0.0, 40.0, 5.0], stop=value, samples=4)
+def _short(subject: Subject, value: float) -> Content:
+    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], stop=value, samples=4)
 
 
-def _short_and_late(car: Car, value: float) -> dict[str, Any]:
-    return scene_content(car, [SQUARE, 0.3, 0.2], [0.0, 40.0, 5.0], start=1.0, stop=1.0 + value, samples=4)
+def _short_and_late(subject: Subject, value: float) -> Content:
+    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=1.0, stop=1.0 + value, samples=4)
 
 
-def _before_a_lock(car: Car, value: float) -> dict[str, Any]:
+def _before_a_lock(subject: Subject, value: float) -> Content:
     """The motion would lock right after its end: at time 1, and it stops this much earlier."""
-    low = min(end for end, _ in Linkage.of(car).ends({"arm_angle": SQUARE, "rack": 0.0}, "rack"))
-    return scene_content(car, SQUARE, [0.0, low], stop=1.0 - value)
+    driven, ahead = ("rack", False) if subject.level else ends_of(subject)[0]
+    way = float(last_value(subject, driven, ahead).value) - subject.home[driven]
+    return subject.content([0.0, way], [0.0, way], only=driven, stop=1.0 - value)
 
 
-def _tolerance(car: Car, value: float) -> dict[str, Any]:
-    return scene_content(car, [SQUARE - 0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
+def _tolerance(subject: Subject, value: float) -> Content:
+    return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
 
 
 CASES: tuple[Case, ...] = (
@@ -57,6 +54,7 @@ CASES: tuple[Case, ...] = (
         "amplitude of the heave, 100 mm",
         (*decades(-12, 0), 0.0),
         _heaving,
+        needs_heave=True,
     ),
     *law_cases(
         "short-scene",
@@ -81,6 +79,7 @@ CASES: tuple[Case, ...] = (
         inside("moving"),
         # As for `dead_points`: the lock is at the end of the whole way.
         near_end("moving") | {"pointcoord-newton": near_end("moving")["pointcoord"]},
+        subjects=[one for one in SUBJECTS if one.level or ends_of(one)],
     ),
     *law_cases(
         "fine-tolerance",

@@ -10,7 +10,7 @@ heave, with the law's value, rate and acceleration added along up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import replace
 from functools import partial
@@ -22,18 +22,16 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
-from validate.cars.scene_content import SQUARE, scene_content
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
-from validate.hard.cars import CARS, EVERY
-from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial, coarse
+from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
 from validate.hard.cases.links import GROUP
 from validate.hard.classify import judged_answer
+from validate.hard.family import SOLVERS, SUBJECTS, Content, Subject, values_of
 from validate.hard.trial import solved, try_scene
 
 Array = NDArray[np.float64]
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 LAWS: dict[str, dict[str, Any]] = {
     "constant": {"constant": 10.0},
     "polynomial": {"polynomial": [10.0, 20.0, 30.0]},
@@ -65,17 +63,17 @@ def _each(numbers: tuple[float, ...]) -> tuple[Tried, ...]:
     return tuple((*place, number) for place in PLACES for number in numbers)
 
 
-def content(heave: dict[str, Any] | None, car: str = "paper") -> dict[str, Any]:
-    """A scene in which the arm turns and the rack moves; of body rates and angles heave is no part."""
+def content(heave: dict[str, Any] | None, subject: Subject = SUBJECTS[0]) -> Content:
+    """A scene in which all inputs move; of body rates and angles heave is no part."""
     effects = ("velocity", "acceleration")
-    return scene_content(CARS[car], (SQUARE, 0.1), (0.0, 5.0), heave, stop=0.2, samples=2, effects=effects)
+    return subject.content((0.0, 0.1), (0.0, 5.0), heave, stop=0.2, samples=2, effects=effects)
 
 
-def displaced(trial: Trial, heave: dict[str, Any], car: str = "paper") -> Trial:
+def displaced(trial: Trial, heave: dict[str, Any], subject: Subject = SUBJECTS[0]) -> Trial:
     """The trial, with what the reference could not judge held to that of the car without heave, displaced."""
     if all(answer.outcome != "unjudged" for answer in trial.answers):
         return trial
-    scene, plain = (Scene.from_mapping(content(h, car)) for h in (heave, None))
+    scene, plain = (Scene.from_mapping(content(h, subject)) for h in (heave, None))
     law = rates(scene.inputs["heave"], scene.instants)
     reference = added(reference_solution(plain), law, scene.mechanism.up)
     answers = []
@@ -104,37 +102,32 @@ def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], added: Arra
     return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(added) for name, array in sums.items()}
 
 
-def heaved(value: float, every: tuple[Tried, ...], car: str) -> dict[str, Any]:
+def heaved(value: float, every: tuple[Tried, ...], subject: Subject) -> Content:
     """The scene with one of these, counted from 1."""
-    return content(law(*every[int(value) - 1]), car)
+    return content(law(*every[int(value) - 1]), subject)
 
 
-def heaving(every: tuple[Tried, ...], car: str) -> Callable[[float], Trial]:
-    """Tries one of these, counted from 1, while the arm turns and the rack moves."""
-
-    def examine(value: float) -> Trial:
-        kind, place, number = every[int(value) - 1]
-        heave = law(kind, place, number)
-        trial = displaced(try_scene(value, heaved(value, every, car), SOLVERS), heave, car)
-        where = kind if place is None else f"{kind}.{place}"
-        return replace(trial, facts={**trial.facts, "place": where, "number": f"{number:g}"})
-
-    return examine
+def heaving(value: float, every: tuple[Tried, ...], subject: Subject) -> Trial:
+    """Tries one of these, counted from 1, while all inputs move."""
+    kind, place, number = every[int(value) - 1]
+    trial = try_scene(value, heaved(value, every, subject), SOLVERS)
+    trial = displaced(trial, law(kind, place, number), subject)
+    where = kind if place is None else f"{kind}.{place}"
+    return replace(trial, facts={**trial.facts, "place": where, "number": f"{number:g}"})
 
 
-def _case(name: str, why: str, every: tuple[Tried, ...], expected: Expected, suffix: str, car: str) -> Case:
-    numbers = tuple(float(n) for n in range(1, len(every) + 1))
-    values = coarse(numbers) if suffix else numbers
+def _case(name: str, why: str, every: tuple[Tried, ...], expected: Expected, subject: Subject) -> Case:
+    values = values_of(subject, [float(n) for n in range(1, len(every) + 1)])
     return Case(
-        name=f"{name}{suffix}",
+        name=f"{name}{subject.suffix}",
         group=GROUP,
         why=why,
         parameter="number of the place and what stands there",
         values=values,
         expected=dict.fromkeys(SOLVERS, expected),
         behaviour="refused, by all" if expected == REFUSED else "right, or refused with a reason",
-        examine=heaving(every, car),
-        content=None if expected == REFUSED else partial(heaved, every=every, car=car),
+        examine=partial(heaving, every=every, subject=subject),
+        content=None if expected == REFUSED else partial(heaved, every=every, subject=subject),
         # A phase is taken modulo a turn, and what is small is as good as 0.
         also_answered=tuple(v for v in values if expected != REFUSED and _is_harmless(*every[int(v) - 1])),
     )
@@ -145,8 +138,9 @@ def _is_harmless(kind: str, place: str | int | None, number: float) -> bool:
 
 
 CASES: tuple[Case, ...] = tuple(
-    _case(name, why, every, expected, suffix, car)
-    for suffix, car in EVERY.items()
+    _case(name, why, every, expected, subject)
+    for subject in SUBJECTS
+    if subject.heaves
     for name, why, every, expected in (
         (
             "heave-not-finite",

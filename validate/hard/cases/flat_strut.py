@@ -16,25 +16,24 @@ coordinates have no preferred axis.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cache
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 
 import numpy as np
 
 from validate.cars.car import Car, rotation, turned
-from validate.cars.input_limits import Linkage
 from validate.cars.paper_car import EFFECTS
-from validate.cars.scene_content import scene_content
-from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, drawn_at
+from validate.cars.scene_content import content_of
+from validate.hard.cars import PAPER_CAR, SQUARE, UPRIGHT_CAR, Array, drawn_angle, drawn_at
 from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected, decades
 from validate.hard.cases.turned import AXES, quarter_turn_less
+from validate.hard.family import SOLVERS, Content
 from validate.hard.trial import Tried, scene_case
 
 GROUP = "The strut flat"
 VALUES = (*decades(-12, -1), 0.0)
-ANGLE, SPIN = 1.5707963267948966, 0.4  # rad, rad/s
-OURS = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": RIGHT, "relative": RIGHT}
+SPIN = 0.4  # rad/s
+OURS = dict.fromkeys(SOLVERS, RIGHT)
 ALWAYS = "pointcoord and the absolute model are right however the car is turned"
 # The condition number stays below the inverse of the rounding unit down to 1e-14, with some digits left at
 # 1e-8: positions and velocities, which have no other erratum, must be right there. At 0 two rows are lost.
@@ -44,7 +43,7 @@ PRINTED = Expected(("right", "refused", "noted"), 1e-8)
 @cache
 def straight_car() -> Car:
     """The paper's car drawn at a true pose, where its strut is straight."""
-    return drawn_at(PAPER_CAR, ANGLE, 0.0)
+    return drawn_at(PAPER_CAR, {"arm_angle": SQUARE, "rack": 0.0})
 
 
 def flat_turn(value: float) -> Array:
@@ -65,121 +64,109 @@ def strut_rise(tried: Tried) -> dict[str, float | str]:
     return {"z component of the strut's direction": float(abs(along[2]) / np.linalg.norm(along))}
 
 
-def _held(car: Car, turn: Callable[[float], Array]) -> Callable[[float], dict[str, Any]]:
-    """Positions and velocities at rest in the drawing: all that the printed rows get right elsewhere."""
-
-    def content(value: float) -> dict[str, Any]:
-        linkage = Linkage.of(car)
-        arm_angle, rack = [linkage.drawn_angle, SPIN], [linkage.drawn_rack, 0.0]
-        return scene_content(turned(car, turn(value)), arm_angle, rack, effects=("velocity",))
-
-    return content
+def _held(car: Car, turn: Callable[[float], Array], value: float) -> Content:
+    """Positions and velocities in the drawing: all that the printed rows get right elsewhere."""
+    inputs = {"arm_angle": [drawn_angle(car), SPIN], "rack": [0.0, 0.0]}
+    return content_of(turned(car, turn(value)), inputs, effects=("velocity",))
 
 
-def _moving(
-    car: Car, turn: Callable[[float], Array], effects: Sequence[str] = EFFECTS
-) -> Callable[[float], dict[str, Any]]:
-    """Arm and rack both move, with all rates, or with those that eq. (23) leaves alone."""
-
-    def content(value: float) -> dict[str, Any]:
-        there = turned(car, turn(value))
-        return scene_content(there, [ANGLE - 0.1, SPIN], [0.0, 40.0], stop=0.5, effects=effects)
-
-    return content
+def _moving(turn: Callable[[float], Array], effects: tuple[str, ...], value: float) -> Content:
+    """Arm and rack of the paper's car move, with all rates, or with those that eq. (23) leaves alone."""
+    inputs = {"arm_angle": [SQUARE - 0.1, SPIN], "rack": [0.0, 40.0]}
+    return content_of(turned(PAPER_CAR, turn(value)), inputs, stop=0.5, effects=effects)
 
 
-def _printed_case(axis: int) -> Case:
-    return scene_case(
-        name=f"quarter-turn-about-{AXES[axis]}-printed",
-        group=GROUP,
-        why="the whole car is turned, which changes nothing about its mechanism, and the paper's strut still "
-        "rises",
-        parameter=f"90 degrees about {AXES[axis]} less this, rad; then exactly 90",
-        values=VALUES,
-        scene=_moving(PAPER_CAR, lambda value: quarter_turn_less(axis, value), ("velocity",)),
-        expected={"printed": RIGHT},
-        behaviour="the printed rows, too, are right in positions and velocities",
-        measure=strut_rise,
-    )
-
-
-def _upright_case(axis: int) -> Case:
-    flat = axis != 2
-    return scene_case(
-        name=f"upright-strut-turned-about-{AXES[axis]}",
-        group=GROUP,
-        why=(
-            "a strut that stands exactly upright lies exactly flat after a quarter turn"
-            if flat
-            else "a strut that stands exactly upright stays so when turned about z: for comparison"
-        ),
-        parameter=f"90 degrees about {AXES[axis]} less this, rad; then exactly 90",
-        values=VALUES,
-        scene=_held(UPRIGHT_CAR, lambda value: quarter_turn_less(axis, value)),
-        expected={
-            "pointcoord": RIGHT,
-            "absolute": RIGHT,
-            "relative": RIGHT,
-            "printed": PRINTED if flat else RIGHT,
-        },
-        behaviour=f"{ALWAYS}; the printed rows "
-        + ("are right until the strut is exactly flat, and give up there" if flat else "are right as well"),
-        measure=strut_rise,
-    )
-
-
-def _flat_case(
+def _case(
     name: str,
-    values: tuple[float, ...],
-    content: Callable[[float], dict[str, Any]],
-    printed: Expected,
-    shown: str,
+    why: str,
+    parameter: str,
+    scene: Callable[[float], Content],
+    expected: Mapping[str, Expected],
+    behaviour: str,
+    values: tuple[float, ...] = VALUES,
 ) -> Case:
     return scene_case(
         name=name,
         group=GROUP,
-        why="the assembled strut comes to lie at right angles to z, where each pair of printed rows is one",
-        parameter="sine of the strut's angle with the horizontal plane",
+        why=why,
+        parameter=parameter,
         values=values,
-        scene=content,
-        expected=OURS | {"printed": printed},
-        behaviour=f"{ALWAYS}; the printed rows {shown}",
+        scene=scene,
+        expected=expected,
+        behaviour=behaviour,
         measure=strut_rise,
     )
 
 
-def _exactly_flat_case() -> Case:
-    flat = turned(UPRIGHT_CAR, quarter_turn_less(0, 0.0))
-    return scene_case(
-        name="strut-exactly-flat",
-        group=GROUP,
-        why="the strut is drawn at right angles to z to the last bit, along no axis: two printed rows lost",
-        parameter="angle of the strut with the y axis, rad",
-        values=decades(-12, 0),
-        scene=_held(flat, lambda value: rotation(2, math.cos(value), math.sin(value))),
-        expected=OURS | {"printed": REFUSED},
-        behaviour=f"{ALWAYS}; the printed rows are refused as singular",
-        measure=strut_rise,
-    )
+def _along_y(value: float) -> Array:
+    return rotation(2, math.cos(value), math.sin(value))
 
+
+TURNED = (
+    "the whole car is turned, which changes nothing about its mechanism, and the paper's strut still rises"
+)
+LEVEL = "the assembled strut comes to lie at right angles to z, where each pair of printed rows is one"
+SINE = "sine of the strut's angle with the horizontal plane"
+# What becomes of an upright strut, and of the printed rows, after a turn about each axis.
+FLAT = (
+    "a strut that stands exactly upright lies exactly flat after a quarter turn",
+    PRINTED,
+    "are right until the strut is exactly flat, and give up there",
+)
+UPRIGHT = (
+    "a strut that stands exactly upright stays so when turned about z: for comparison",
+    RIGHT,
+    "are right as well",
+)
 
 CASES: tuple[Case, ...] = (
-    *(_printed_case(axis) for axis in range(3)),
-    *(_upright_case(axis) for axis in range(3)),
-    _flat_case(
+    *(
+        _case(
+            f"quarter-turn-about-{letter}-printed",
+            TURNED,
+            f"90 degrees about {letter} less this, rad; then exactly 90",
+            partial(_moving, partial(quarter_turn_less, axis), ("velocity",)),
+            {"printed": RIGHT},
+            "the printed rows, too, are right in positions and velocities",
+        )
+        for axis, letter in enumerate(AXES)
+    ),
+    *(
+        _case(
+            f"upright-strut-turned-about-{AXES[axis]}",
+            why,
+            f"90 degrees about {AXES[axis]} less this, rad; then exactly 90",
+            partial(_held, UPRIGHT_CAR, partial(quarter_turn_less, axis)),
+            {"pointcoord": RIGHT, "absolute": RIGHT, "relative": RIGHT, "printed": printed},
+            f"{ALWAYS}; the printed rows {shown}",
+        )
+        for axis, (why, printed, shown) in enumerate((FLAT, FLAT, UPRIGHT))
+    ),
+    _case(
         "strut-nearly-flat",
-        VALUES,
-        lambda value: _held(straight_car(), flat_turn)(value),
-        PRINTED,
-        "have a condition number that grows as 1 over this, and give up at 0",
+        LEVEL,
+        SINE,
+        lambda value: _held(straight_car(), flat_turn, value),
+        OURS | {"printed": PRINTED},
+        f"{ALWAYS}; the printed rows have a condition number that grows as 1 over this, and give up at 0",
     ),
     # The motion turns the strut by some hundredths of a radian, so it passes the horizontal on its way.
-    _flat_case(
+    _case(
         "strut-passes-flat",
+        LEVEL,
+        SINE,
+        partial(_moving, flat_turn, tuple(EFFECTS)),
+        OURS | {"printed": FAILS},
+        f"{ALWAYS}; the printed rows cannot follow",
         (*decades(-12, -2)[::5], 0.0),
-        _moving(PAPER_CAR, flat_turn),
-        FAILS,
-        "cannot follow",
     ),
-    _exactly_flat_case(),
+    _case(
+        "strut-exactly-flat",
+        "the strut is drawn at right angles to z to the last bit, along no axis: two printed rows lost",
+        "angle of the strut with the y axis, rad",
+        partial(_held, turned(UPRIGHT_CAR, quarter_turn_less(0, 0.0)), _along_y),
+        OURS | {"printed": REFUSED},
+        f"{ALWAYS}; the printed rows are refused as singular",
+        decades(-12, 0),
+    ),
 )

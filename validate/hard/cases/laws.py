@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -11,89 +11,73 @@ from typing import Any
 
 import numpy as np
 
-from validate.cars.car import Car
-from validate.cars.scene_content import SQUARE, scene_content
 from validate.formulations.input_rates import rates
-from validate.hard.cars import CARS, EVERY
-from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, coarse, decades
-from validate.hard.trial import Facts, Measure, Tried, scene_case
+from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
+from validate.hard.family import SOLVERS, Content, Subject, family, moved_by
+from validate.hard.trial import Facts, Tried
 
 GROUP = "Laws of the inputs"
-OURS: Mapping[str, Expected] = {
-    "pointcoord": RIGHT,
-    "pointcoord-newton": RIGHT,
-    "absolute": RIGHT,
-    "relative": RIGHT,
-}
+OURS = dict.fromkeys(SOLVERS, RIGHT)
 # A motion by series may take too many of them, or need steps below the rounding of time, and has to say
 # so; solving at its instants needs no steps.
-BY_STEPS = {"pointcoord": RIGHT_OR_REFUSED, "pointcoord-newton": RIGHT, "absolute": RIGHT, "relative": RIGHT}
+BY_STEPS = OURS | {"pointcoord": RIGHT_OR_REFUSED}
 # Values of a table are rounded by 2e-16 rad, which within a jump of time h is an acceleration of 2e-16 / h^2.
 # A step of a tenth of h about t = 0.5 s, known to 1e-16 s, keeps nine digits of itself down to h = 1e-6 s.
 JUMP = BY_STEPS | {"pointcoord": Expected(("right", "refused"), right_from=1e-6)}
 TURN = 2.0 * math.pi
-Content = Callable[[Car, float], dict[str, Any]]
 
 
-def _scaled(car: Car, rate: float) -> dict[str, Any]:
-    """The same way of arm and rack at any rate of the arm, rad/s, within its own time."""
-    return scene_content(car, [SQUARE - 0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
+def _scaled(subject: Subject, rate: float) -> Content:
+    """The same way at any rate of an angle, rad/s, within its own time."""
+    return subject.content([-0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
 
 
-def _long_sine(car: Car, duration: float) -> dict[str, Any]:
+def _long_sine(subject: Subject, duration: float) -> Content:
     """One swing a second."""
-    arm = {"amplitude": 0.2, "angular_frequency": TURN, "offset": SQUARE}
-    rack = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
-    return scene_content(car, {"sine": arm}, {"sine": rack}, stop=duration, samples=4)
+    swing = {"amplitude": 0.2, "angular_frequency": TURN}
+    other = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
+    return subject.content({"sine": swing}, {"sine": other}, stop=duration, samples=4)
 
 
-def _phase(car: Car, turns: float) -> dict[str, Any]:
-    wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3, "offset": SQUARE}
-    return scene_content(car, {"sine": wave}, [0.0, 20.0], stop=0.5)
+def _phase(subject: Subject, turns: float) -> Content:
+    wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3}
+    if "rad" in subject.units.values():
+        return subject.content({"sine": wave}, [0.0, 20.0], stop=0.5)
+    return subject.content(mm={"sine": wave | {"amplitude": 20.0}}, stop=0.5)
 
 
 # 16 t^2 (1 - t)^2: from rest to 1 and back to rest in a second.
 STOPPING = (0.0, 0.0, 16.0, -32.0, 16.0)
 
 
-def _starting(car: Car, value: float) -> dict[str, Any]:
-    return _stopping_scene(car, 0.0, value)
+def _at_rest(size: float = 1.0) -> tuple[list[float], list[float]]:
+    """That way of an angle and of a length, of some size."""
+    return [0.2 * size * c for c in STOPPING], [30.0 * size * c for c in STOPPING]
 
 
-def _stopping(car: Car, value: float) -> dict[str, Any]:
-    return _stopping_scene(car, 1.0 - value, 1.0)
+def _starting(subject: Subject, value: float) -> Content:
+    return subject.content(*_at_rest(), start=0.0, stop=value)
 
 
-def _stopping_scene(car: Car, start: float, stop: float) -> dict[str, Any]:
-    arm = [0.2 * c for c in STOPPING]
-    arm[0] = SQUARE
-    return scene_content(car, arm, [30.0 * c for c in STOPPING], start=start, stop=stop)
+def _stopping(subject: Subject, value: float) -> Content:
+    return subject.content(*_at_rest(), start=1.0 - value, stop=1.0)
+
+
+def _seen_at_rest(subject: Subject, size: float) -> Content:
+    """The three instants are those where the rates are zero."""
+    return subject.content(*_at_rest(size), stop=1.0)
 
 
 def rate_rounding(tried: Tried) -> Facts:
-    """What the rack's rate in double precision is off, where the reference takes it; 0 is no error."""
-    part = tried.scene.inputs["rack"]
-    exact = [Fraction(c) for c in part.polynomial or ()]
+    """What a rate of the last input is off in doubles, where the reference takes it; 0 is no error."""
+    part, instants = list(tried.scene.inputs.values())[-1], tried.scene.instants
+    slope = [k * Fraction(c) for k, c in enumerate(part.polynomial or ())][1:]
+    given = rates(part, instants)[:, 1]
     worst = max(
-        abs(
-            Fraction(rate)
-            - sum((k * c * Fraction(t) ** (k - 1) for k, c in enumerate(exact) if k), Fraction(0))
-        )
-        for t, rate in zip(
-            tried.scene.instants.tolist(), rates(part, tried.scene.instants)[:, 1].tolist(), strict=True
-        )
+        abs(Fraction(rate) - sum((c * Fraction(t) ** k for k, c in enumerate(slope)), Fraction(0)))
+        for t, rate in zip(instants.tolist(), given.tolist(), strict=True)
     )
-    fastest = float(np.abs(rates(part, tried.scene.instants)[:, 1]).max())
-    return {"rounding of the rack's rate [mm/s]": float(worst), "largest rate of the rack [mm/s]": fastest}
-
-
-def _seen_at_rest(car: Car, size: float) -> dict[str, Any]:
-    """The same way as for `STOPPING` of some size; its three instants are those where its rates are zero."""
-    arm, rack = (
-        [middle + reach * size * STOPPING[0], *(reach * size * c for c in STOPPING[1:])]
-        for middle, reach in ((SQUARE, 0.2), (0.0, 30.0))
-    )
-    return scene_content(car, arm, rack, stop=1.0)
+    return {"rounding of a rate": float(worst), "largest rate": float(np.abs(given).max())}
 
 
 # Up, down and up again, with a sharp bend of the acceleration at each inner time.
@@ -101,41 +85,29 @@ KNOTS = (0.0, 0.2, 0.4, 0.5, 0.7, 1.0)
 BENDS = (0.0, 1.0, -1.0, 1.0, -0.5, 0.0)
 
 
-def _zigzag(times: tuple[float, ...], middle: float, size: float) -> dict[str, Any]:
-    return {"table": {"times": list(times), "values": [middle + size * bend for bend in BENDS]}}
+def _table(times: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
+    return {"table": {"times": list(times), "values": list(values)}}
 
 
-def _about_a_kink(car: Car, value: float) -> dict[str, Any]:
-    laws = _zigzag(KNOTS, SQUARE, 0.1), _zigzag(KNOTS, 0.0, 20.0)
-    return scene_content(car, *laws, start=0.4 - value, stop=0.4 + value)
+def _about_a_kink(subject: Subject, value: float) -> Content:
+    laws = (_table(KNOTS, [size * bend for bend in BENDS]) for size in (0.1, 20.0))
+    return subject.content(*laws, start=0.4 - value, stop=0.4 + value)
 
 
-def _close_knots(car: Car, value: float) -> dict[str, Any]:
+def _close_knots(subject: Subject, value: float) -> Content:
     """A smooth way through two times that are close together: only rounding lies between their values."""
     times = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0)
-    arm, rack = (
-        [middle + size * math.sin(3.0 * t) for t in times] for middle, size in ((SQUARE, 0.1), (0.0, 20.0))
-    )
-    return scene_content(
-        car,
-        {"table": {"times": list(times), "values": arm}},
-        {"table": {"times": list(times), "values": rack}},
-        stop=1.0,
-        samples=5,
-    )
+    laws = (_table(times, [size * math.sin(3.0 * t) for t in times]) for size in (0.1, 20.0))
+    return subject.content(*laws, stop=1.0, samples=5)
 
 
-def _jerk(car: Car, value: float) -> dict[str, Any]:
-    """A jump of 0.01 rad within this time: acceleration bends up and down again."""
-    times = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0)
-    return scene_content(
-        car,
-        {"table": {"times": list(times), "values": [SQUARE + (0.01 if t > 0.5 else 0.0) for t in times]}},
-        [0.0, 20.0],
-        start=0.5 - 0.5 * value,
-        stop=0.5 + 1.5 * value,
-        samples=5,
-    )
+def _jerk(subject: Subject, value: float) -> Content:
+    """A jump within this time, of the first input alone: acceleration bends up and down again."""
+    times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), next(iter(subject.units))
+    step = 0.01 if subject.units[first] == "rad" else 1.0
+    jump = moved_by(_table(times, [step if t > 0.5 else 0.0 for t in times]), subject.home[first])
+    whole = subject.content(0.0, [0.0, 20.0], start=0.5 - 0.5 * value, stop=0.5 + 1.5 * value, samples=5)
+    return {**whole, "inputs": {**whole["inputs"], first: jump}}
 
 
 def law_cases(
@@ -143,35 +115,22 @@ def law_cases(
     why: str,
     parameter: str,
     values: tuple[float, ...],
-    scene: Content,
+    scene: Callable[[Subject, float], Content],
     behaviour: str = "right within the bound",
     expected: Mapping[str, Expected] = OURS,
-    measure: Measure | None = None,
-    second: tuple[float, ...] | None = None,
-    also_answered: tuple[float, ...] = (),
+    **options: Any,
 ) -> tuple[Case, ...]:
-    """A case of this group for every suspension; see `trial.scene_case`.
-
-    Args:
-        values: tried of the first suspension.
-        second: tried of the others; every fourth of the first one's if not given.
-        scene: the content at a value, of a car.
-        also_answered: see `Case`.
-    """
-    return tuple(
-        scene_case(
-            name=f"{name}{suffix}",
-            group=GROUP,
-            why=why,
-            parameter=parameter,
-            values=(second or coarse(values)) if suffix else values,
-            scene=partial(scene, CARS[car]),
-            expected=expected,
-            behaviour=behaviour,
-            measure=measure,
-            also_answered=also_answered,
-        )
-        for suffix, car in EVERY.items()
+    """A case of this group for every mechanism; see `family`."""
+    return family(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter=parameter,
+        values=values,
+        scene=scene,
+        behaviour=behaviour,
+        expected=expected,
+        **options,
     )
 
 
@@ -200,11 +159,12 @@ def _jump_cases() -> Iterator[Case]:
         "by series right, or refused as too rough, the input named; at its instants right",
         JUMP,
     ):
-        yield replace(case, examine=partial(_told_as_rough_by, case.examine))
+        yield replace(case, examine=partial(_told_as_rough_by, case))
 
 
-def _told_as_rough_by(examine: Callable[[float], Trial], value: float) -> Trial:
-    return told_as_rough(examine(value), "arm_angle")
+def _told_as_rough_by(case: Case, value: float) -> Trial:
+    assert case.content is not None  # a family's cases are scenes
+    return told_as_rough(case.examine(value), next(iter(case.content(value)["inputs"])))
 
 
 ARM_RATE = "rate of the arm, rad/s"
@@ -232,6 +192,7 @@ CASES: tuple[Case, ...] = (
         "by series right, or refused as too long; at its instants right",
         BY_STEPS,
         second=(1e3,),
+        others=(1.0,),
         also_answered=(1e2,),  # few enough swings for any solver
     ),
     *law_cases(

@@ -13,30 +13,24 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
-from validate.cars.car import Car
-from validate.cars.closed_form import BALL, FRONT, INNER, OUTER, RACK, REAR
-from validate.cars.double_wishbone import UPPER_BALL, UPPER_FRONT, UPPER_REAR
-from validate.cars.macpherson import BESIDE, ROD_END, TOP
-from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.cars import BESIDE_CAR, CARS, PAPER_CAR
-from validate.hard.case import REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
-from validate.hard.cases.links import GROUP, links_of
+from validate.hard.case import IF_ANY, REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
+from validate.hard.cases.links import GROUP, held_apart
+from validate.hard.family import BESIDE, SOLVERS, SUBJECTS, Content, Subject
 from validate.hard.trial import try_scene
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 LEAST = math.ulp(0.0)  # 5e-324
-SPIN = "wheel_axis_inner"
 Place = tuple[str | int, ...]
-Content = Callable[[float], dict[str, Any]]
+Pairs = tuple[tuple[str, str], ...]
 
 
-def content(car: str = "paper") -> dict[str, Any]:
+def content(subject: Subject = SUBJECTS[0]) -> Content:
     """A short motion of a car with a law of every kind, in which every number has a place."""
-    return scene_content(
-        CARS[car],
-        (SQUARE, 0.1, 0.05),
+    return subject.content(
+        (0.0, 0.1, 0.05),
         {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}},
-        {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}},
+        {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}}
+        if subject.heaves
+        else None,
         stop=0.2,
         samples=2,
     )
@@ -50,9 +44,9 @@ def _places(part: Any, here: Place = ()) -> list[Place]:
 
 
 @cache
-def places(car: str = "paper") -> tuple[Place, ...]:
+def places(subject: Subject = SUBJECTS[0]) -> tuple[Place, ...]:
     """Every place of the scene that holds a number."""
-    return tuple(_places(content(car)))
+    return tuple(_places(content(subject)))
 
 
 def told(place: Place) -> str:
@@ -60,9 +54,9 @@ def told(place: Place) -> str:
     return ".".join(str(key) for key in place)
 
 
-def with_number(place: Place, number: object, car: str = "paper") -> dict[str, Any]:
+def with_number(place: Place, number: object, subject: Subject = SUBJECTS[0]) -> Content:
     """The scene with another number at one place."""
-    whole = content(car)
+    whole = content(subject)
     part: Any = whole
     for key in place[:-1]:
         part = part[key]
@@ -70,54 +64,51 @@ def with_number(place: Place, number: object, car: str = "paper") -> dict[str, A
     return whole
 
 
-def everywhere(number: object, car: str = "paper") -> Callable[[float], Trial]:
-    """Tries a number at the place of a number counted from 1."""
-
-    def examine(value: float) -> Trial:
-        trial = try_scene(value, with_number_at(value, number, car), SOLVERS)
-        return replace(trial, facts={**trial.facts, "place": told(places(car)[int(value) - 1])})
-
-    return examine
-
-
-def with_number_at(value: float, number: object, car: str) -> dict[str, Any]:
+def with_number_at(value: float, number: object, subject: Subject) -> Content:
     """The scene with another number at the place of this number, counted from 1."""
-    return with_number(places(car)[int(value) - 1], number, car)
+    return with_number(places(subject)[int(value) - 1], number, subject)
+
+
+def anywhere(value: float, number: object, subject: Subject) -> Trial:
+    """Tries a number at the place of a number counted from 1."""
+    trial = try_scene(value, with_number_at(value, number, subject), SOLVERS)
+    return replace(trial, facts={**trial.facts, "place": told(places(subject)[int(value) - 1])})
+
+
+@cache
+def pairs_of(subject: Subject, apart: bool) -> Pairs:
+    """The pairs that cannot be in one place, or all others."""
+    held = {frozenset(pair) for pair in held_apart(subject.plain)}
+    pairs = itertools.combinations(subject.car.points, 2)
+    return tuple(pair for pair in pairs if (frozenset(pair) in held) == apart)
+
+
+def in_one_place(value: float, pairs: Pairs, subject: Subject) -> Content:
+    """The scene with the second point of this pair, counted from 1, put on the first."""
+    onto, moved = pairs[int(value) - 1]
+    points = {**subject.car.points, moved: subject.car.points[onto]}
+    inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
+    return subject.absolute(inputs, replace(subject.car, points=points))
+
+
+def coincident(value: float, pairs: Pairs, subject: Subject) -> Trial:
+    """Tries a car with the points of one pair in one place."""
+    onto, moved = pairs[int(value) - 1]
+    trial = try_scene(value, in_one_place(value, pairs, subject), SOLVERS)
+    return replace(trial, facts={**trial.facts, "place": f"{moved} on {onto}"})
 
 
 # A rod without length has no answer in the reference: which way its end lies is not drawn.
-PAIRS_BESIDE = tuple(p for p in itertools.combinations(BESIDE, 2) if p != (TOP, ROD_END))
+PAIRS_BESIDE = tuple(
+    pair for pair in itertools.combinations(BESIDE.car.points, 2) if pair != ("strut_top", "strut_rod_end")
+)
 # Pairs that may be in one place in any car: what the knuckle carries is no joint, nor is the rack's middle.
 SOUND = (
-    (RACK, INNER),
-    *((joint, carried) for joint in (BALL, UPPER_BALL, OUTER) for carried in ("wheel_centre", SPIN)),
+    ("rack_centre", "tie_rod_inner"),
+    *itertools.product(
+        ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer"), ("wheel_centre", "wheel_axis_inner")
+    ),
 )
-# Pairs that are no link but make a line together.
-LINES = ((FRONT, REAR), (UPPER_FRONT, UPPER_REAR))
-
-
-def linked(first: bool, car: str = "paper") -> tuple[tuple[str, str], ...]:
-    """The pairs that cannot be in one place, a link or a line, or all others."""
-    apart = {frozenset((link.start, link.end)) for link in links_of(car)} | set(map(frozenset, LINES))
-    pairs = itertools.combinations(CARS[car].points, 2)
-    return tuple(pair for pair in pairs if (frozenset(pair) in apart) == first)
-
-
-def coincident(pairs: tuple[tuple[str, str], ...], car: Car = PAPER_CAR) -> Callable[[float], Trial]:
-    """Tries a car with the points of one pair in one place: the second is put on the first."""
-
-    def examine(value: float) -> Trial:
-        onto, moved = pairs[int(value) - 1]
-        trial = try_scene(value, in_one_place(value, pairs, car), SOLVERS)
-        return replace(trial, facts={**trial.facts, "place": f"{moved} on {onto}"})
-
-    return examine
-
-
-def in_one_place(value: float, pairs: tuple[tuple[str, str], ...], car: Car) -> dict[str, Any]:
-    """The scene with the points of this pair, counted from 1, in one place."""
-    onto, moved = pairs[int(value) - 1]
-    return scene_content(replace(car, points={**car.points, moved: car.points[onto]}), 1.65)
 
 
 def _counted(number: int) -> tuple[float, ...]:
@@ -131,7 +122,7 @@ def _case(
     values: tuple[float, ...],
     expected: Expected,
     parameter: str = "number of the place in the scene",
-    content: Content | None = None,
+    content: Callable[[float], Content] | None = None,
     sound: Callable[[float], bool] | None = None,
 ) -> Case:
     behaviour = {REFUSED: "refused, by all", RIGHT: "right, by all"}.get(expected, "right, or refused")
@@ -172,46 +163,51 @@ HARMLESS = {"huge": (PHASE,), "minus-huge": (PHASE,), "tiny": SMALL, "denormal":
 EVERY_PAIR = "number of the pair of points"
 
 
-def _is_harmless(value: float, name: str, car: str) -> bool:
-    return told(places(car)[int(value) - 1]) in HARMLESS.get(name, ())
+def _is_harmless(value: float, name: str, subject: Subject) -> bool:
+    return told(places(subject)[int(value) - 1]) in HARMLESS.get(name, ())
 
 
-def _cases(suffix: str, car: str) -> tuple[Case, ...]:
+def _cases(subject: Subject) -> tuple[Case, ...]:
+    # Of the second car every seventh place or pair must do, of the others one amid them.
+    first, second = subject is SUBJECTS[0], bool(subject.level)
+
     def some(count: int, step: int = 1) -> tuple[float, ...]:
-        # Of the second car every seventh place or pair must do.
-        return _counted(count)[:: 7 * step if suffix else step]
+        numbers = _counted(count)
+        return numbers[:: 7 ** (not first) * step] if second else numbers[count // 2 : count // 2 + 1]
 
-    every = len(places(car))
+    suffix, every = subject.suffix, len(places(subject))
+    apart, others = pairs_of(subject, True), pairs_of(subject, False)
     return (
         _case(
             f"link-without-length{suffix}",
             "Two points that a link or an axis holds apart are drawn in one place.",
-            coincident(linked(True, car), CARS[car]),
-            _counted(len(linked(True, car))),
-            REFUSED,
+            partial(coincident, pairs=apart, subject=subject),
+            _counted(len(apart)) if second else some(len(apart)),
+            # Elsewhere two rods may meet in one point of a body, and a crank have no length.
+            REFUSED if subject.level else IF_ANY,
             EVERY_PAIR,
         ),
         _case(
             f"points-in-one-place{suffix}",
             "Two points without a link are drawn in one place, which may be a mechanism or not.",
-            coincident(linked(False, car), CARS[car]),
-            some(len(linked(False, car))),
+            partial(coincident, pairs=others, subject=subject),
+            some(len(others)),
             RIGHT_OR_REFUSED,
             EVERY_PAIR,
-            partial(in_one_place, pairs=linked(False, car), car=CARS[car]),
-            lambda value: linked(False, car)[int(value) - 1] in SOUND,
+            partial(in_one_place, pairs=others, subject=subject),
+            lambda value: others[int(value) - 1] in SOUND,
         ),
         *(
             # A scene with a tiny number is solved, which takes time: every third place must do.
             _case(
                 f"{name}{suffix}",
                 why,
-                everywhere(number, car),
+                partial(anywhere, number=number, subject=subject),
                 some(every, 3 if name == "tiny" else 1),
                 ends,
                 # What has to be refused is no scene, and cannot be given to a solver.
-                content=None if ends == REFUSED else partial(with_number_at, number=number, car=car),
-                sound=partial(_is_harmless, name=name, car=car),
+                content=None if ends == REFUSED else partial(with_number_at, number=number, subject=subject),
+                sound=partial(_is_harmless, name=name, subject=subject),
             )
             for name, why, number, ends in NUMBERS
         ),
@@ -219,16 +215,15 @@ def _cases(suffix: str, car: str) -> tuple[Case, ...]:
 
 
 CASES: tuple[Case, ...] = (
-    *_cases("", "paper"),
+    *(case for subject in SUBJECTS for case in _cases(subject)),
     _case(
         "points-in-one-place-beside",
         "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
-        coincident(PAIRS_BESIDE, BESIDE_CAR),
+        partial(coincident, pairs=PAIRS_BESIDE, subject=BESIDE),
         _counted(len(PAIRS_BESIDE)),
         RIGHT_OR_REFUSED,
         EVERY_PAIR,
-        partial(in_one_place, pairs=PAIRS_BESIDE, car=BESIDE_CAR),
+        partial(in_one_place, pairs=PAIRS_BESIDE, subject=BESIDE),
         lambda value: PAIRS_BESIDE[int(value) - 1] in SOUND,
     ),
-    *_cases("-wishbone", "wishbone"),
 )

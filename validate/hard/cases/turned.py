@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from functools import partial
 
-from validate.cars.car import Car, any_rotation, rotation, turned
-from validate.cars.scene_content import SQUARE, scene_content
-from validate.hard.cars import CARS, EVERY, Array
-from validate.hard.case import RIGHT, Case, coarse, decades
-from validate.hard.trial import scene_case
+from validate.cars.car import any_rotation, rotation, turned
+from validate.hard.cars import Array
+from validate.hard.case import RIGHT, Case, decades
+from validate.hard.family import OF_PARTS, SUBJECTS, Content, Subject, family
 
-GROUP = "Turned cars"
 AXES = "xyz"
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
+NEAR, SEEDS = (*decades(-12, -1), 0.0), tuple(float(seed) for seed in range(1, 13))
 
 
 def quarter_turn_less(axis: int, value: float) -> Array:
@@ -22,49 +20,50 @@ def quarter_turn_less(axis: int, value: float) -> Array:
     return rotation(axis, math.sin(value), math.cos(value))
 
 
-def moving(car: Car, turn: Callable[[float], Array]) -> Callable[[float], dict[str, Any]]:
-    """Arm and rack both move, with all rates."""
-
-    def content(value: float) -> dict[str, Any]:
-        return scene_content(turned(car, turn(value)), [SQUARE - 0.1, 0.4], [0.0, 40.0], stop=0.5)
-
-    return content
+def _moving(turn: Callable[[float], Array], subject: Subject, value: float) -> Content:
+    """All inputs move, with all rates."""
+    return subject.content([-0.1, 0.4], [0.0, 40.0], car=turned(subject.car, turn(value)), stop=0.5)
 
 
-def _cases(suffix: str, car: Car) -> tuple[Case, ...]:
-    near, random = (*decades(-12, -1), 0.0), tuple(float(seed) for seed in range(1, 13))
-
-    def case(name: str, why: str, parameter: str, values: tuple[float, ...], turn: Any) -> Case:
-        return scene_case(
-            name=f"{name}{suffix}",
-            group=GROUP,
-            why=why,
-            parameter=parameter,
-            values=coarse(values) if suffix else values,
-            scene=moving(car, turn),
-            expected=dict.fromkeys(SOLVERS, RIGHT),
-            behaviour="right however the car is turned",
-        )
-
-    return (
-        *(
-            case(
-                f"quarter-turn-about-{AXES[axis]}",
-                "the car comes to lie along other axes of the frame, and coordinates change places",
-                f"90 degrees about {AXES[axis]} less this, rad; then exactly 90",
-                near,
-                lambda value, axis=axis: quarter_turn_less(axis, value),
-            )
-            for axis in range(3)
-        ),
-        case(
-            "turned-at-random",
-            "no axis of the car lies along an axis of the frame, so nothing cancels by chance",
-            "number of a random rotation",
-            random,
-            lambda seed: any_rotation(int(seed)),
-        ),
+def _cases(
+    name: str,
+    why: str,
+    parameter: str,
+    values: tuple[float, ...],
+    turn: Callable[[float], Array],
+    subjects: tuple[Subject, ...] = SUBJECTS,
+) -> tuple[Case, ...]:
+    return family(
+        name=name,
+        group="Turned cars",
+        why=why,
+        parameter=parameter,
+        values=values,
+        scene=partial(_moving, turn),
+        expected=RIGHT,
+        behaviour="right however the car is turned",
+        subjects=subjects,
     )
 
 
-CASES: tuple[Case, ...] = tuple(case for suffix, car in EVERY.items() for case in _cases(suffix, CARS[car]))
+CASES: tuple[Case, ...] = (
+    *(
+        case
+        for axis, letter in enumerate(AXES)
+        for case in _cases(
+            f"quarter-turn-about-{letter}",
+            "the car comes to lie along other axes of the frame, and coordinates change places",
+            f"90 degrees about {letter} less this, rad; then exactly 90",
+            NEAR,
+            partial(quarter_turn_less, axis),
+        )
+    ),
+    *_cases(
+        "turned-at-random",
+        "no axis of the car lies along an axis of the frame, so nothing cancels by chance",
+        "number of a random rotation",
+        SEEDS,
+        lambda seed: any_rotation(int(seed)),
+        (*SUBJECTS, *OF_PARTS),
+    ),
+)

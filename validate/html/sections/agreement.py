@@ -2,98 +2,97 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Sequence
+from dataclasses import replace
 
-from validate.comparison.compare import Comparison, Outcome
-from validate.html.run import FIRST, FURTHER, Run, Told
-from validate.html.section import Block, Cell, Grid, Section
-from validate.output.report import heading, when, worst_rows
+from validate.ci.verdict import agreement
+from validate.comparison.compare import Comparison
+from validate.comparison.examined import Examined
+from validate.html.plot import Panel, Plots, plain
+from validate.html.run import Run
+from validate.html.section import Block, Section
+from validate.output.report import about, heading, used, when
 
-CAPTION = (
-    "For each quantity the verdict, and below it the number whose difference uses most of its tolerance: it "
-    "agrees if that is 1 or less."
-)
-# A page stays small: no row of a scene that agrees below so many rows, and none of another one below so many.
-MOST_THAT_AGREE, MOST = 1000, 1500
+MOST = 1000  # rows of the table: a page stays small
+DRAWN = 60  # rows of the picture
+WORDS = "Share of the tolerance used: the darker the green, the more; red disagrees, amber is not tested"
+# From -1, not tested, over 0 to 1, shares of the tolerance, to 2, beyond it.
+AMBER, PALE, GREEN, RED = "#e0a92e", "#dff2ea", "#2a9d78", "#d9481c"
+COLOURS = ((0.0, AMBER), (0.33, AMBER), (0.33, PALE), (0.67, GREEN), (0.67, RED), (1.0, RED))
+ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around it
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    quantities = list(
-        dict.fromkeys(
-            _heading(row)
-            for one in run.told
-            for outcome in one.examined.outcomes
-            for row in worst_rows(outcome)
-        )
-    )
-    short = len(run.told) > FIRST + FURTHER
-    rows: list[tuple[Cell, ...]] = []
-    left_out: dict[str, int] = {}
-    for one in run.told:
-        if len(rows) >= (MOST_THAT_AGREE if one.verdict == "agrees" else MOST):
-            left_out[one.verdict] = left_out.get(one.verdict, 0) + 1
-        else:
-            rows += list(_rows(one, quantities, short))
-    if run.record is not None:
-        words = f"not run: {run.record.stopped}"
-        blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
-        rows += [
-            (Cell(name), Cell("not tested", words, "not tested"), *blank)
-            for name in run.record.not_run[:MOST]
-        ]
-    if not rows:
+    table = None if run.record is None else agreement(run.record, MOST)
+    if run.record is None or table is None or not table.rows:
         return []
-    caption = CAPTION
-    if short:
-        caption += " Of a further pair of formulations a row is shown where it does not agree."
-    if left_out:
-        more = ", ".join(f"{count} {verdict}" for verdict, count in left_out.items())
-        caption += f" Not in this table: {more}; the data beside this page have them all."
-    return [Grid(caption, ("scene", "verdict", *quantities), tuple(rows))]
+    compared = [] if run.files else [one for one in run.record.examined if one.outcomes]
+    # Where something is not as wanted it is seen however many scenes there are.
+    kept = {one.name for one in sorted(compared, key=lambda one: one.status == 0)[:DRAWN]}
+    drawn = [one for one in compared if one.name in kept]
+    return [*([_picture(drawn)] if drawn else ()), replace(table, folded=bool(drawn))]
 
 
-def _heading(row: Comparison) -> str:
-    return heading(row.quantity, row.name)
+def _picture(drawn: Sequence[Examined]) -> Block:
+    """A heat map; of several pairs of formulations the one that uses most."""
+    cells = [_worst(one) for one in drawn]
+    quantities = list(dict.fromkeys(name for row in cells for name in row))
+    given = [[row.get(name) for name in quantities] for row in cells]
+    trace = {
+        "type": "heatmap",
+        "x": [plain(name) for name in quantities],
+        "y": [plain(one.name) for one in drawn],
+        "z": [[None if one is None else _level(one) for one in row] for row in given],
+        "text": [["" if one is None else _short(one) for one in row] for row in given],
+        "customdata": [["" if one is None else plain(_words(one)) for one in row] for row in given],
+        "texttemplate": "%{text}",
+        "hovertemplate": "%{y}<br>%{customdata}<extra></extra>",
+        "colorscale": COLOURS,
+        "zmin": -1.0,
+        "zmax": 2.0,
+        "showscale": False,
+        "xgap": 1,
+        "ygap": 1,
+        "textfont": {"size": 9},
+    }
+    layout = {
+        "xaxis": {"side": "top", "automargin": True},
+        "yaxis": {"autorange": "reversed", "automargin": True},
+        "showlegend": False,
+    }
+    return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
 
 
-def _rows(one: Told, quantities: Sequence[str], short: bool) -> Iterator[tuple[Cell, ...]]:
-    """A row for each pair that was compared; of a scene without one, why there is none."""
-    name, complaint = one.examined.name, one.examined.complaint
-    outcomes = one.examined.outcomes
-    if not outcomes:
-        verdict = one.verdict
-        blank = (Cell("not tested", verdict="not tested"),) * len(quantities)
-        why = f"{one.why_not}: {complaint}" if one.why_not else complaint
-        yield Cell(name), Cell(verdict, why, verdict), *blank
-        return
-    for i, outcome in enumerate(outcomes):
-        if short and i and outcome.passed:
-            continue
-        cells = {_heading(row): _cell(row, short) for row in worst_rows(outcome)}
-        pair = " and ".join(solution.formulation for solution in outcome.solutions)
-        verdict = _verdict(outcome)
-        if complaint and verdict == "agrees":
-            # One of the other formulations has no answer.
-            verdict = one.verdict
-        asked = (cells.get(quantity, Cell("not asked for")) for quantity in quantities)
-        yield Cell(name, pair), Cell(verdict, complaint, verdict), *asked
+def _worst(one: Examined) -> dict[str, Comparison]:
+    worst: dict[str, Comparison] = {}
+    for outcome in one.outcomes:
+        for row in outcome.rows:
+            key = heading(row.quantity, row.name)
+            if key not in worst or _rank(row) > _rank(worst[key]):
+                worst[key] = row
+    return worst
 
 
-def _verdict(outcome: Outcome) -> str:
-    if outcome.passed:
-        return "agrees"
-    return "disagrees" if outcome.disagreements else "not tested"
+def _rank(row: Comparison) -> tuple[int, float]:
+    """What is seen of several: a disagreement first, then what is not tested, then the largest share."""
+    order = ("not given", "agrees", "not tested", "disagrees").index(row.verdict)
+    return order, row.share if math.isfinite(row.share) else 0.0
 
 
-def _cell(row: Comparison, short: bool) -> Cell:
-    if row.verdict == "not given":
-        return Cell(row.verdict, row.name, row.verdict)
-    told = f"{row.share:.2g} of its tolerance"
-    if not short or row.verdict != "agrees":
-        # The heading says the quantity, or the whole name.
-        of = "" if row.name == _heading(row) else f"{row.name}, "
-        told += f": {of}{when(row, 4)}"
-    return Cell(row.verdict, told, row.verdict)
+def _level(row: Comparison) -> float:
+    if row.verdict in ("not tested", "not given"):
+        return -1.0
+    return 2.0 if row.verdict == "disagrees" else float(f"{row.share:.2g}")
+
+
+def _short(row: Comparison) -> str:
+    return f"{100.0 * row.share:.0f}%" if row.verdict == "agrees" else row.verdict
+
+
+def _words(row: Comparison) -> str:
+    told = f"{about(row.quantity, row.name)}: {row.verdict}"
+    return told if row.verdict == "not given" else f"{told}, {used(row.share)} at {when(row, 4)}"
 
 
 SECTION = Section("agreement", "Agreement", 20, _blocks)

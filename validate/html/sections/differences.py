@@ -60,4 +60,4 @@ def _panel(outcome: Outcome, row: Comparison, instants: Array, points: int) -> P
     return Panel(f"{told}: {row.verdict}, at most {row.share:.2g} of its tolerance", traces, layout)
 
 
-SECTION = Section("differences", "Differences over time", 40, _blocks)
+SECTION = Section("differences", "Differences over time", 55, _blocks, folded=True)

@@ -12,9 +12,10 @@ from validate.ci.record import explained, why_undecided
 from validate.comparison.compare import SMALLEST, Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers, plain
 from validate.html.run import Run, Told
-from validate.html.section import Block, Cell, Grid, Paragraph, Section
+from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome, Held
-from validate.output.report import about, counted_as, held_to, when, worst_rows
+from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
+from validate.output.table import Cell, Table
 
 Array = NDArray[np.float64]
 
@@ -39,26 +40,16 @@ def _of_file(run: Run, one: Told, file: DataOutcome) -> Iterator[Block]:
     if len(rows) > MOST:
         caption += f" Not in this table: {len(rows) - MOST}; the data beside this page have them all."
     cells = [_cells(file, row) for row in rows[:MOST]]
-    cells += [_blank(words) for words in file.absent]
-    yield Grid(caption, HEAD, tuple(cells))
+    absent = Cell("not given", verdict="not given")
+    cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
+    yield Table(HEAD, tuple(cells), caption=caption)
     worst = worst_rows(outcome)
     if panels := tuple(panel for row in worst for panel in _panels(file, row, run.points)):
         apart = any(row.verdict == "disagrees" for row in worst)
         yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 
 
-def _blank(words: str) -> tuple[Cell, ...]:
-    return (
-        Cell(words),
-        Cell("not given", verdict="not given"),
-        Cell("-"),
-        Cell("-"),
-        Cell(""),
-        Cell("the scene asks for it"),
-    )
-
-
-def _cells(file: DataOutcome, row: Comparison) -> tuple[Cell, ...]:
+def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
     why = "; ".join(explained(row, file.outcome)[:1])
     if row.verdict == "not tested":
         why = why_undecided(row, file.outcome)
@@ -66,15 +57,11 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[Cell, ...]:
     return (
         Cell(about(row.quantity, row.name), ", ".join(h.series.column for h in file.columns_of(row))),
         Cell(row.verdict, f"{row.share:.1e} of its tolerance" if there else "", row.verdict),
-        Cell(_size(row.difference, row.unit)),
-        Cell(_size(row.tolerance, row.unit)),
-        Cell(when(row, 4) if there else ""),
-        Cell(why),
+        in_degrees(row.difference, row.unit),
+        in_degrees(row.tolerance, row.unit),
+        when(row, 4) if there else "",
+        why,
     )
-
-
-def _size(value: float, unit: str) -> str:
-    return "-" if math.isnan(value) else f"{_factor(unit) * value:.1e} {_shown_unit(unit)}"
 
 
 def _factor(unit: str) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 from validate.html.hard_cases import Answer, Case, HardCases
 from validate.html.plot import Panel, Plots, axis, numbers, plain
 from validate.html.run import Run
-from validate.html.section import Block, Cell, Grid, Paragraph, Section
+from validate.html.section import Block, Paragraph, Section
+from validate.output.table import Cell, Table
 
 WORDS = (
     "Every answer is held to a reference that is solved in 60 digits and proven. It has to be right within "
@@ -38,7 +39,7 @@ def _told(hard: HardCases, of_this_run: bool) -> Iterator[Block]:
     when = "" if hard.document["started"] is None else f", {hard.document['started']}"
     whose = "" if of_this_run else f"Tried by `{hard.document['command_line']}`{when}. "
     yield Paragraph(f"{whose}{hard.sentence}. {WORDS}")
-    yield Grid("Answers by formulation.", *_counted(hard))
+    yield _counted(hard)
     cases = [case for case in hard.cases if _is_drawn(case)]
     # Where something is not as expected it is shown whatever there is beside it.
     cases.sort(key=lambda case: not case.unexpected)
@@ -50,16 +51,16 @@ def _told(hard: HardCases, of_this_run: bool) -> Iterator[Block]:
             yield Plots(group, tuple(map(_panel, drawn)), at_once=wrong)
     if len(cases) > MOST:
         yield Paragraph(f"{len(cases) - MOST} more cases that go by decades are in the table and not drawn.")
-    yield Grid("Every case.", ("case", "why it is hard", "verdict", "answers"), tuple(map(_row, hard.cases)))
+    head = ("case", "why it is hard", "verdict", "answers")
+    yield Table(head, tuple(map(_row, hard.cases)), caption="Every case.")
 
 
-def _counted(hard: HardCases) -> tuple[tuple[str, ...], tuple[tuple[Cell, ...], ...]]:
+def _counted(hard: HardCases) -> Table:
     outcomes = list(dict.fromkeys(outcome for found in hard.counts.values() for outcome in found))
-    rows = (
-        (Cell(name), *(Cell(str(found.get(outcome, 0))) for outcome in outcomes))
-        for name, found in hard.counts.items()
+    rows = tuple(
+        (name, *(str(found.get(outcome, 0)) for outcome in outcomes)) for name, found in hard.counts.items()
     )
-    return ("formulation", *outcomes), tuple(rows)
+    return Table(("formulation", *outcomes), rows, caption="Answers by formulation.")
 
 
 def _is_drawn(case: Case) -> bool:
@@ -69,10 +70,10 @@ def _is_drawn(case: Case) -> bool:
     )
 
 
-def _row(case: Case) -> tuple[Cell, ...]:
+def _row(case: Case) -> tuple[str | Cell, ...]:
     wrong = "disagrees" if case.unexpected else "agrees"
     told = f"not as expected: {'; '.join(case.unexpected)}" if case.unexpected else "as expected"
-    return Cell(case.name, case.group), Cell(case.why), Cell(wrong, told, wrong), Cell(_answers(case))
+    return Cell(case.name, case.group), case.why, Cell(wrong, told, wrong), _answers(case)
 
 
 def _answers(case: Case) -> str:
@@ -133,4 +134,4 @@ def _at(answers: Sequence[Answer], floor: float) -> Mapping[str, Any]:
     return {"x": numbers(np.array([answer.value for answer in answers]), 6), "y": numbers(drawn, 3)}
 
 
-SECTION = Section("hard", "Hard cases", 85, _blocks)
+SECTION = Section("hard", "Hard cases", 85, _blocks, folded=True)

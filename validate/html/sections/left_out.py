@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validate.html.run import Run
-from validate.html.section import Block, Cell, Grid, Section
+from validate.html.section import Block, Section
+from validate.output.table import Table
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    rows = tuple((Cell(what), Cell(command)) for what, command in run.left_out)
+    rows = tuple(run.left_out)
     caption = "A page shows what was computed for it, or kept by an earlier run."
-    return [Grid(caption, ("not in this page", "how to add it"), rows)] if rows else []
+    return [Table(("not in this page", "how to add it"), rows, caption=caption)] if rows else []
 
 
-SECTION = Section("left-out", "Not in this page", 890, _blocks)
+SECTION = Section("left-out", "Not in this page", 890, _blocks, folded=True)

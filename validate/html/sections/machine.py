@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from validate.html.run import Run
-from validate.html.section import Block, Cell, Grid, Section
+from validate.html.section import Block, Section
 from validate.output.report import held_to
+from validate.output.table import Table
 from validate.plain_text import shown
 
 
@@ -22,8 +23,8 @@ def _blocks(run: Run) -> Sequence[Block]:
         # Where times were measured stands with them; where the page is made tells nothing of them.
         **({} if run.head.kind == "cost" else dict(_flat(document["machine"]))),
     }
-    rows = tuple((Cell(name), Cell(shown(value))) for name, value in told.items())
-    return [Grid("What this page was made by.", ("what", "value"), rows)]
+    rows = tuple((name, shown(value)) for name, value in told.items())
+    return [Table(("what", "value"), rows, caption="What this page was made by.")]
 
 
 def _settings(run: Run) -> Iterator[tuple[str, str]]:
@@ -47,4 +48,4 @@ def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield name, "not there" if value is None else str(value)
 
 
-SECTION = Section("machine", "Machine, versions, settings", 900, _blocks)
+SECTION = Section("machine", "Machine, versions, settings", 900, _blocks, folded=True)

@@ -1,4 +1,4 @@
-"""The suspension in space as it moves, both models over each other, beside its drawing."""
+"""The suspension in space as it moves, both models over each other, beside the angles of its wheel."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
+from validate.html.plot import Plots
 from validate.html.run import Run, Told
-from validate.html.section import Block, Cell, Grid, Section, which
+from validate.html.section import PLOTLY, Block, Section, which
 from validate.html.sides import Side, sides
+from validate.html.wheel_angles import wheel_angles
+from validate.output.table import Table
 
 Array = NDArray[np.float64]
 
@@ -37,53 +40,62 @@ class Spatial:
 
     Attributes:
         scene: whose it is. caption: what its lines are. json: what is drawn, for the script of the page.
-        count: of its instants.
+        count: of its instants. curves: that stand beside it.
+        at_once: whether it is seen before anybody opens it, as the first one is.
     """
 
     template: ClassVar[str] = "spatial.html"
-    scripts: ClassVar[tuple[str, ...]] = ("spatial.js",)
+    scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js", "spatial.js")
     scene: str
     caption: str
     json: str
     count: int
+    curves: Plots | None = None
+    at_once: bool = False
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    blocks = [block for one in run.drawn for block in _of_scene(one, run.frames)]
+    blocks = [_of_scene(one, one.scene, run) for one in run.drawn if one.scene is not None]
     return [*which(run), *blocks, *_closing(run)]
 
 
-def _of_scene(one: Told, frames: int) -> Iterator[Block]:
-    if one.scene is None:
-        return
+def _of_scene(one: Told, scene: Scene, run: Run) -> Block:
     models = sides(one)
-    topology = one.scene.mechanism.topology
+    topology = scene.mechanism.topology
     # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
     reached = np.unique(np.concatenate([side.at for side in models])) if models else np.zeros(1, dtype=int)
-    at = reached[:: max(-(-len(reached) // frames), 1)]
-    known = topology.with_defaults({name: np.array(p) for name, p in one.scene.mechanism.points.items()})
+    at = reached[:: max(-(-len(reached) // run.frames), 1)]
+    known = topology.with_defaults({name: np.array(p) for name, p in scene.mechanism.points.items()})
     points = [name for name in topology.points if name in known]
     number = {name: i for i, name in enumerate(points)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
-    lines += [topology.wheel_axis]
+    if topology.wheel_axis:
+        inner, centre = topology.wheel_axis
+        lines.append((inner, centre))
     for body in topology.bodies.values():
         lines += zip(body, (*body[1:], body[0]), strict=True)
-    up, right = np.array(one.scene.mechanism.up), np.array(one.scene.mechanism.right)
+    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
     data: dict[str, Any] = {
-        "times": [float(f"{time:.6g}") for time in one.scene.instants[at]],
+        "times": [float(f"{time:.6g}") for time in scene.instants[at]],
         "points": points,
         "chassis": [number[name] for name in topology.chassis if name in number],
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
         "axes": [right.tolist(), np.cross(right, up).tolist(), up.tolist()],
         "drawn": _rounded(np.stack([known[name] for name in points])),
-        "closed": _closed(one.scene, known, points),
+        "closed": _closed(scene, known, points),
         "models": [
-            {"name": side.name, "frames": _frames(_places(one.scene, one.motion, side, known), points, at)}
+            {"name": side.name, "frames": _frames(_places(scene, one.motion, side, known), points, at)}
             for side in models
         ],
     }
-    yield Spatial(
-        one.examined.name, _caption(one, models), json.dumps(data, allow_nan=False), max(len(at), 1)
+    curves, why = wheel_angles(one, run.points)
+    return Spatial(
+        one.examined.name,
+        _caption(one, models) + (f"; {why}" if why else ""),
+        json.dumps(data, allow_nan=False),
+        max(len(at), 1),
+        curves,
+        bool(one.examined.status),
     )
 
 
@@ -104,8 +116,11 @@ def _places(scene: Scene, motion: Motion | None, side: Side, known: Mapping[str,
     times = scene.instants[side.at]
     held: dict[str, Array] = {}
     if motion is not None:
-        shift = sum(motion.solved.readout.chassis.states(times, 0), np.zeros(3))
-        held = {name: known[name] + shift for name in scene.mechanism.topology.chassis if name in known}
+        readout = motion.solved.readout
+        origin, still = readout.mechanism.origin, np.zeros((len(times), 3))
+        drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
+        shift = origin + sum(readout.chassis.states(times, 0), np.zeros(3))
+        held = {name: place + shift for name, place in readout.chassis.turned(times, [drawn])[0].items()}
     places = {}
     for name, own in (held | dict(side.numbers.get(PLACE, {}))).items():
         places[name] = np.full((len(scene.instants), 3), np.nan)
@@ -135,11 +150,11 @@ def _closing(run: Run) -> Iterator[Block]:
     movements = {one.examined.name: _movements(one) for one in told}
     points = list(dict.fromkeys(name for moved in movements.values() for name in moved))
     rows = tuple(
-        (Cell(name), *(Cell(_size(moved[point]) if point in moved else "") for point in points))
+        (name, *(_size(moved[point]) if point in moved else "" for point in points))
         for name, moved in movements.items()
     )
     if points:
-        yield Grid(CLOSING, ("scene", *points), rows)
+        yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
 
 
 def _movements(one: Told) -> Mapping[str, float]:

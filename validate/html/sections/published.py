@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from validate.comparison.compare import Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, numbers, plain
 from validate.html.run import Run
-from validate.html.section import Block, Cell, Grid, Paragraph, Section
+from validate.html.section import Block, Paragraph, Section
 from validate.output.report import about
+from validate.output.table import Cell, Table
 from validate.published.tables import Published
 
 Array = NDArray[np.float64]
@@ -32,9 +33,8 @@ def _of_table(one: Published) -> Iterator[Block]:
         f"{one.table.title}: crosses as printed, line as computed", tuple(_panel(one, r) for r in rows)
     )
     head = (one.found.over, *(f"{about(row.quantity, row.name)} [{_unit(row)}]" for row in rows))
-    yield Grid(
-        f"{one.table.title}: printed, computed below it; held to the printed digits", head, _cells(one, rows)
-    )
+    caption = f"{one.table.title}: printed, computed below it; held to the printed digits"
+    yield Table(head, _cells(one, rows), caption=caption)
 
 
 def _values(one: Published, row: Comparison) -> tuple[Array, Array]:
@@ -88,4 +88,4 @@ def _six(value: float) -> str:
     return f"{round(value, 6) + 0.0:.6f}"
 
 
-SECTION = Section("published", "Other programs' tables", 90, _blocks)
+SECTION = Section("published", "Other programs' tables", 90, _blocks, folded=True)

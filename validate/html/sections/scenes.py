@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pointcoord import Scene
 from validate.comparison.examined import Examined
 from validate.html.run import Run
-from validate.html.section import Block, Cell, Grid, Section
+from validate.html.section import Block, Section
+from validate.output.table import Cell, Table
 
 # Lines of the table, at most: there may be hundreds of scenes.
 MOST = 100
@@ -20,17 +21,17 @@ def _blocks(run: Run) -> Sequence[Block]:
     )
     rows = tuple(_row(examined, scene) for examined, scene in read[:MOST])
     head = ("scene", "title", "suspension", "instants")
-    return [Grid(f"What was compared.{more}", head, rows)] if rows else []
+    return [Table(head, rows, caption=f"What was compared.{more}")] if rows else []
 
 
-def _row(examined: Examined, scene: Scene) -> tuple[Cell, ...]:
+def _row(examined: Examined, scene: Scene) -> tuple[str | Cell, ...]:
     mechanism = scene.mechanism
     return (
-        Cell(examined.name),
-        Cell(examined.title),
-        Cell(mechanism.type.replace("_", " "), f"closed as {mechanism.closure}"),
-        Cell(str(len(scene.instants))),
+        examined.name,
+        examined.title,
+        Cell(mechanism.name.replace("_", " "), f"closed as {mechanism.closure}"),
+        str(len(scene.instants)),
     )
 
 
-SECTION = Section("scenes", "Scenes", 25, _blocks)
+SECTION = Section("scenes", "Scenes", 50, _blocks, folded=True)

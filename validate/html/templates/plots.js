@@ -52,11 +52,13 @@
 
   function draw(place) {
     const { data, layout } = JSON.parse(place.dataset.plot);
-    const wide = printing ? PRINTED.width : place.clientWidth;
+    // A plot that is as wide as the page has its own height, on paper too.
+    const whole = place.style.getPropertyValue("--tall") !== "";
+    const wide = printing && !whole ? PRINTED.width : place.clientWidth;
     const beyond = layout.showlegend === false ? 0 : beyondOne(data, wide);
     place.style.setProperty("--beyond", `${beyond}px`);
     const ink = colour("--ink"), line = colour("--line");
-    const { width, height } = printing ? { ...PRINTED, height: PRINTED.height + beyond }
+    const { width, height } = printing && !whole ? { ...PRINTED, height: PRINTED.height + beyond }
       : { width: wide, height: place.clientHeight };
     for (const name of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
       const axis = layout[name], across = name[0] === "x";

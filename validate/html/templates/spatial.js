@@ -29,7 +29,7 @@
 
   function start(figure) {
     const motion = JSON.parse(figure.dataset.motion);
-    const scene = figure.querySelector("h3").textContent;
+    const scene = figure.dataset.scene;
     const [svg, button, slider, output] = ["svg", "button", "input", "output"].map((n) => figure.querySelector(n));
     const choices = figure.querySelector("[role=group]");
     const count = motion.times.length;
@@ -88,7 +88,7 @@
     const still = sets.length - motion.models.length;
     for (const one of [...sets.slice(still), ...sets.slice(0, still)])
       choice(one.name, true, (shown) => { one.group.style.display = shown ? "" : "none"; }, one.strokes);
-    const named = choice("names", figure.clientWidth >= WIDE, () => draw());
+    const named = choice("names", (figure.clientWidth || innerWidth) >= WIDE, () => draw());
     named.parentElement.className = "names";
 
     // The middle of all points of all instants, and how far out the farthest lies: a ball that is in the window

@@ -8,9 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cars.macpherson import BESIDE
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE_CAR
+from validate.hard.cars import BESIDE, BESIDE_CAR
 from validate.hard.case import Case
 from validate.hard.cases import beside
 

@@ -9,8 +9,7 @@ from pointcoord import Scene, SceneError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.simulation import scene_mechanism
 from validate.cars.car import any_rotation, rotation, turned
-from validate.cars.scene_content import scene_content
-from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array
+from validate.hard.cars import PAPER_CAR, UPRIGHT_CAR, Array, scene_content
 from validate.hard.case import Case
 from validate.hard.cases.flat_strut import CASES
 from validate.hard.cases.turned import quarter_turn_less

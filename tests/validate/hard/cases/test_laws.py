@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.hard.cars import CARS
 from validate.hard.case import Case
 from validate.hard.cases import extreme_durations, laws
+from validate.hard.family import PAPER
 from validate.hard.run import examine
 
 BY_NAME = {case.name: case for case in (*laws.CASES, *extreme_durations.CASES)}
@@ -40,7 +40,7 @@ def test_the_same_way_at_any_rate_has_the_same_poses() -> None:
     from validate.formulations.registry import formulation
 
     fast, slow = (
-        formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(CARS["paper"], rate)))
+        formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(PAPER, rate)))
         for rate in (2.0**40, 2.0**-40)
     )
     for name in fast.position:

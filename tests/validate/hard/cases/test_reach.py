@@ -16,12 +16,13 @@ from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import CARS, paper_car
 from validate.hard.cases import blocked_ways
-from validate.hard.cases.reach import CASES, Drive, _refusal
-from validate.hard.last_values import home, last_value, reachable
+from validate.hard.cases.reach import ARM, CASES, TIE_ROD, Drive, refusal_held
+from validate.hard.family import NAMED, PAPER
+from validate.hard.last_values import last_value, reachable
 from validate.hard.partial_motion import fault_of_kept
 
 BY_NAME = {case.name: case for case in CASES}
-PAPER_RACK = Drive("paper", "rack", True)
+PAPER_RACK = Drive(PAPER, "rack", True, TIE_ROD)
 
 
 @pytest.mark.parametrize("car", ["paper", "turned"])
@@ -44,8 +45,7 @@ def test_the_arm_ends_where_its_ball_joint_is_highest_or_lowest_on_its_circle(ca
         length = mpmath.norm(arm)
         ends = {True: mpmath.acos((middle - half) / length), False: mpmath.acos((middle + half) / length)}
         for ahead, expected in ends.items():
-            found = last_value(car, "arm_angle", ahead)
-            assert found.lock == "arm"
+            found = last_value(NAMED[car], "arm_angle", ahead)
             # halved down to 1e-16 of the range
             value = mpmath.mpf(found.value.numerator) / found.value.denominator
             assert abs(value - expected) <= 2e-16 * found.reach
@@ -53,19 +53,22 @@ def test_the_arm_ends_where_its_ball_joint_is_highest_or_lowest_on_its_circle(ca
 
 @pytest.mark.parametrize("ahead", [True, False])
 def test_the_rack_ends_where_a_pose_exists_on_one_side_only(ahead: bool) -> None:
-    end = last_value("paper", "rack", ahead)
+    end = last_value(PAPER, "rack", ahead)
     outward = 1 if ahead else -1
     near = outward * Fraction(1, 10**15) * Fraction(end.reach)
-    held = home("paper")
-    assert reachable("paper", held | {"rack": end.value - near})
-    assert not reachable("paper", held | {"rack": end.value + near})
+    held = PAPER.home
+    assert reachable(PAPER, {**held, "rack": end.value - near})
+    assert not reachable(PAPER, {**held, "rack": end.value + near})
     # The range that the design notes give for the arm at 90 degrees.
     assert round(float(end.value), 3) == {True: 130.101, False: -89.066}[ahead]
 
 
 def test_a_mirrored_and_turned_car_has_the_same_range() -> None:
     for driven in ("arm_angle", "rack"):
-        plain, turned = last_value("beside", driven, driven != "rack"), last_value("turned", driven, True)
+        plain, turned = (
+            last_value(NAMED[car], driven, ahead)
+            for car, ahead in (("beside", driven != "rack"), ("turned", True))
+        )
         # Its coordinates, up to 4e6 mm, were rounded by 2^-31 mm when it was turned; the rack's end moves
         # by some ten times as much.
         assert plain.reach == pytest.approx(turned.reach, rel=0.0, abs=1e-7)
@@ -108,17 +111,17 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
 def test_a_refusal_that_says_something_wrong_is_wrong(
     change: Callable[[FormulationError], FormulationError], says: str
 ) -> None:
-    scene = PAPER_RACK.scene(1e-3)
+    scene = Scene.from_mapping(PAPER_RACK.content(1e-3))
     refusal = refused(scene)
-    assert _refusal(refusal, scene, PAPER_RACK).outcome == "right"
-    answer = _refusal(change(refusal), scene, PAPER_RACK)
+    assert refusal_held(refusal, scene, PAPER_RACK).outcome == "right"
+    answer = refusal_held(change(refusal), scene, PAPER_RACK)
     assert answer.outcome == "wrong"
     assert says in answer.reason
 
 
 @pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton", "absolute"])
 def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
-    scene = PAPER_RACK.scene(1e-3)
+    scene = Scene.from_mapping(PAPER_RACK.content(1e-3))
     end = float(PAPER_RACK.end.value)
     with pytest.raises(FormulationError) as caught:
         formulation(solver).solve(scene)
@@ -166,6 +169,5 @@ def test_a_way_is_blocked_where_the_reference_loses_its_pose(
 
 def test_the_overshoot_of_the_arm_ends_where_angles_do() -> None:
     for ahead, upright in ((False, 0.0), (True, np.pi)):
-        law = Drive("paper", "arm_angle", ahead).scene(1.0).inputs["arm_angle"].polynomial
-        assert law is not None
+        law = Drive(PAPER, "arm_angle", ahead, ARM).content(1.0)["inputs"]["arm_angle"]["polynomial"]
         assert sum(law) == upright

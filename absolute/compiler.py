@@ -1,0 +1,360 @@
+"""A mechanism as plain data becomes a linkage: bodies, joints and inputs.
+
+    one point of two bodies    a ball joint          rod     a distance
+    two points of two bodies   a hinge               slide   a point on a line of a body
+
+A free point, of no body, is a body of its own that does not turn against the one in which it slides, or
+against the chassis. A wheel's contact point is the lowest one of a disc that turns about the wheel's axis and
+has a level radius: its height is that of a point of a body.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from absolute.description import (
+    Axis,
+    Corner,
+    Input,
+    Joint,
+    Model,
+    Vector,
+    plain,
+    point_of,
+    unit_of,
+    vector_of,
+)
+from absolute.errors import DescriptionError
+from absolute.solution import Array
+
+CHASSIS = "chassis"
+# `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
+LARGEST_SKEW = 1e-6
+# Where outboard is, along right.
+SIDES = {"left": -1.0, "right": 1.0}
+
+
+def compile(mechanism: Mapping[str, Any]) -> Model:
+    """The linkage of a mechanism.
+
+    Args:
+        mechanism: plain data, mm and rad:
+            bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
+            slides: name -> points, body, through, along, turns.
+            inputs: those that are driven, name -> one of angle, travel, height, contact, distance; what moves
+                the chassis is no part of the linkage.
+            roles: wheel_axis and steering_axis, two points each, if there are any.
+            points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
+            wheel_radius: of the disc of `contact`.
+    Raises:
+        DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
+            too few rows.
+    """
+    return _Compiler(mechanism).model()
+
+
+class _Compiler:
+    """A mechanism whose joints are being made."""
+
+    def __init__(self, mechanism: Mapping[str, Any]) -> None:
+        self.of = mechanism
+        self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
+        bodies = mechanism["bodies"]
+        _one_of("the ground", CHASSIS, bodies)
+        order = sorted(bodies, key=lambda body: body != CHASSIS)
+        self.bodies = {body: tuple(bodies[body]) for body in order}
+        for body, names in self.bodies.items():
+            for point in names:
+                _one_of(f"a point of body {body!r}", point, self.points)
+        self.rods = {name: tuple(ends) for name, ends in mechanism.get("rods", {}).items()}
+        self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
+        self.joints: dict[str, Joint] = {}
+        self.inputs: dict[str, Input] = {}
+        self.aids: set[str] = set()
+        self.corner = self._corner()
+        right = self.corner.right
+        self.directions: dict[str, Vector] = {
+            "up": self.corner.up,
+            "right": right,
+            "down": self.corner.down,
+            "left": plain(-np.array(right)),
+            "forward": self.corner.forward,
+            "rearward": self.corner.rearward,
+        }
+
+    def model(self) -> Model:
+        """All joints, then all inputs."""
+        self._shared_points()
+        for name, slide in self.slides.items():
+            self._slide(name, slide)
+        for name, ends in self.rods.items():
+            self._rod(name, ends)
+        drive = {
+            "angle": self._angle,
+            "travel": self._travel,
+            "height": self._height,
+            "contact": self._contact,
+            "distance": self._distance,
+        }
+        for name, given in self.of.get("inputs", {}).items():
+            if not {"moves", "turns"} & set(given):
+                kind = next((kind for kind in drive if kind in given), "")
+                _one_of(f"the kind of input {name!r}", kind or str(list(given)), drive)
+                drive[kind](name, given)
+        return Model(
+            self.points, CHASSIS, self.bodies, self.joints, self.inputs, self.corner, frozenset(self.aids)
+        )
+
+    def _corner(self) -> Corner:
+        up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
+        skew = float(up @ right)
+        if abs(skew) > LARGEST_SKEW:
+            raise DescriptionError(
+                f"up and right are {np.degrees(np.arccos(skew)):.6g} degrees apart; a right angle is needed",
+                "right",
+                skew,
+            )
+        side = self.of.get("side")
+        side = "left" if side is None else side
+        _one_of("side", side, SIDES)
+        roles = self.of.get("roles", {})
+        axes = (tuple(roles[role]) if role in roles else None for role in ("wheel_axis", "steering_axis"))
+        return Corner(plain(up), plain(right), plain(SIDES[side] * right), *axes)
+
+    def _shared_points(self) -> None:
+        """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
+        hinges: dict[frozenset[str], list[str]] = {}
+        for first, second in combinations(self.bodies, 2):
+            shared = [point for point in self.bodies[second] if point in self.bodies[first]]
+            if len(shared) > 2:
+                raise DescriptionError(
+                    f"bodies {first!r} and {second!r} share the points {shared}: two make a hinge, "
+                    "and more make the two one body; make them one, or give each points of its own",
+                    second,
+                    shared,
+                )
+            if len(shared) == 2:
+                members = hinges.setdefault(frozenset(shared), [first])
+                if second not in members:
+                    members.append(second)
+                    self._line(*shared)
+                    axis = Axis(*shared)
+                    self.joints[f"hinge of {second} on {members[0]}"] = Joint(
+                        "revolute", members[0], second, axis, axis
+                    )
+        for point in self.points:
+            apart = [[body] for body in self._holders(point)]
+            for line, members in hinges.items():
+                if point in line:
+                    joined = [group for group in apart if set(group) & set(members)]
+                    apart = [group for group in apart if group not in joined] + [
+                        [body for group in joined for body in group]
+                    ]
+            apart.sort(key=lambda group: group[0] != CHASSIS)
+            for number, group in enumerate(apart[1:], 1):
+                name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
+                self.joints[name] = Joint("spherical", apart[0][0], group[0], Axis(point), Axis(point))
+
+    def _slide(self, name: str, slide: Mapping[str, Any]) -> None:
+        what, body, points = f"slide {name!r}", slide["body"], tuple(slide["points"])
+        _one_of(f"the body of {what}", body, self.bodies)
+        line, along = self._line_of(name)
+        for point in points:
+            _one_of(f"a point of {what}", point, self.points)
+            label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
+            held = self._holders(point)
+            if held:
+                second = self._other_than(body, point, what)
+                kind = "on_line"
+            else:
+                second, kind = self._free(point), "prismatic"
+            self.joints[label] = Joint(kind, body, second, line, Axis(point, along))
+        if slide["turns"]:
+            return
+        for second, names in self.bodies.items():
+            guided = [point for point in points if point in names]
+            if second != body and len(guided) > 1:
+                start, end = guided[:2]
+                if float(self._line(start, end) @ np.array(along)) < 0.0:
+                    start, end = end, start
+                self.joints[f"slide {name} of {second}"] = Joint("key", body, second, line, Axis(start, end))
+                return
+        raise DescriptionError(
+            f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
+            "leave `turns` out, or put a second point of the body on the line",
+            name,
+        )
+
+    def _line_of(self, slide: str) -> tuple[Axis, Vector]:
+        """The line of a slide and its direction."""
+        through, along = self.slides[slide]["through"], self.slides[slide]["along"]
+        _one_of(f"the point `through` of slide {slide!r}", through, self.points)
+        _one_of(f"`along` of slide {slide!r}", along, (*self.directions, *self.points))
+        if along in self.directions:
+            return Axis(through, self.directions[along]), self.directions[along]
+        return Axis(through, along), plain(self._line(through, along))
+
+    def _rod(self, name: str, ends: Sequence[str]) -> None:
+        if len(ends) != 2:
+            raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
+        for end in ends:
+            _one_of(f"an end of rod {name!r}", end, self.points)
+            if not self._holders(end):
+                body = self._free(end)
+                self.joints[f"free point {end}"] = Joint(
+                    "parallel", CHASSIS, body, Axis(self.bodies[CHASSIS][0]), Axis(end)
+                )
+        self._line(*ends)
+        first, second = self._two_bodies(f"rod {name!r}", *ends)
+        self.joints[f"rod {name}"] = Joint("distance", first, second, Axis(ends[0]), Axis(ends[1]))
+
+    def _angle(self, name: str, given: Mapping[str, Any]) -> None:
+        body, start = given["angle"], given["from"]
+        _one_of(f"the body of input {name!r}", body, self.bodies)
+        _one_of(f"`from` of input {name!r}", start, (*self.directions, "drawing"))
+        if start == "drawing":
+            on = given.get("on", CHASSIS)
+            _one_of(f"`on` of input {name!r}", on, self.bodies)
+            shared = [point for point in self.bodies[body] if point in self.bodies[on]]
+            if body == on or len(shared) != 2:
+                raise DescriptionError(
+                    f"input {name!r} turns {body!r} on {on!r}, which share the points {shared}; a hinge "
+                    "of two is needed: name the body that it turns on",
+                    name,
+                    shared,
+                )
+            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0)
+            return
+        of, about = given["of"], given["about"]
+        for end in (of, about):
+            _one_of(f"a point of input {name!r}", end, self.bodies[body])
+        self._line(about, of)
+        # Without the squares of a norm, which are zero for the smallest numbers.
+        length = math.hypot(*(np.subtract(self.points[of], self.points[about])).tolist())
+        ground = CHASSIS
+        if about not in self.bodies[CHASSIS]:
+            # The direction is the car's: a body that goes with the point and does not turn has it.
+            ground = self._aid(f"{about} in the axes of the car", (about,))
+            at = Axis(about)
+            self.joints[f"place of {ground}"] = Joint("spherical", body, ground, at, at)
+            self.joints[f"axes of {ground}"] = Joint(
+                "parallel", CHASSIS, ground, Axis(self.bodies[CHASSIS][0]), at
+            )
+        self.inputs[name] = Input(ground, Axis(about, self.directions[start]), body, of, "cosine", length)
+
+    def _travel(self, name: str, given: Mapping[str, Any]) -> None:
+        slides = given["travel"]
+        for slide in slides:
+            _one_of(f"a slide of input {name!r}", slide, self.slides)
+            body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
+            second = self._other_than(body, point, f"slide {slide!r}")
+            own = name if len(slides) == 1 else f"{name} of {slide}"
+            self.inputs[own] = Input(body, self._line_of(slide)[0], second, point, "linear", 1.0, name)
+
+    def _height(self, name: str, given: Mapping[str, Any]) -> None:
+        point, along = given["height"], given.get("along", "up")
+        _one_of(f"the point of input {name!r}", point, self.points)
+        _one_of(f"`along` of input {name!r}", along, self.directions)
+        body = self._other_than(CHASSIS, point, f"input {name!r}")
+        self._over_drawn(name, body, point, along)
+
+    def _over_drawn(self, name: str, body: str, point: str, along: str) -> None:
+        drawn = self._aid_point(f"{point} as drawn by {name}", self.points[point], CHASSIS)
+        self.inputs[name] = Input(CHASSIS, Axis(drawn, self.directions[along]), body, point, "linear", 1.0)
+
+    def _contact(self, name: str, given: Mapping[str, Any]) -> None:
+        inner, centre = given["contact"]
+        for end in (inner, centre):
+            _one_of(f"a point of input {name!r}", end, self.points)
+        carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
+        radius = self.of.get("wheel_radius")
+        if carrier is None or not isinstance(radius, int | float) or not 0.0 < radius < math.inf:
+            needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
+            found = [inner, centre] if carrier is None else radius
+            raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)
+        axis, up = self._line(inner, centre), np.array(self.corner.up)
+        level = np.cross(axis, up)
+        if not np.any(level):
+            raise DescriptionError(
+                f"input {name!r}: {inner!r} - {centre!r} leads straight up, so the wheel has no lowest point",
+                name,
+            )
+        level = level / np.linalg.norm(level)
+        lowest = np.array(self.points[centre]) - radius * np.cross(level, axis)
+        disc = self._aid(f"disc of {name}", (inner, centre))
+        point = self._aid_point(f"contact of {name}", plain(lowest), disc)
+        line = Axis(inner, centre)
+        self.joints[f"axle of {name}"] = Joint("revolute", carrier, disc, line, line)
+        self.joints[f"level of {name}"] = Joint(
+            "level",
+            CHASSIS,
+            disc,
+            Axis(self.bodies[CHASSIS][0], self.corner.up),
+            Axis(centre, plain(level)),
+        )
+        self._over_drawn(name, disc, point, "up")
+
+    def _distance(self, name: str, given: Mapping[str, Any]) -> None:
+        ends = given["distance"]
+        for end in ends:
+            _one_of(f"a point of input {name!r}", end, self.points)
+        self._line(*ends)
+        first, second = self._two_bodies(f"input {name!r}", *ends)
+        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0)
+
+    def _holders(self, point: str) -> list[str]:
+        return [body for body, names in self.bodies.items() if point in names]
+
+    def _other_than(self, body: str, point: str, what: str) -> str:
+        others = [holder for holder in self._holders(point) if holder != body]
+        if not others or (body == CHASSIS and CHASSIS in self._holders(point)):
+            raise DescriptionError(
+                f"{what} moves point {point!r} against body {body!r}, which holds it; name a point of "
+                "another body",
+                point,
+            )
+        return others[0]
+
+    def _two_bodies(self, what: str, start: str, end: str) -> tuple[str, str]:
+        """Bodies that hold one of two points each."""
+        firsts, seconds = self._holders(start), self._holders(end)
+        both = set(firsts) & set(seconds)
+        if both or not firsts or not seconds:
+            raise DescriptionError(
+                f"{what} is between {start!r} and {end!r}, which keep their distance in {sorted(both)}; "
+                "two points of different bodies are needed",
+                start,
+            )
+        return firsts[0], seconds[0]
+
+    def _free(self, point: str) -> str:
+        return self._aid(f"free point {point}", (point,))
+
+    def _aid(self, body: str, points: tuple[str, ...]) -> str:
+        self.bodies[body] = points
+        self.aids.add(body)
+        return body
+
+    def _aid_point(self, name: str, place: Vector, body: str) -> str:
+        self.points[name] = place
+        self.bodies[body] = (*self.bodies[body], name)
+        self.aids.add(name)
+        return name
+
+    def _line(self, start: str, end: str) -> Array:
+        """Unit vector from one drawn point to another."""
+        where = self.points[start]
+        line = np.subtract(self.points[end], where)
+        if not np.any(line):
+            raise DescriptionError(
+                f"points {start!r} and {end!r} coincide at {where}; move one of them", start, where
+            )
+        return unit_of(start, plain(line))
+
+
+def _one_of(what: str, value: object, allowed: Iterable[str]) -> None:
+    if value not in (names := list(allowed)):
+        raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)

@@ -1,0 +1,131 @@
+"""The driven height of the lowest point of a wheel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pointcoord.data_classes import dataclass
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.constraint import Constraint, dot
+from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.numerics.double_double import (
+    PAIRS,
+    exact_square,
+    minus_pair,
+    pair_dot,
+    pair_product,
+    pair_quotient,
+    pair_root,
+    pair_sum,
+    two_product,
+    two_sum,
+)
+from pointcoord.numerics.quadratic import Product, Row
+
+
+@dataclass(frozen=True)
+class ContactHeight(Constraint):
+    r"""The lowest point of a thin disc of radius r about the axis from `inner` to `centre`. Three rows.
+
+    With the axis w = p_centre - p_inner of drawn length L, a = w . e and q the part of w square to e,
+
+        a - w . e = 0,    q^2 + a^2 - L^2 = 0,    p_centre . e - (r / L) q - k - rise = 0,
+
+    since the lowest point lies r q / L below the centre. k is the height of the drawing's.
+
+    Attributes:
+        radius: mm.
+    """
+
+    inner: str
+    centre: str
+    direction: str
+    rise: str
+    radius: float
+
+    @property
+    def name(self) -> str:
+        """The wheel."""
+        return f"height of the contact point of {self.centre}"
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each row says."""
+        return (f"lean of {self.centre}", f"length of the axis to {self.centre}", self.name)
+
+    @property
+    def slides(self) -> tuple[str, ...]:
+        """a and q."""
+        return (f"rise of the axis to {self.centre}", f"reach of the axis to {self.centre}")
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """L^2, r / L and k."""
+        what = ("squared length of the axis", "radius by the length of the axis", "drawn contact height")
+        return tuple(f"{each} of {self.centre}" for each in what)
+
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        """Quadratic in a and q, bilinear in r / L and q."""
+        zero, one = layout.zero, (layout.one, layout.zero)
+        zeros: Triple = (zero, zero, zero)
+        i, c, e = (layout.vector(name) for name in (self.inner, self.centre, self.direction))
+        a, q = (layout.scalar(name) for name in self.slides)
+        square, share, drawn = (layout.scalar(name) for name in self.constants)
+        rise = layout.scalar(self.rise)
+        return (
+            (*dot(i, c, e, zeros), Product(1.0, (a, zero), one)),
+            (
+                Product(1.0, (a, zero), (a, zero)),
+                Product(1.0, (q, zero), (q, zero)),
+                Product(-1.0, (square, zero), one),
+            ),
+            (
+                *dot(c, zeros, e, zeros),
+                Product(-1.0, (share, zero), (q, zero)),
+                Product(-1.0, (drawn, zero), one),
+                Product(-1.0, (rise, zero), one),
+            ),
+        )
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The drawn lean and the constants, with what they lack by rounding.
+
+        Raises:
+            MechanismError: the axis has no length, or is drawn upright.
+        """
+        inner, centre = drawing.vectors[self.inner], drawing.vectors[self.centre]
+        e = drawing.pair(self.direction)
+        square = exact_square(centre, inner)
+        lean = pair_dot(two_sum(centre, -inner), e)
+        reach2 = pair_sum(square, minus_pair(pair_product(lean, lean)))
+        if not (reach2[0] > 1e-12 * square[0]).all() or not (square[0] > 0.0).all():
+            names = (self.inner, self.centre)
+            raise MechanismError(
+                f"the wheel's axis from {self.inner} to {self.centre} has no length or is drawn upright, so "
+                "the wheel has no lowest point; draw it across the car",
+                names,
+            )
+        reach = pair_root(reach2)
+        radius = two_product(np.asarray(self.radius / drawing.unit), np.ones_like(square[0]))
+        share = pair_quotient(radius, pair_root(square))
+        height = pair_dot((centre, np.zeros_like(centre)), e)
+        drop = pair_product(share, reach)
+        drawn = pair_sum(height, minus_pair(drop))
+        # The root loses what the difference under it cancels to; roots, quotients and products round a few
+        # times as often as one product of pairs.
+        lost = 8.0 * PAIRS * (1.0 + square[0] / reach2[0])
+        size = np.sum(np.abs(centre * e[0]), axis=-1) + np.abs(drop[0])
+        doubts = (PAIRS * square[0], 8.0 * PAIRS * share[0], lost * size)
+        constants = (square, share, drawn)
+        places = tuple(layout.scalar(name) for name in self.constants)
+        values = tuple(layout.scalar(name) for name in self.slides)
+        return (
+            Placed(values, np.stack([lean[0], reach[0]], axis=-1)),
+            Placed(
+                places,
+                np.stack([high for high, _ in constants], axis=-1),
+                np.stack([low for _, low in constants], axis=-1),
+                np.stack(doubts, axis=-1),
+            ),
+        )

@@ -1,0 +1,168 @@
+"""Whether the names of a mechanism mean something, and its bodies, rods and slides can be joined so."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from itertools import combinations
+
+from pointcoord.linkage.directions import DIRECTIONS
+from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.structure import CHASSIS, Structure
+
+
+def check(structure: Structure) -> None:
+    """Check what the entries of a mechanism make together.
+
+    Raises:
+        TableFault: the first fault.
+    """
+    _bodies(structure)
+    _rods(structure)
+    _slides(structure)
+    _inputs(structure)
+    _roles(structure)
+    for point, other in structure.stand_ins.items():
+        for name in (point, other):
+            _point(structure, name, ("stand_ins", point))
+
+
+def _point(structure: Structure, name: str, place: Collection[str]) -> None:
+    if name not in structure.points:
+        raise no_such("point of a body, rod or slide", name, structure.points, place)
+
+
+def _body(structure: Structure, name: str, place: Collection[str]) -> None:
+    if name not in structure.bodies:
+        raise no_such("body", name, structure.bodies, place)
+
+
+def _bodies(structure: Structure) -> None:
+    if not structure.bodies.get(CHASSIS):
+        problem = f"there is no body {CHASSIS!r}, the ground, with points"
+        raise TableFault(("bodies",), problem, f"a body {CHASSIS!r}")
+    for (one, points), (other, others) in combinations(structure.bodies.items(), 2):
+        both = [name for name in points if name in others]
+        if len(both) > 2:
+            raise TableFault(
+                ("bodies", other),
+                f"shares {', '.join(both)} with {one}: three points make the two one body",
+                "one shared point (a ball joint) or two (a hinge); or write the two as one body",
+            )
+    held = {end for ends in structure.rods.values() for end in ends}
+    held |= {name for slide in structure.slides.values() for name in (*slide.points, slide.through)}
+    for body, points in structure.moving_bodies():
+        shared = (name for name in points if len(structure.bodies_of(name)) > 1)
+        if held.isdisjoint(points) and not any(shared):
+            raise TableFault(
+                ("bodies", body),
+                "nothing holds this body: no other body, rod or slide has one of its points",
+                "a point that it shares with another body, a rod or a slide",
+            )
+
+
+def _rods(structure: Structure) -> None:
+    ends = [end for pair in structure.rods.values() for end in pair]
+    sliding = {point for slide in structure.slides.values() for point in slide.points}
+    for rod, pair in structure.rods.items():
+        for body in structure.bodies_of(pair[0]):
+            if pair[1] in structure.bodies[body]:
+                raise TableFault(
+                    ("rods", rod), f"joins two points of {body}, which are held already", "two bodies"
+                )
+        for end in pair:
+            free = not structure.bodies_of(end) and end not in sliding
+            if free and ends.count(end) < 2:
+                raise no_such(
+                    "point of a body or slide",
+                    end,
+                    (name for name in structure.points if name != end),
+                    ("rods", rod),
+                )
+
+
+def _slides(structure: Structure) -> None:
+    for name, slide in structure.slides.items():
+        place = ("slides", name)
+        _body(structure, slide.body, (*place, "body"))
+        if slide.through not in structure.bodies[slide.body]:
+            raise no_such(
+                f"point of {slide.body}", slide.through, structure.bodies[slide.body], (*place, "through")
+            )
+        if slide.along not in DIRECTIONS:
+            if slide.along not in structure.points:
+                known = (*DIRECTIONS, *structure.points)
+                raise no_such("direction or point", slide.along, known, (*place, "along"))
+            if slide.along == slide.through:
+                raise TableFault(
+                    (*place, "along"),
+                    f"is {slide.along!r} as through is, so the line has no direction",
+                    "a direction, or a point beside it",
+                )
+        for point in slide.points:
+            if point in structure.bodies[slide.body]:
+                raise TableFault(
+                    (*place, "points"),
+                    f"{point!r} is a point of {slide.body} itself, so it cannot slide in it",
+                    f"points that {slide.body} does not have",
+                )
+        if not slide.turns:
+            _one_body(structure, slide.points, place)
+
+
+def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, ...]) -> None:
+    bodies = set(structure.bodies_of(points[0])).intersection(structure.bodies_of(points[1]))
+    if not bodies:
+        raise TableFault(
+            (*place, "points"),
+            f"{points[0]} and {points[1]} are of no one body, so there is no turn to be kept from",
+            "with turns = false, the first two of one body",
+        )
+
+
+def _inputs(structure: Structure) -> None:
+    for name, one in structure.inputs.items():
+        place = ("inputs", name)
+        for body in one.named("body"):
+            _body(structure, body, place)
+        for slide in one.named("slide"):
+            if slide not in structure.slides:
+                raise no_such("slide", slide, structure.slides, (*place, "travel"))
+        for point in one.named("point"):
+            _point(structure, point, place)
+        if one.kind == "arm":
+            if one["of"] == one["about"]:
+                raise TableFault((*place, "of"), f"is {one['of']!r} as about is", "two different points")
+            if one["angle"] == CHASSIS or one["of"] not in structure.bodies[one["angle"]]:
+                raise no_such(
+                    f"point of {one['angle']}",
+                    one["of"],
+                    structure.bodies[one["angle"]],
+                    (*place, "of"),
+                )
+        if one.kind == "turn":
+            shared = structure.shared(one["angle"], one["on"]) if one["angle"] != one["on"] else ()
+            if one["angle"] == CHASSIS or len(shared) != 2:
+                raise TableFault(
+                    place,
+                    f"{one['angle']} and {one['on']} share {', '.join(shared) or 'no point'}, which is no "
+                    "hinge",
+                    "two bodies that share two points",
+                )
+
+
+def _roles(structure: Structure) -> None:
+    for role, who in structure.roles.items():
+        place, last = ("roles", role), role.rpartition(".")[2]
+        if isinstance(who, tuple):
+            for name in who:
+                _point(structure, name, place)
+        elif last == "knuckle":
+            _body(structure, who, place)
+            if who == CHASSIS:
+                raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
+        else:
+            _point(structure, who, place)
+        points = who if last in ("front_and_rear", "inboard") else ()
+        for name in (points,) if isinstance(points, str) else points:
+            if name not in structure.bodies[CHASSIS]:
+                raise no_such("point of the chassis", name, structure.bodies[CHASSIS], place)

@@ -1,0 +1,298 @@
+"""Mechanism files: found, read and checked, with parts put in and closures applied."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Hashable, Mapping
+from dataclasses import replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+from pointcoord.data_classes import dataclass
+from pointcoord.errors import SceneError
+from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism.checks import check
+from pointcoord.mechanism.compiled import Place, choices_of, compiled, drawing_matters
+from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.freedoms import freedoms_of, settled
+from pointcoord.mechanism.structure import CHASSIS, Structure
+from pointcoord.mechanism.tables import CLOSING, TABLES, structure_of, table_at
+from pointcoord.toml_text import parsed, read_file
+from pointcoord.wording import shown
+
+# The shipped ones. (importlib.resources takes as long to import as a fifth of numpy.)
+MECHANISMS = Path(__file__).parents[1] / "mechanisms"
+AS_DRAWN = "drawn"
+PART_KEYS = ("mechanism", "side", "mirrored")
+ENDING = ".toml"
+BY_ORDER: Place = (0.0, 0.0, 0.0)
+"""Where all points are if only their order counts."""
+
+
+@lru_cache(maxsize=1)
+def shipped() -> tuple[str, ...]:
+    """Names of the mechanisms that come with the package."""
+    return tuple(sorted(path.stem for path in MECHANISMS.glob(f"*{ENDING}")))
+
+
+@dataclass(frozen=True)
+class MechanismFile:
+    """A mechanism by its tables, checked.
+
+    Attributes:
+        name: in messages and results.
+        structures: by closure, what it is then; "drawn" is the tables as they stand.
+        mirrored: by prefix of its points, whether a part of it is mirrored.
+    """
+
+    name: str
+    structures: Mapping[str, Structure]
+    mirrored: Mapping[str, bool]
+
+    @property
+    def closures(self) -> tuple[str, ...]:
+        """The ways in which a drawing of it can be closed."""
+        return tuple(self.structures)
+
+    @cached_property
+    def points(self) -> tuple[str, ...]:
+        """Every point that a car of it may have, whatever its closure."""
+        return tuple(dict.fromkeys(name for one in self.structures.values() for name in one.points))
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Everything that can be driven."""
+        return tuple(self.structures[AS_DRAWN].inputs)
+
+    def topology(
+        self,
+        closure: str = AS_DRAWN,
+        driven: Collection[str] | None = None,
+        points: Mapping[str, Place] | None = None,
+        axes: Mapping[str, Place] | None = None,
+        wheel_radius: float | None = None,
+    ) -> Topology:
+        """The linkage of a car, made once for all that are alike.
+
+        Args:
+            driven: names of the inputs that are driven; the first of the file that are enough unless given.
+            points: as drawn, mm. They say which points are there, and which stand for a body; by order of
+                the file unless given.
+            axes: `up` and `right` of the car.
+            wheel_radius: mm.
+        """
+        whole = self.structures[closure]
+        known = closure, None if driven is None else tuple(driven), None if points is None else tuple(points)
+        if (*known, wheel_radius) in self._alike:
+            return self._alike[*known, wheel_radius]
+        structure = whole if points is None else whole.drawn_with(points)
+        there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
+        along = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+        if driven is None:
+            driven = self._first_driven(structure, closure, there, along, wheel_radius)
+        own = tuple(name for name in structure.inputs if name in driven)
+        choices = choices_of(structure, own, there, along)
+        radius = wheel_radius if any(structure.inputs[n].kind == "contact" for n in own) else None
+        key = closure, own, tuple(structure.points), choices.key, radius
+        if key not in self._compiled:
+            named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
+            topology = compiled(structure, own, choices, radius, closure != AS_DRAWN)
+            # What a drawing may leave out stays known by name: messages say what stands in for what.
+            self._compiled[key] = replace(topology, name=named, stand_ins=whole.stand_ins)
+        topology = self._compiled[key]
+        if points is None or len(topology.labels) <= topology.layout.unknowns:
+            if points is None or not drawing_matters(structure, own):
+                self._alike[*known, wheel_radius] = topology
+            return topology
+        holding = sum(not structure.inputs[name].moves_the_chassis for name in own)
+        return (
+            settled(topology, points, along) if holding <= self.freedoms(closure, points, along) else topology
+        )
+
+    def _first_driven(
+        self,
+        structure: Structure,
+        closure: str,
+        points: Mapping[str, Place],
+        axes: Mapping[str, Place],
+        wheel_radius: float | None,
+    ) -> tuple[str, ...]:
+        """The first inputs of the file that hold every freedom; contact heights with a radius only.
+
+        One is passed over that drives, however the car is drawn, what those before it hold.
+        """
+        holding = [
+            name
+            for name, one in structure.inputs.items()
+            if not one.moves_the_chassis and (one.kind != "contact" or wheel_radius is not None)
+        ]
+        if self.freedoms(closure) <= 0:
+            drawn = len({*points.values()}) > 1
+            return tuple(holding[: max(self.freedoms(closure, points, axes), 0)]) if drawn else ()
+        taken: tuple[str, ...] = ()
+        for name in holding:
+            tried = (*taken, name)
+            topology = compiled(structure, tried, choices_of(structure, tried, points, axes), wheel_radius)
+            free = topology.layout.unknowns - len(topology.labels)
+            if free >= 0 and not topology.fighting:
+                taken = tried
+            if free == 0 and taken == tried:
+                break
+        return taken
+
+    def freedoms(
+        self,
+        closure: str = AS_DRAWN,
+        points: Mapping[str, Place] | None = None,
+        axes: Mapping[str, Place] | None = None,
+    ) -> int:
+        """How many inputs hold the mechanism: coordinates less equations, of which some may be redundant.
+
+        Args:
+            points: as drawn, mm. Without them no equation is taken for redundant.
+        """
+        structure = self.structures[closure]
+        along = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+        drawn = points or dict.fromkeys(structure.points, BY_ORDER)
+        held = structure.drawn_with(drawn)
+        topology = compiled(held, (), choices_of(held, (), drawn, along))
+        if points is None:
+            return topology.layout.unknowns - len(topology.labels)
+        return freedoms_of(topology, drawn, along)
+
+    @cached_property
+    def _alike(self) -> dict[Hashable, Topology]:
+        """By what was asked for, those that are the same for every drawing."""
+        return {}
+
+    @cached_property
+    def _compiled(self) -> dict[Hashable, Topology]:
+        return {}
+
+    @classmethod
+    def of(cls, tables: Mapping[str, Any], name: str) -> MechanismFile:
+        """Check the tables of a mechanism; a part's file is in place of its name (`whole_tables`).
+
+        Raises:
+            TableFault: the first fault.
+        """
+        for key in tables:
+            if key not in (*TABLES, "title"):
+                raise no_such("table of a mechanism", key, TABLES, (key,))
+        parts, mirrored = _parts(tables)
+        closures = {AS_DRAWN: {}, **table_at(tables, "closures")}
+        for part in parts.values():
+            closures |= {closure: {} for closure in part.closures if closure not in closures}
+        structures = {}
+        for closure, changes in closures.items():
+            try:
+                structures[closure] = _closed(tables, parts, name, closure, changes)
+            except TableFault as fault:
+                if closure == AS_DRAWN or not fault.place or fault.place[0] == "closures":
+                    raise
+                place = ("closures", closure, *fault.place)
+                raise TableFault(place, fault.problem, fault.allowed) from None
+        return cls(str(tables.get("title") or name), structures, mirrored)
+
+
+def _parts(tables: Mapping[str, Any]) -> tuple[dict[str, MechanismFile], dict[str, bool]]:
+    """The parts by prefix, and whether each is mirrored."""
+    parts: dict[str, MechanismFile] = {}
+    mirrored: dict[str, bool] = {}
+    for part, table in table_at(tables, "parts").items():
+        place = ("parts", part)
+        if not isinstance(table, Mapping) or "mechanism" not in table:
+            raise TableFault(place, f"is {shown(table)}", "a table with the mechanism, { mechanism = NAME }")
+        for key in table:
+            if key not in PART_KEYS:
+                raise no_such("key of a part", key, PART_KEYS, (*place, key))
+        if table.get("side", "left") not in ("left", "right"):
+            raise TableFault((*place, "side"), f"is {shown(table['side'])}", '"left" or "right"')
+        if not isinstance(table.get("mirrored", False), bool):
+            raise TableFault((*place, "mirrored"), f"is {shown(table['mirrored'])}", "true or false")
+        own = table["mechanism"]
+        try:
+            parts[f"{part}."] = mechanism_file(own) if isinstance(own, str) else MechanismFile.of(own, part)
+        except TableFault as fault:
+            raise TableFault((*place, "mechanism", *fault.place), fault.problem, fault.allowed) from None
+        mirrored[f"{part}."] = table.get("mirrored", False)
+    return parts, mirrored
+
+
+def _closed(
+    tables: Mapping[str, Any],
+    parts: Mapping[str, MechanismFile],
+    name: str,
+    closure: str,
+    changes: object,
+) -> Structure:
+    if not isinstance(changes, Mapping):
+        raise TableFault(
+            ("closures", closure), f"is {shown(changes)}", "tables, such as slides.strut = {...}"
+        )
+    merged = dict(tables)
+    for table, entries in changes.items():
+        if table not in CLOSING or not isinstance(entries, Mapping):
+            raise no_such("table of a closure", table, CLOSING, ("closures", closure, table))
+        merged[table] = {**table_at(tables, table), **entries}
+    whole = structure_of({"bodies": {CHASSIS: []}} if parts else {}, name)
+    for prefix, part in parts.items():
+        own = part.structures[closure if closure in part.structures else AS_DRAWN]
+        whole = whole.joined(own.prefixed(prefix))
+    whole = replace(whole.joined(structure_of(merged, name)), name=str(tables.get("title") or name))
+    if "bodies" not in merged and not parts:
+        raise TableFault(("bodies",), "this table is missing", "bodies with their points")
+    check(whole)
+    return whole
+
+
+def mechanism_file(name: str) -> MechanismFile:
+    """A shipped mechanism by name.
+
+    Raises:
+        TableFault: there is none.
+    """
+    if name not in shipped():
+        raise no_such("mechanism", name, (*shipped(), "or a path that ends in .toml"), ())
+    return _shipped(name)
+
+
+@lru_cache(maxsize=64)
+def _shipped(name: str) -> MechanismFile:
+    tables = parsed((MECHANISMS / f"{name}{ENDING}").read_bytes(), name)
+    return replace(MechanismFile.of(tables, name), name=name)
+
+
+def read_tables(path: Path) -> dict[str, Any]:
+    """The checked tables of a mechanism file, with those of its parts' files in place of their names.
+
+    Raises:
+        SceneError: it cannot be read, or something in it is wrong.
+    """
+    allowed = f"a path to a mechanism file, or one of {', '.join(shipped())}"
+    tables = whole_tables(parsed(read_file(path, allowed), str(path)), path.parent)
+    tables.setdefault("title", path.stem)
+    try:
+        MechanismFile.of(tables, path.stem)
+    except TableFault as fault:
+        place = ".".join(map(str, fault.place))
+        raise SceneError(str(path), place, fault.problem, fault.allowed) from None
+    return tables
+
+
+def whole_tables(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Tables with those of its parts' files in place of their paths."""
+    parts = tables.get("parts")
+    if not isinstance(parts, Mapping):
+        return dict(tables)
+    put_in = {}
+    for part, table in parts.items():
+        put_in[part] = table
+        if isinstance(table, Mapping) and is_path(table.get("mechanism")):
+            put_in[part] = {**table, "mechanism": read_tables(folder / table["mechanism"])}
+    return {**tables, "parts": put_in}
+
+
+def is_path(name: object) -> bool:
+    """Whether a mechanism's name is that of a file of the user's."""
+    return isinstance(name, str) and name.endswith(ENDING)

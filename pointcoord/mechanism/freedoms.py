@@ -1,0 +1,256 @@
+r"""Freedoms against inputs: rows that follow from the others are left out, and what is free is named.
+
+A planar mechanism of hinges, or Bricard's, has more rows than its motion needs: at the closed drawing some
+depend on the others. Those are left out of the map and looked at again at every answer (`held_rows`); where
+one is violated there, the mechanism is locked, and no compromise between its rows is an answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from itertools import accumulate, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.data_classes import dataclass
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.some_rows import SomeRows
+from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.rounding import EPS
+
+Array = NDArray[np.float64]
+Place = tuple[float, float, float]
+Places = tuple[tuple[str, Place], ...]
+
+# Newton's method doubles the digits in a step; a drawing that is not closed after so many does not close.
+STEPS = 12
+# Of a row of a closed drawing, in its own size: coordinates of size 1 round by EPS, and rows have some tens
+# of products.
+CLOSED = 1e3 * EPS
+# Of a row at an answer, in the size of its coordinates: it has at most 24 products, each rounded with the
+# differences in it three times, and their sum.
+ROUNDED = 64.0 * EPS
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """What a mechanism can do at its closed drawing.
+
+    Attributes:
+        count: freedoms with its inputs held, of coordinates less independent rows.
+        free: the coordinates that move then. redundant: the rows that depend on others.
+        kept: numbers of independent rows, as many as there can be.
+    """
+
+    count: int
+    free: tuple[str, ...]
+    redundant: tuple[str, ...]
+    kept: tuple[int, ...]
+
+
+def freedoms(mechanism: Mechanism) -> Freedoms:
+    """Of a drawn mechanism, one car.
+
+    Raises:
+        MechanismError: the drawing does not close.
+    """
+    topology, system = mechanism.topology, mechanism.map
+    y = _closed(mechanism)
+    matrix = system.jacobian(y)
+    scale = np.abs(matrix).max(axis=1, keepdims=True)
+    matrix = matrix / np.where(scale > 0.0, scale, 1.0)
+    kept = _independent(matrix, _rows_of_inputs(topology))
+    _, _, directions = np.linalg.svd(matrix)
+    rank = len(kept)
+    null = directions[rank:]
+    free = tuple(topology.layout.describe(i) for i in dominant(null)) if len(null) else ()
+    left = np.linalg.svd(matrix.T)[2][rank:]
+    redundant = tuple(topology.labels[i] for i in dominant(left)) if len(left) else ()
+    return Freedoms(system.unknowns - rank, free, redundant, tuple(sorted(kept)))
+
+
+def _rows_of_inputs(topology: Topology) -> list[int]:
+    """Numbers of the rows that only an input makes; a driven line of the chassis also holds its point."""
+    driven = {drive.coordinate for drive in topology.drives}
+    names = [(name, constraint) for constraint in topology.constraints for name in constraint.labels]
+    reads, place = topology.map.reads, {name: topology.layout.scalar(name) for name in driven}
+    return [
+        row
+        for row, (_, constraint) in enumerate(names)
+        if not constraint.is_length and not {*place.values()}.isdisjoint(reads[row])
+    ]
+
+
+def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
+    """Numbers of independent rows, those of `last` after others; of each the farthest from those before.
+
+    A row depends on others where what they leave of it is below the rounding of coordinates that its numbers
+    are made of, n EPS of the largest, 64 times.
+    """
+    count, n = matrix.shape
+    rest, kept = matrix.copy(), list[int]()
+    least = 64.0 * max(count, n) * EPS * float(np.linalg.norm(matrix, axis=1).max(initial=1.0))
+    inputs = list(last)
+    for group in ([row for row in range(count) if row not in inputs], inputs):
+        waiting = list(group)
+        while waiting and len(kept) < n:
+            lengths = np.linalg.norm(rest[waiting], axis=1)
+            best = int(np.argmax(lengths))
+            if lengths[best] <= least:
+                break
+            row = waiting.pop(best)
+            kept.append(row)
+            unit = rest[row] / lengths[best]
+            for _ in range(2):  # once more for what rounding leaves
+                rest -= np.outer(rest @ unit, unit)
+    return kept
+
+
+def _closed(mechanism: Mechanism) -> Array:
+    """The drawing closed by its own inputs, by the shortest steps.
+
+    What does not close so is taken as drawn where there are no more equations than coordinates.
+    """
+    y, system = mechanism.drawn.copy(), mechanism.map
+    n = system.unknowns
+    for _ in range(STEPS):
+        rest = system.residual(y)
+        if np.abs(rest).max(initial=0.0) <= CLOSED:
+            return y
+        y[:n] -= np.linalg.lstsq(system.jacobian(y), rest, rcond=64.0 * n * EPS)[0]
+    if len(system.rows) <= n:
+        return mechanism.drawn
+    worst = mechanism.topology.labels[int(np.argmax(np.abs(system.residual(y))))]
+    raise MechanismError(
+        f"the drawing of {mechanism.topology.name} has more equations than coordinates and does not close: "
+        f"{worst} cannot be kept with the others; draw its points where they belong, or leave an input out",
+        [worst],
+    )
+
+
+def freedoms_of(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> int:
+    """How many freedoms a drawing has.
+
+    Raises:
+        MechanismError: it does not close.
+    """
+    return freedoms(drawn_mechanism(topology, dict(points), dict(axes))).count
+
+
+def free_directions(
+    topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]
+) -> tuple[str, ...]:
+    """The coordinates of a drawing that its equations do not hold."""
+    try:
+        return freedoms(drawn_mechanism(topology, dict(points), dict(axes))).free
+    except MechanismError:
+        return ("what a drawing that does not close cannot tell",)
+
+
+def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> Topology:
+    """A topology whose rows are as many as its unknowns: those that follow from the others are left out.
+
+    Raises:
+        MechanismError: something is free, or inputs fight.
+    """
+    there = topology.with_defaults(points)
+    return _settled(topology, _hashable(there, topology.points), _hashable(axes, ("up", "right")))
+
+
+def _hashable(places: Mapping[str, Place], names: Iterable[str]) -> Places:
+    return tuple((name, places[name]) for name in names)
+
+
+class _ByIdentity:
+    """A topology as a key: those of one structure and its choices are one object."""
+
+    def __init__(self, topology: Topology) -> None:
+        self.topology = topology
+
+    def __hash__(self) -> int:
+        return id(self.topology)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _ByIdentity) and other.topology is self.topology
+
+
+def _settled(topology: Topology, points: Places, axes: Places) -> Topology:
+    return _settled_once(_ByIdentity(topology), points, axes)
+
+
+@lru_cache(maxsize=64)
+def _settled_once(key: _ByIdentity, points: Places, axes: Places) -> Topology:
+    topology = key.topology
+    mechanism = drawn_mechanism(topology, dict(points), dict(axes))
+    found, system = freedoms(mechanism), mechanism.map
+    lost = [row for row in range(len(system.rows)) if row not in found.kept]
+    fighting = [row for row in lost if row in _rows_of_inputs(topology)]
+    if found.count or fighting:
+        raise MechanismError(_words(topology, found, bool(fighting)), found.free or found.redundant)
+    ends = [*accumulate((len(constraint.labels) for constraint in topology.constraints), initial=0)]
+    constraints, left_out = [], []
+    for constraint, (first, last) in zip(topology.constraints, pairwise(ends), strict=True):
+        out = tuple(row - first for row in lost if first <= row < last)
+        kept = tuple(row for row in range(last - first) if row not in out)
+        constraints.append(SomeRows(constraint, kept) if out else constraint)
+        if out:
+            left_out.append(SomeRows(constraint, out))
+    return replace(topology, constraints=tuple(constraints), left_out=tuple(left_out))
+
+
+def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
+    driven = ", ".join(topology.required_inputs) or "none"
+    count = len(topology.required_inputs)
+    words = [f"{topology.name} with {count} driven input{'' if count == 1 else 's'} ({driven})"]
+    if fighting:
+        words.append(f"has inputs that fight at the drawing: {', '.join(found.redundant)}")
+    if found.count:
+        more = "freedom" if found.count == 1 else "freedoms"
+        words.append(f"has {found.count} {more} left; free at the drawing: {', '.join(found.free)}")
+    return " ".join(words[:2]) + "".join(f"; it {word}" for word in words[2:])
+
+
+def held_rows(mechanism: Mechanism, y: Array, off: Array) -> None:
+    """Look at the rows that were left out at answers.
+
+    Args:
+        y, off: as of `locked`.
+    Raises:
+        MechanismError: one of them is violated.
+    """
+    for error in locked(mechanism, y, off).values():
+        raise error
+
+
+def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismError]:
+    """Answers at which a row that was left out is violated, by number, with what that means.
+
+    Args:
+        y: coordinates, shape (N, size). off: how far each unknown may be off, (N,), in units; a row is
+            violated where it is farther from zero than that explains.
+    """
+    rows = mechanism.topology.left_out
+    if not rows or not len(y):
+        return {}
+    system = mechanism.topology.left_map
+    residual = np.abs(system.residual(y))
+    slope = np.abs(system.jacobian(y)).sum(axis=-1)
+    size = 1.0 + np.abs(y).max(axis=-1, keepdims=True)
+    allowed = slope * off[:, None] + ROUNDED * size**2 + system.unknowns * off[:, None] ** 2
+    labels = [label for part in rows for label in part.labels]
+    share = np.where(residual <= allowed, 0.0, residual / allowed)
+    found = {}
+    for number in np.flatnonzero(share.any(axis=-1)).tolist():
+        row = int(np.argmax(share[number]))
+        found[number] = MechanismError(
+            f"{mechanism.topology.name} is locked: {labels[row]} follows from the other equations at the "
+            f"drawing only and is violated by {float(residual[number, row]):.3g} away from it; draw hinges "
+            "that are meant to be parallel or to meet in a point exactly so",
+            [labels[row]],
+        )
+    return found

@@ -1,0 +1,102 @@
+r"""Which powers of several variables a series has, and which of them multiply to which.
+
+A series in s = (s_1 .. s_p) up to a total degree N is  sum_k c_k s^k  with s^k = s_1^k_1 .. s_p^k_p and
+|k| = k_1 + .. + k_p <= N. Its powers are ordered by their total degree, 1 first, so that those of a lower
+order are the first ones of a higher.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.data_classes import dataclass
+
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Products:
+    """Pairs of powers i and j with s^i s^j = s^k, by k.
+
+    Attributes:
+        first, second: the pairs, shape (pairs,). starts: where those of each k begin, shape (targets,).
+        targets: each k, by its place among the powers, shape (targets,).
+    """
+
+    first: Indices
+    second: Indices
+    starts: Indices
+    targets: Indices
+
+
+@dataclass(frozen=True)
+class Powers:
+    """The powers of `inputs` variables up to a total degree `order`.
+
+    Attributes:
+        exponents: k of each, shape (powers, inputs).
+    """
+
+    inputs: int
+    order: int
+    exponents: Indices
+
+    @property
+    def count(self) -> int:
+        """How many there are: (order + inputs) over inputs."""
+        return len(self.exponents)
+
+    def first_of(self, degree: int) -> int:
+        """Place of the first power of a total degree; that of one above the last ends the last."""
+        return self._edges[degree]
+
+    @cached_property
+    def _edges(self) -> list[int]:
+        degrees = self.exponents.sum(axis=-1)
+        edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
+        return edges
+
+    def power_of(self, variable: int, exponent: int) -> int:
+        """Place of a power of one variable alone."""
+        wanted = np.zeros(self.inputs, dtype=np.intp)
+        wanted[variable] = exponent
+        return int(np.flatnonzero((self.exponents == wanted).all(axis=-1))[0])
+
+
+@lru_cache(maxsize=32)
+def powers(inputs: int, order: int) -> Powers:
+    """The powers of a number of variables, ordered by total degree."""
+    every = [k for k in product(range(order + 1), repeat=inputs) if sum(k) <= order]
+    every.sort(key=lambda k: (sum(k), tuple(-one for one in k)))
+    return Powers(inputs, order, np.array(every, dtype=np.intp).reshape(-1, inputs))
+
+
+@lru_cache(maxsize=256)
+def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, once: bool = False) -> Products:
+    """The pairs among powers up to `order`, each of a degree of at least `lowest`, whose product is wanted.
+
+    Args:
+        degrees: of the products, the first and the last; up to 2 `order`.
+        once: whether of i, j and j, i there is only the one with i before j.
+    """
+    of_factors, of_products = powers(inputs, order).exponents, powers(inputs, 2 * order).exponents
+    degree = of_factors.sum(axis=-1)
+    low, high = degrees
+    first, second = np.indices((len(degree), len(degree))).reshape(2, -1)
+    total = degree[first] + degree[second]
+    wanted = (total >= low) & (total <= high) & (np.minimum(degree[first], degree[second]) >= lowest)
+    wanted &= (first <= second) | (not once)
+    first, second = first[wanted], second[wanted]
+    # A number for each exponent, the same for factors and products.
+    base = (2 * order + 1) ** np.arange(inputs)
+    place = np.argsort(of_products @ base, kind="stable")
+    key = (of_factors[first] + of_factors[second]) @ base
+    target = place[np.searchsorted((of_products @ base)[place], key)]
+    by_target = np.argsort(target, kind="stable")
+    first, second, target = first[by_target], second[by_target], target[by_target]
+    starts = np.flatnonzero(np.diff(target, prepend=-1))
+    return Products(first, second, starts.astype(np.intp), target[starts].astype(np.intp))

@@ -1,0 +1,291 @@
+"""The strut as drawn: what is drawn is what is solved, and the paper's strut is its special case."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, Motion, Scene, SceneError, simulate
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.mechanism import mechanism_file
+from pointcoord.numerics.linear import factorise
+from pointcoord.results.closing import ALLOWED, NOTICED
+
+DRAWN = mechanism_file("macpherson").topology(points=Scene.load("off-axis-strut").mechanism.points)
+
+Array = NDArray[np.float64]
+Car = dict[str, tuple[float, ...]]
+AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+SCENE = Scene.load("off-axis-strut")
+CAR: Car = dict(SCENE.mechanism.points)
+
+
+def drawn_angle(points: Car) -> float:
+    arm = np.subtract(points["lower_ball_joint"], points["lower_arm_front"])
+    return float(np.arccos(arm[2] / np.linalg.norm(arm)))
+
+
+def varied(seed: int, beside: float) -> Car:
+    """The car with every point elsewhere by up to 40 mm, the ball joint `beside` mm off the strut axis."""
+    rng = np.random.default_rng(seed)
+    car = {name: np.add(place, rng.uniform(-40.0, 40.0, 3)) for name, place in CAR.items()}
+    top, lower = car["strut_top"], car["strut_lower"]
+    along = (top - lower) / np.linalg.norm(top - lower)
+    aside = np.cross(along, rng.normal(size=3))
+    foot = lower + ((car["lower_ball_joint"] - lower) @ along) * along
+    car["lower_ball_joint"] = foot + beside * aside / np.linalg.norm(aside)
+    car["strut_rod_end"] = top + rng.uniform(-0.2, 1.2) * (lower - top)
+    car["rack_centre"] = car["tie_rod_inner"]
+    return {name: tuple(place.tolist()) for name, place in car.items()}
+
+
+@settings(deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), beside=st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 30.0, 85.0, 150.0]))
+def test_at_the_drawn_inputs_every_point_is_where_it_was_drawn(
+    make_scene: Callable[..., Scene], seed: int, beside: float
+) -> None:
+    car = varied(seed, beside)
+    motion = simulate(make_scene([drawn_angle(car)], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
+    proof = motion.proof()
+    # The drawn angle is rounded by 2 u pi, which is an arm of 400 mm times that; the points follow it up
+    # to `condition` times as far. The bound covers what the solver adds.
+    angle = 2 * np.finfo(float).eps * np.pi * 400.0 * float(proof.condition[0])
+    for name, place in motion.position.items():
+        assert np.abs(place[0] - car[name]).max() <= max(proof.bound[0], proof.carried_bound[0]) + angle
+    assert motion.closing.largest < 1e-9
+    assert not motion.closing.noticeable
+
+
+def closed_collinear(make_scene: Callable[..., Scene], table: Car) -> Car:
+    """The paper's car where its collinear closing puts it."""
+    motion = simulate(make_scene([drawn_angle(table)], [0.0], stop=0.0, samples=1, points=table))
+    return {name: tuple(place[0].tolist()) for name, place in motion.position.items()}
+
+
+def test_the_collinear_strut_is_the_general_one_with_its_ball_joint_on_the_axis(
+    make_scene: Callable[..., Scene], table: Car
+) -> None:
+    car = closed_collinear(make_scene, table)
+    laws: Any = ((1.4, 0.3, -0.1), (0.0, 30.0))
+    straight, general = (
+        simulate(make_scene(*laws, stop=0.8, points=car, closure=closure))
+        for closure in ("collinear", "drawn")
+    )
+    bound = straight.proof().bound + general.proof().bound
+    carried = straight.proof().carried_bound + general.proof().carried_bound
+    # The closed car is rounded to doubles at 500 mm, so both close it anew, up to `condition` times as far.
+    closing = 2 * np.finfo(float).eps * 512.0 * straight.proof().condition
+    for name in straight.position:
+        gap = np.abs(straight.position[name] - general.position[name]).max(axis=-1)
+        assert (gap <= np.maximum(bound, carried) + closing).all()
+    assert np.allclose(straight.wheel["camber"], general.wheel["camber"], rtol=0.0, atol=1e-11)
+    assert np.allclose(straight.wheel["kingpin"], general.wheel["kingpin"], rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-12, 1e-6, 1.0, 80.0])
+def test_rank_is_kept_wherever_the_ball_joint_lies_beside_the_axis(beside: float) -> None:
+    conditions = [
+        float(factorise(mechanism.map.jacobian(mechanism.drawn)).condition)
+        for mechanism in (build_mechanism(DRAWN, varied(3, b), AXES) for b in (beside, 20.0))
+    ]
+    assert conditions[0] < 10.0 * conditions[1]
+
+
+def test_the_axis_stays_in_the_knuckle_and_runs_through_the_strut_top() -> None:
+    motion = simulate(SCENE)
+    place = dict(motion.position)
+    base = place["lower_ball_joint"]
+    e1, e2 = place["tie_rod_outer"] - base, place["strut_lower"] - base
+    axis = place["strut_top"] - place["strut_lower"]
+    axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
+    # The angles of the axis with both edges, and on which side of the knuckle's plane it leaves, are fixed.
+    for measure in (
+        np.sum(axis * e1, axis=-1),
+        np.sum(axis * e2, axis=-1),
+        np.sum(axis * np.cross(e1, e2), axis=-1),
+    ):
+        assert np.ptp(measure) <= 1e-12 * np.abs(measure).max()
+    rod = place["strut_rod_end"] - place["strut_top"]
+    assert np.abs(np.cross(rod, axis)).max() <= 1e-10
+    assert np.ptp(np.linalg.norm(rod, axis=-1)) <= 1e-10
+    assert np.ptp(np.linalg.norm(place["strut_lower"] - place["strut_top"], axis=-1)) > 10.0  # it slides
+
+
+def test_the_kingpin_axis_runs_from_the_ball_joint_to_the_strut_top() -> None:
+    motion = simulate(SCENE)
+    axis = motion.position["strut_top"] - motion.position["lower_ball_joint"]
+    assert np.allclose(motion.wheel["kingpin"], np.arctan2(axis[:, 1], axis[:, 2]), rtol=0.0, atol=1e-14)
+
+
+def test_camber_is_the_spin_axis_s_own() -> None:
+    own, default = (simulate(_with_axis(inner)) for inner in ((0.0, -640.0, 309.0), None))
+    # At the drawn inputs: the axis drops by 1 mm in 120, or as it runs from strut_lower.
+    assert own.wheel["camber"][0] == pytest.approx(-np.arctan(1.0 / 120.0), abs=1e-2)
+    start = own.position["wheel_axis_inner"], own.position["wheel_centre"]
+    spindle = start[1] - start[0]
+    assert np.allclose(own.wheel["camber"], np.arctan2(-spindle[:, 2], -spindle[:, 1]), rtol=0.0, atol=1e-14)
+    assert "wheel_axis_inner" not in default.position
+    spindle = default.position["wheel_centre"] - default.position["strut_lower"]
+    assert np.allclose(
+        default.wheel["camber"], np.arctan2(-spindle[:, 2], -spindle[:, 1]), rtol=0.0, atol=1e-14
+    )
+
+
+def _with_axis(inner: tuple[float, float, float] | None) -> Scene:
+    content = SCENE.model_dump()
+    points = content["mechanism"]["points"]
+    del points["wheel_axis_inner"]
+    if inner is not None:
+        points["wheel_axis_inner"] = inner
+    content["inputs"] = {
+        name: {key: value for key, value in law.items() if value is not None}
+        for name, law in content["inputs"].items()
+    }
+    return Scene.from_mapping(content)
+
+
+def moved(name: str, by: tuple[float, float, float]) -> Car:
+    return {**CAR, name: tuple(np.add(CAR[name], by).tolist())}
+
+
+def test_closing_says_what_moves_and_what_the_drawing_misses(make_scene: Callable[..., Scene]) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    aside = 0.5 * aside / np.linalg.norm(aside)
+    car = moved("strut_rod_end", tuple(aside))
+    motion = simulate(make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
+    closing = motion.closing
+    assert closing.point == "strut_rod_end"
+    assert closing.largest == pytest.approx(0.5, rel=1e-3)
+    assert closing.noticeable
+    assert closing.largest > NOTICED
+    assert not closing.changes_the_car
+    assert closing.misses == {"strut_rod_end on the strut axis": pytest.approx(0.5, rel=1e-3)}
+    # No other point feels it.
+    assert max(far for name, far in closing.movements.items() if name != "strut_rod_end") < 1e-9
+
+
+def test_a_drawing_that_closing_makes_another_car_of_is_refused(make_scene: Callable[..., Scene]) -> None:
+    for car, miss in (
+        (moved("strut_rod_end", (30.0, 0.0, 0.0)), "strut_rod_end on the strut axis"),
+        (
+            {**moved("tie_rod_inner", (0.0, 0.0, 20.0)), "rack_centre": CAR["tie_rod_inner"]},
+            "tie_rod_inner on the rack",
+        ),
+    ):
+        with pytest.raises(SceneError, match="closing the drawing moves") as caught:
+            simulate(make_scene([1.63], [0.0], points=car, closure="drawn"))
+        assert miss in caught.value.problem
+        assert caught.value.key == "mechanism.points"
+        assert f"{ALLOWED:.0%} of the car's size" in caught.value.allowed
+
+
+def test_the_paper_s_car_is_put_in_line_only_where_the_scene_asks_for_it(
+    make_scene: Callable[..., Scene], table: Car
+) -> None:
+    collinear, drawn = (
+        simulate(make_scene([drawn_angle(table)], [0.0], stop=0.0, samples=1, points=table, closure=closure))
+        for closure in ("collinear", "drawn")
+    )
+    # Table 1 is up to 17 mm from a strut in one line; as a strut drawn beside its ball joint, only the rod's
+    # end misses the axis.
+    assert 16.0 < collinear.closing.largest < 17.0
+    assert collinear.closing.changes_the_car
+    assert drawn.closing.point == "strut_rod_end"
+    assert drawn.closing.noticeable
+    assert np.abs(drawn.position["wheel_centre"][0] - table["wheel_centre"]).max() < 1e-9
+
+
+def test_a_slide_that_runs_out_is_refused_with_the_ball_joint_as_near_as_it_comes(
+    make_scene: Callable[..., Scene],
+) -> None:
+    # The ball joint lies h = 150 mm beside the axis and 160 mm below the strut top; nearer than h it
+    # cannot come.
+    h, far = 150.0, 160.0
+    ball = np.array(CAR["lower_ball_joint"])
+    foot = ball + h * np.array([np.sqrt(1.0 - (h / far) ** 2), 0.0, h / far])
+    top = ball + np.array([0.0, 0.0, far])
+    lower = foot + 0.5 * (foot - top)
+    car = {
+        **CAR,
+        "strut_top": tuple(top.tolist()),
+        "strut_lower": tuple(lower.tolist()),
+        "strut_rod_end": tuple((top + 0.3 * (lower - top)).tolist()),
+    }
+    with pytest.raises(AssemblyError) as caught:
+        simulate(make_scene([drawn_angle(car), -0.4], [0.0], points=car, stop=1.0, closure="drawn"))
+    assert caught.value.reduce == "arm_angle"
+    assert caught.value.limits[0] == "strut_top on the strut axis"
+    partial = caught.value.partial
+    assert isinstance(partial, Motion)
+    near = np.linalg.norm(partial.position["strut_top"] - partial.position["lower_ball_joint"], axis=-1)
+    assert (near > h).all()
+    front, rear = np.array(CAR["lower_arm_front"]), np.array(CAR["lower_arm_rear"])
+    stopped = _ball_joint(front, rear, ball, caught.value.reached["arm_angle"])
+    # The path ends within 1e-12 of its length of the fold.
+    assert np.linalg.norm(top - stopped) == pytest.approx(h, rel=1e-9)
+
+
+def _ball_joint(front: Array, rear: Array, drawn: Array, angle: float) -> Array:
+    """The ball joint at an arm angle: the arm turned about its axis until its height is right."""
+    axis = (rear - front) / np.linalg.norm(rear - front)
+    arm = drawn - front
+    rise = float(np.linalg.norm(arm)) * np.cos(angle)
+    level = axis * float(axis @ arm)
+
+    def turned(by: float) -> Array:
+        return np.asarray(level + (arm - level) * np.cos(by) + np.cross(axis, arm) * np.sin(by))
+
+    low, high = sorted((-1.0, 1.0), key=lambda by: float(turned(by)[2]))
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if turned(middle)[2] < rise else (low, middle)
+    return front + turned(0.5 * (low + high))
+
+
+def test_what_can_lock_is_named_before_what_says_how_the_knuckle_is_made() -> None:
+    named = DRAWN.strongest(np.ones(len(DRAWN.labels)))
+    assert set(named[-2:]) == {"normal of the knuckle", "strut axis"}
+    locks = {name for name in named if name.startswith("link ")} | {"strut_top on the strut axis"}
+    assert set(named[: len(locks)]) == locks
+
+
+@pytest.mark.parametrize("inner", ["wheel_axis_inner", "strut_lower"])
+def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Scene], inner: str) -> None:
+    car = {**CAR, inner: CAR["wheel_centre"]}
+    if inner == "strut_lower":
+        del car["wheel_axis_inner"]
+        # Where no scene asks for camber, nothing needs the axis.
+        assert make_scene(points=car, closure="drawn", effects=("velocity",))
+    with pytest.raises(SceneError, match=f"{inner} and wheel_centre are at the same place"):
+        make_scene(points=car, closure="drawn")
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])
+def test_one_percent_of_the_size_is_the_limit_of_closing(
+    make_scene: Callable[..., Scene], share: float, refused: bool
+) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    far = share * 645.0  # mm: the car is 645 mm high
+    car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
+    scene = make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn")
+    if refused:
+        with pytest.raises(SceneError, match="another car"):
+            simulate(scene)
+    else:
+        # The rod's end keeps its distance from the top, so that it moves a little more than across.
+        assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
+
+
+@pytest.mark.parametrize(("far", "noticed"), [(0.098, False), (0.102, True)])
+def test_a_tenth_of_a_millimetre_is_noticed(
+    make_scene: Callable[..., Scene], far: float, noticed: bool
+) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
+    motion = simulate(make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
+    assert motion.closing.noticeable == noticed
+    assert bool(motion.notes) == noticed

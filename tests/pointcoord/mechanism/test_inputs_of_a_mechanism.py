@@ -1,0 +1,142 @@
+"""Every kind of input gives the motion that another one gives, or the quantity that it says."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, SceneError, simulate
+from pointcoord.mechanism.file import MECHANISMS
+from pointcoord.results.motion import Motion
+
+WISHBONE = Scene.load("double-wishbone").model_dump(exclude_none=True)["mechanism"]
+STRUT = Scene.load("off-axis-strut").model_dump(exclude_none=True)["mechanism"]
+RACK = {"polynomial": [0.0, 10.0]}
+SAMPLES = 5
+
+
+def with_inputs(part: dict[str, object], inputs: dict[str, object], **laws: object) -> Scene:
+    """A scene of a shipped mechanism with further inputs that can be driven."""
+    tables = tomllib.loads((MECHANISMS / f"{part['type']}.toml").read_text())
+    tables["inputs"] = {**tables["inputs"], **inputs}
+    own = {name: value for name, value in part.items() if name != "type"}
+    return Scene.from_mapping(
+        {
+            "mechanism": {**own, **tables},
+            "effects": ["velocity", "acceleration", "knuckle_rates", "wheel_angles"],
+            "inputs": laws,
+            "time": {"start": 0.0, "stop": 1.0, "samples": SAMPLES},
+        }
+    )
+
+
+def same(one: Motion, other: Motion, instants: slice = slice(None)) -> None:
+    within = one.proof().bound.max() + other.proof().bound.max()
+    for name, place in one.position.items():
+        assert np.abs(place - other.position[name])[instants].max() <= within + 1e-12
+
+
+ENDS = slice(None, None, SAMPLES - 1)
+ARM = simulate(with_inputs(WISHBONE, {}, arm_angle={"polynomial": [1.5, 0.05]}, rack=RACK))
+
+
+def law(values: np.ndarray) -> dict[str, list[float]]:
+    return {"polynomial": [float(values[0]), float(values[-1] - values[0])]}
+
+
+def test_height_of_the_wheel_gives_the_motion_of_the_arm_angle() -> None:
+    drawn = np.array(WISHBONE["points"]["wheel_centre"])
+    rise = ARM.position["wheel_centre"][:, 2] - drawn[2]
+    same(ARM, simulate(with_inputs(WISHBONE, {}, wheel_travel=law(rise), rack=RACK)), ENDS)
+
+
+def test_distance_of_two_points_gives_the_motion_of_the_arm_angle() -> None:
+    ends = ("upper_arm_front", "lower_ball_joint")
+    apart = np.linalg.norm(ARM.position[ends[0]] - ARM.position[ends[1]], axis=1)
+    same(ARM, simulate(with_inputs(WISHBONE, {"d": {"distance": ends}}, d=law(apart), rack=RACK)), ENDS)
+
+
+def test_turn_of_the_arm_from_the_drawing_gives_the_motion_of_the_arm_angle() -> None:
+    points = {name: np.array(place) for name, place in WISHBONE["points"].items()}
+    axis = points["lower_arm_rear"] - points["lower_arm_front"]
+    axis /= np.linalg.norm(axis)
+    drawn = points["lower_ball_joint"] - points["lower_arm_front"]
+    there = ARM.position["lower_ball_joint"] - points["lower_arm_front"]
+    turn = np.arctan2(there @ np.cross(axis, drawn), there @ drawn - (there @ axis) * (axis @ drawn))
+    inputs = {"t": {"angle": "lower_arm", "from": "drawing"}}
+    same(ARM, simulate(with_inputs(WISHBONE, inputs, t=law(turn), rack=RACK)), ENDS)
+
+
+def test_the_contact_point_rises_by_its_input() -> None:
+    inputs = {"c": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
+    part = {**WISHBONE, "wheel_radius": 300.0}
+    motion = simulate(with_inputs(part, inputs, c={"polynomial": [0.0, 20.0]}, rack=RACK))
+    axis = motion.position["wheel_centre"] - motion.position["wheel_axis_inner"]
+    lean = axis[:, 2] / np.linalg.norm(axis, axis=1)
+    height = motion.position["wheel_centre"][:, 2] - 300.0 * np.sqrt(1.0 - lean**2)
+    assert np.abs(height - height[0] - np.linspace(0.0, 20.0, SAMPLES)).max() < 1e-10
+    with pytest.raises(SceneError, match="wheel_radius"):
+        with_inputs(WISHBONE, inputs, c={"constant": 0.0}, rack=RACK)
+
+
+def test_travel_along_a_line_of_a_moving_body_is_its_length_in_mm() -> None:
+    motion = simulate(
+        with_inputs(
+            STRUT, {"s": {"travel": "strut"}}, s={"polynomial": [390.0, 20.0]}, rack={"constant": 0.0}
+        )
+    )
+    reach = np.linalg.norm(motion.position["strut_top"] - motion.position["strut_lower"], axis=1)
+    assert np.abs(reach - np.linspace(390.0, 410.0, SAMPLES)).max() < 1e-10
+
+
+def test_rates_are_the_derivatives_of_what_an_input_drives() -> None:
+    inputs = {"c": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
+    part = {**WISHBONE, "wheel_radius": 300.0}
+    motion = simulate(with_inputs(part, inputs, c={"polynomial": [0.0, 0.0, 20.0]}, rack=RACK))
+    step = 1e-4
+    before, after = motion.at(np.array([0.5 - step])), motion.at(np.array([0.5 + step]))
+    slope = (after.position["wheel_centre"] - before.position["wheel_centre"]) / (2 * step)
+    assert np.abs(slope - motion.at(np.array([0.5])).velocity["wheel_centre"]).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("laws", "words"),
+    [
+        ({"rack": RACK}, ("2 freedoms", "rack", "free are", "1 more of arm_angle, wheel_travel")),
+        (
+            {"arm_angle": {"constant": 1.5}, "wheel_travel": {"constant": 0.0}, "rack": RACK},
+            ("2 freedoms", "3 are driven", "leave 1 out"),
+        ),
+    ],
+)
+def test_too_few_and_too_many_inputs_are_named(laws: dict[str, object], words: tuple[str, ...]) -> None:
+    with pytest.raises(SceneError) as caught:
+        with_inputs(WISHBONE, {}, **laws)
+    assert all(word in str(caught.value) for word in words)
+
+
+def test_a_block_that_may_not_turn_slides_without_turning() -> None:
+    points = {"o": (0, 0, 0), "g": (500, 0, 0), "a": (0, 0, 0), "b": (30, 40, 100), "k": (60, 0, 20)}
+    scene = Scene.from_mapping(
+        {
+            "mechanism": {
+                "bodies": {"chassis": ["o", "g"], "block": ["a", "b", "k"]},
+                "slides": {"guide": {"points": ["a", "b"], "through": "o", "along": "b", "turns": False}},
+                "inputs": {"lift": {"travel": "guide"}},
+                "points": {name: list(map(float, place)) for name, place in points.items()},
+            },
+            "inputs": {"lift": {"polynomial": [0.0, 50.0]}},
+            "time": {"start": 0.0, "stop": 1.0, "samples": 3},
+        }
+    )
+    moved = {name: place - place[0] for name, place in simulate(scene).position.items()}
+    along = np.array(points["b"]) / np.linalg.norm(points["b"])
+    for name in ("a", "b", "k"):
+        assert np.abs(moved[name] - np.linspace(0.0, 50.0, 3)[:, None] * along).max() < 1e-11
+
+
+@pytest.mark.parametrize("other", [0.0, 1.0])
+def test_two_inputs_of_one_slide_are_refused_by_name(other: float) -> None:
+    again = {"again": {"travel": "rack"}}
+    with pytest.raises(SceneError, match="rack and again both drive the travel of rack"):
+        with_inputs(WISHBONE, again, arm_angle={"constant": 1.5}, rack=RACK, again={"constant": other})

@@ -1,0 +1,43 @@
+"""What a mechanism's points, inputs and types are called is said in mechanism files and in no program."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import pointcoord
+from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.mechanism.structure import NAMES
+
+PACKAGE = Path(pointcoord.__file__).parent
+MODULES = sorted(PACKAGE.rglob("*.py"))
+POINTS = {point for name in shipped() for point in mechanism_file(name).points}
+INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
+# A file may call an input as the format calls its kind, such as `turn`: that is the format's word.
+EXACT = {*shipped(), *(INPUTS - NAMES.keys())}
+
+
+def said(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Line and text of every string that is no docstring."""
+    prose = {id(node.value) for node in ast.walk(module) if isinstance(node, ast.Expr)}
+    for node in ast.walk(module):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose:
+            yield node.lineno, node.value
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_no_program_says_the_name_of_a_point_an_input_or_a_type(path: Path) -> None:
+    found = [
+        (line, text)
+        for line, text in said(ast.parse(path.read_text()))
+        # A role may be called as a point is.
+        if text in EXACT or (POINTS - {"wheel_centre"}) & set(re.findall(r"\w+", text))
+    ]
+    assert not found
+
+
+def test_the_names_are_those_of_the_files() -> None:
+    assert {"strut_top", "toe_inner", "pivot_outer"} <= POINTS
+    assert {"arm_angle", "heave", "macpherson", "five_link"} <= EXACT

@@ -1,0 +1,297 @@
+"""What the shipped mechanisms are held to: closed forms, and tables that other people's programs printed.
+
+A check asks for poses at some inputs, and says how far their points are from where they should be. It knows
+nothing of the tables of a mechanism file, so it notices what is wrong in them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import perm
+from pathlib import Path
+from typing import Any
+
+import lotus_front
+import mpmath
+import numpy as np
+from mechanism_closed_forms import Points, closed_form
+from mechanism_equations import DIGITS, Array, Equations, unit, vector
+from mechanism_files import SCENES, Tables, mechanism_file, plain, plain_scene, scene_file
+from mechanism_poses import follow, placed, rates, refined
+from mpmath import atan2, mp, mpf, sin
+
+from pointcoord import Scene
+
+TABLES = Path(__file__).parents[1] / "mechanisms" / "tables"
+MIRROR = vector([1, -1, 1])
+# Of a pose in 45 digits, mm: what a few hundred operations on lengths of a metre may lose is below 1e-40.
+EXACT = 1e-35
+
+Inputs = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Check:
+    """Poses and what they should be.
+
+    Attributes:
+        scene: the shipped scene whose drawing it is.
+        path: inputs of the poses, in the order in which they are reached.
+        deviations: by quantity, how far the points of the poses are off; mm and rad.
+        limits: by quantity, how far they may be, because of what the other side rounds.
+        wheel_radius: where an input needs one.
+    """
+
+    scene: str
+    path: Sequence[Inputs]
+    deviations: Callable[[Sequence[Points]], Mapping[str, float]]
+    limits: Mapping[str, float]
+    wheel_radius: float | None = None
+
+    @property
+    def type(self) -> str:
+        """The mechanism."""
+        return str(scene_file(self.scene)["mechanism"]["type"])
+
+    def equations(self, change: Callable[[Tables, Tables], object] | None = None) -> Equations:
+        """The witness's equations; `change` may plant a fault in the mechanism's tables or in the drawing."""
+        part = {**scene_file(self.scene)["mechanism"], "wheel_radius": self.wheel_radius}
+        tables = mechanism_file(part["type"])
+        if change:
+            change(tables, part)
+        return Equations(plain(tables, part, self.path[0]))
+
+    def poses(self, equations: Equations) -> list[Points]:
+        """The witness's poses, in many digits."""
+        return placed(equations, self.path)
+
+
+def value(law: Tables, time: Any, derivative: int = 0) -> Any:
+    """An input of a scene at a time, or a time derivative of it, in many digits."""
+    t = mpf(time)
+    if "sine" in law:
+        wave = {key: mpf(number) for key, number in law["sine"].items()}
+        w = wave["angular_frequency"]
+        turn = w * t + wave.get("phase", 0) + derivative * mp.pi / 2
+        return (0 if derivative else wave.get("offset", 0)) + wave["amplitude"] * w**derivative * sin(turn)
+    coefficients = law.get("polynomial", [law.get("constant")])
+    return sum(perm(k, derivative) * mpf(c) * t ** max(k - derivative, 0) for k, c in enumerate(coefficients))
+
+
+def instants(scene: str, count: int) -> list[int]:
+    """Indices of some samples of a scene, the first and the last among them."""
+    return [round(k) for k in np.linspace(0, scene_file(scene)["time"]["samples"] - 1, count)]
+
+
+def scene_inputs(scene: str, indices: Sequence[int], derivative: int = 0) -> list[Inputs]:
+    """What a scene drives at some of its samples, or a time derivative of that."""
+    laws, times = scene_file(scene)["inputs"], Scene.load(scene).instants
+    with mp.workdps(DIGITS):
+        return [{name: value(law, times[k], derivative) for name, law in laws.items()} for k in indices]
+
+
+def exact_states(scene: str, indices: Sequence[int]) -> list[tuple[Points, Points, Points]]:
+    """Positions, velocities and accelerations at some samples of a scene by the witness, in many digits.
+
+    Formulations are given inputs, rates and accelerations as doubles: the poses of these are asked for.
+    """
+    mechanism = plain_scene(scene)
+    equations = Equations(mechanism)
+    path, speeds, bends = (
+        [
+            {name: mpf(float(number)) for name, number in one.items()}
+            for one in scene_inputs(scene, indices, d)
+        ]
+        for d in range(3)
+    )
+    chassis = {name: drive for name, drive in mechanism["inputs"].items() if "moves" in drive}
+    found = []
+    for y, *jets in zip(follow(equations, path), path, speeds, bends, strict=True):
+        exact = refined(equations, y, jets[0])
+        states = {name: [jet[name] for jet in jets] for name in path[0]}
+        with mp.workdps(DIGITS):
+            three = (equations.points(exact), *rates(equations, exact, states))
+            shifts = [
+                sum(
+                    (equations.axes[drive["along"]] * jet[name] for name, drive in chassis.items()),
+                    vector([0, 0, 0]),
+                )
+                for jet in jets
+            ]
+            moved = (
+                {name: at + shift for name, at in one.items()}
+                for one, shift in zip(three, shifts, strict=True)
+            )
+            found.append(tuple(moved))
+    return found
+
+
+def right_form(scene: str, path: Sequence[Inputs], radius: float | None = None) -> list[Points]:
+    """The poses of a scene's mechanism by its closed form."""
+    part = scene_file(scene)["mechanism"]
+    type = f"{part['type']} collinear" if part.get("closure") == "collinear" else part["type"]
+    return _axle(part, path) if type == "axle" else closed_form(type, part["points"], path, radius)
+
+
+def _axle(part: Tables, path: Sequence[Inputs]) -> list[Points]:
+    """Each corner alone; the left one is the right one's mirror image, and so is the rack's motion."""
+    corners = {}
+    for corner, way in (("left", -1), ("right", 1)):
+        with mp.workdps(DIGITS):
+            inputs = [{"wheel_travel": i[f"{corner}.wheel_travel"], "rack": way * i["rack"]} for i in path]
+        corners[corner] = closed_form("double_wishbone", part["points"], inputs)
+    with mp.workdps(DIGITS):
+        return [
+            {f"left.{name}": place * MIRROR for name, place in left.items()}
+            | {f"right.{name}": place for name, place in right.items()}
+            for left, right in zip(corners["left"], corners["right"], strict=True)
+        ]
+
+
+def farthest(found: Sequence[Points], right: Sequence[Points]) -> float:
+    """The largest component of a difference of points, mm."""
+    with mp.workdps(DIGITS):
+        return max(
+            float(np.max(np.abs(a[name] - b[name])))
+            for a, b in zip(found, right, strict=True)
+            for name in b
+            if name in a
+        )
+
+
+@cache
+def closed_form_check(scene: str) -> Check:
+    """The points of a scene against its closed form."""
+    path = scene_inputs(scene, instants(scene, 3))
+    right = right_form(scene, path)
+    return Check(scene, path, lambda found: {"position": farthest(found, right)}, {"position": EXACT})
+
+
+def _angles(points: Points) -> tuple[Any, Any]:
+    """Camber and toe of a left wheel by the table's rules; its axes are ours after half a turn about z."""
+    n = unit(points["wheel_centre"] - points["wheel_axis_inner"])
+    return atan2(-n[2], -n[1]), atan2(-n[0], -n[1])
+
+
+def table(name: str) -> Any:
+    """A printed table, its numbers as they are written."""
+    return json.loads((TABLES / f"{name}.json").read_text(encoding="utf-8"), parse_float=str, parse_int=str)
+
+
+def _vdsim(scene: str, name: str, limits: Mapping[str, float]) -> Check:
+    rows = [[mpf(number) for number in row] for row in table(name)["table"]]
+    rows = [row for row in rows if row[0] <= 0][::-1] + [
+        row for row in rows if row[0] > 0
+    ]  # from the drawing
+
+    def deviations(found: Sequence[Points]) -> Mapping[str, float]:
+        static, off = scene_file(scene)["mechanism"]["points"]["wheel_centre"], []
+        for points, (_, _, camber, toe, track) in zip(found, rows, strict=True):
+            here = (*_angles(points), -(points["wheel_centre"][1] - static[1]))
+            off.append([abs(float(a - b)) for a, b in zip(here, (camber, toe, track * 1000), strict=True)])
+        return dict(zip(("camber", "toe", "track"), np.max(off, axis=0), strict=True))
+
+    with mp.workdps(DIGITS):
+        return Check(scene, [{"wheel_travel": row[0] * 1000} for row in rows], deviations, limits)
+
+
+@cache
+def five_link_table() -> Check:
+    """The table's solver ends with residuals below 1e-12 m; 4.1e-15 rad were seen by whoever else tried."""
+    return _vdsim("five-link", "vdsim_five_link_rear", {"camber": 1e-14, "toe": 1e-14, "track": 1e-12})
+
+
+@cache
+def trailing_arm_table() -> Check:
+    """The table's solver stopped early: the rotation itself is 2.95e-8 rad and 2.2e-6 mm away from it."""
+    return _vdsim(
+        "semi-trailing-arm", "vdsim_trailing_arm_rear", {"camber": 5e-8, "toe": 5e-8, "track": 5e-6}
+    )
+
+
+@cache
+def lotus_table() -> Check:
+    """Bump by the height of the contact point; angles are printed to 1e-4 degrees."""
+    rows = sorted(lotus_front.BUMP, key=lambda row: (row[0] > 0, abs(row[0])))
+
+    def deviations(found: Sequence[Points]) -> Mapping[str, float]:
+        off = []
+        for points, (_, camber, toe, caster, kingpin) in zip(found, rows, strict=True):
+            n = unit(points["wheel_centre"] - points["wheel_axis_inner"])
+            k = unit(points["upper_ball_joint"] - points["lower_ball_joint"])
+            here = (atan2(-n[2], n[1]), atan2(-n[0], n[1]), atan2(k[0], k[2]), atan2(-k[1], k[2]))
+            printed = (camber, toe, caster, kingpin)
+            off.append([abs(float(mpmath.degrees(a) - b)) for a, b in zip(here, printed, strict=True)])
+        return dict(zip(("camber", "toe", "caster", "kingpin"), np.max(off, axis=0), strict=True))
+
+    path = [{"contact_travel": row[0], "rack": 0} for row in rows]
+    limits = dict.fromkeys(("camber", "toe", "caster", "kingpin"), 0.5e-4)
+    return Check("double-wishbone", path, deviations, limits, wheel_radius=lotus_front.ROLLING_RADIUS)
+
+
+ANDREWS = ("beta", "theta", "gamma", "phi", "delta", "omega", "epsilon")
+
+
+def andrews_angles(p: Points) -> Array:
+    """The benchmark's seven angles, each up to whole turns."""
+
+    def angle(first: str, second: str) -> Any:
+        apart = p[second] - p[first]
+        return atan2(apart[1], apart[0])
+
+    beta, quarter = angle("O", "F"), mp.pi / 2
+    gamma, delta, epsilon = angle("B", "E") + quarter, angle("A", "G"), angle("A", "H") + quarter
+    theta = angle("E", "F") - beta
+    phi, omega = angle("G", "E") + quarter - delta, angle("H", "E") - epsilon
+    return np.array([beta, theta, gamma, phi, delta, omega, epsilon], dtype=object)
+
+
+@cache
+def andrews_table() -> Check:
+    """The drawing is rounded to doubles, and the end is printed to 16 digits of 15.8 rad."""
+    data = table("andrews_squeezer")
+    with mp.workdps(DIGITS):
+        printed = [vector(data["q0"]), vector(data["q_t003"])]
+        path = [{"crank": 0}, {"crank": mpf(data["q_t003"][0]) - mpf(data["q0"][0])}]
+
+    def deviations(found: Sequence[Points]) -> Mapping[str, float]:
+        with mp.workdps(DIGITS):
+            off = [andrews_angles(points) - q for points, q in zip(found, printed, strict=True)]
+            apart = [abs(float(a - 2 * mp.pi * mpmath.nint(a / (2 * mp.pi)))) for each in off for a in each]
+        half = len(apart) // 2
+        return {"angles at the start": max(apart[:half]), "angles at the end": max(apart[half:])}
+
+    limits = {"angles at the start": 1e-15, "angles at the end": 1e-14}
+    return Check("andrews-squeezer", path, deviations, limits)
+
+
+@cache
+def bricard_table() -> Check:
+    """Own table, from the product of the six turns, 30 digits; turns of both ways from the drawing."""
+    rows = table("bricard")["table"]
+    with mp.workdps(DIGITS):
+        path = [{"turn": mpmath.radians(mpf(row[0]))} for row in rows]
+        places = [vector(row[2]) * 1000 for row in rows]
+
+    def deviations(found: Sequence[Points]) -> Mapping[str, float]:
+        with mp.workdps(DIGITS):
+            return {
+                "position": max(
+                    float(np.max(np.abs(p["P3"] - q))) for p, q in zip(found, places, strict=True)
+                )
+            }
+
+    return Check("bricard", path, deviations, {"position": 1e-26})
+
+
+PRINTED: Mapping[str, Callable[[], Check]] = {
+    "five_link": five_link_table,
+    "semi_trailing_arm": trailing_arm_table,
+    "double_wishbone": lotus_table,
+    "andrews_squeezer": andrews_table,
+    "bricard": bricard_table,
+}
+CLOSED = tuple(scene for scene in SCENES if scene_file(scene)["mechanism"]["type"] != "five_link")

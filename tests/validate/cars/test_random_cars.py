@@ -1,0 +1,130 @@
+"""Random cars of every mechanism are solved at their drawing, and near poses are as near as they say."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pointcoord import PointcoordError, Scene, simulate
+from pointcoord.drawing_stands import drawn_inputs as drawn_inputs_of
+from pointcoord.linkage.directions import DIRECTIONS
+from validate.cars.accepted import cars
+from validate.cars.base_cars import Variant, variants
+from validate.cars.car import Car
+from validate.cars.input_ends import drawn_inputs, end
+from validate.cars.moved_points import LEFT_OVER, sliding
+from validate.cars.near_singular import near_pose
+from validate.cars.random_cars import random_car
+from validate.cars.random_scenes import KINDS, random_scene
+from validate.cars.scene_content import content_of
+
+NUMBERS = st.integers(0, 2**32 - 1)
+by_variant = pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
+EXAMPLES = settings.default.max_examples if settings.default else 100
+DEEP = EXAMPLES > 100
+searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 20)
+# Each looks for ends of inputs, half a second of work for one.
+searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 6)
+
+
+@by_variant
+def test_a_base_car_is_a_shipped_scenes_and_moves_by_every_set_of_its_inputs(variant: Variant) -> None:
+    scene = Scene.load(variant.scene)
+    assert variant.base == Car.of(scene)
+    assert set(variant.input_sets[0]) <= set(scene.inputs)
+    assert len(set(map(frozenset, variant.input_sets))) == len(variant.input_sets)
+    for inputs in variant.input_sets:
+        home = drawn_inputs(variant.base, inputs)
+        assert set(home) == set(inputs)
+        simulate(Scene.from_mapping(content_of(variant.base, home)))
+
+
+@searched
+@given(NUMBERS)
+def test_a_random_car_is_solved_at_its_drawing_and_its_points_do_not_move_far(number: int) -> None:
+    drawn = random_car(np.random.default_rng(number))
+    home = drawn_inputs(drawn.car, drawn.inputs)
+    assert set(home) == set(drawn.inputs)
+    motion = simulate(Scene.from_mapping(content_of(drawn.car, home)))
+    if drawn.car.closure != "drawn":
+        return
+    # What is drawn off its line is moved onto it, and the others by what follows from that.
+    for name, place in drawn.car.array.items():
+        assert np.abs(motion.position[name][0] - place).max() <= 0.05 * drawn.car.size, name
+
+
+@searched
+@given(NUMBERS)
+def test_what_slides_is_drawn_on_its_line_or_beside_it_by_no_more_than_is_left_over(number: int) -> None:
+    drawn = random_car(np.random.default_rng(number))
+    p, structure = drawn.car.array, drawn.car.structure
+    for slide in structure.slides.values() if drawn.car.closure == "drawn" else ():
+        if slide.through not in p:
+            continue
+        along = (
+            drawn.car.direction(slide.along)
+            if slide.along in DIRECTIONS
+            else p[slide.along] - p[slide.through]
+        )
+        for name in set(slide.points) & set(sliding(drawn.car)):
+            aside = np.cross(p[name] - p[slide.through], along) / np.linalg.norm(along)
+            far = max(float(np.abs(place).max()) for place in p.values())
+            allowed = np.sqrt(3.0) * LEFT_OVER * drawn.scale + 1e-12 * far
+            assert np.linalg.norm(aside) <= allowed, name
+
+
+@searched
+@given(cars())
+def test_a_car_for_everybody_is_drawn_on_its_lines(drawn: tuple[Car, Variant]) -> None:
+    car, variant = drawn
+    motion = simulate(Scene.from_mapping(content_of(car, drawn_inputs(car, variant.input_sets[0]))))
+    for name, place in car.array.items() if car.closure == "drawn" else ():
+        assert np.abs(motion.position[name][0] - place).max() <= 1e-9 * car.size, name
+
+
+@searched_for_ends
+@given(NUMBERS, st.floats(-11.0, -2.0))
+def test_a_near_pose_is_as_near_to_its_end_as_is_asked(number: int, decades: float) -> None:
+    distance = 10.0**decades
+    pose = near_pose(number, nearest=distance, farthest=distance)
+    names = pose.home.keys() - pose.variant.chassis_motions
+    held = {name: pose.inputs[name] for name in names} | {pose.driven: pose.home[pose.driven]}
+    scene = Scene.from_mapping(content_of(pose.car, pose.inputs))
+    assert drawn_inputs_of(scene)[pose.driven] == pose.home[pose.driven]
+    last = end(pose.car, held, pose.driven, pose.inputs[pose.driven] > pose.home[pose.driven])
+    assert last is not None
+    assert abs(last.value - pose.inputs[pose.driven]) / last.reach == pytest.approx(distance, rel=1e-2)
+    # At a fold it is singular: the condition number grows as the inverse root of the distance.
+    try:
+        condition = float(simulate(scene).proof().condition.max())
+    except PointcoordError:
+        assert distance < 1e-9
+    else:
+        assert condition > 0.05 / np.sqrt(distance)
+
+
+def test_a_number_names_one_scene_and_one_pose() -> None:
+    for number in range(8):
+        assert random_scene(number) == random_scene(number)
+    assert random_scene(1).scene != random_scene(2).scene
+    assert near_pose(7, seed=3) == near_pose(7, seed=3)
+    assert near_pose(7, seed=3).car != near_pose(8, seed=3).car
+
+
+def test_random_scenes_are_of_every_mechanism_kind_set_of_inputs_and_law() -> None:
+    drawn = [random_scene(number) for number in range(250)]
+    assert {one.kind for one in drawn} == set(KINDS)
+    assert {one.variant for one in drawn} == set(variants())
+    assert {one.scene.mechanism.side for one in drawn} == {"left", "right"}
+    for variant in variants():
+        chassis = set(variant.chassis_motions)
+        mine = [frozenset(one.scene.inputs) for one in drawn if one.variant == variant]
+        assert {names - chassis for names in mine} <= set(map(frozenset, variant.input_sets))
+        assert {bool(names & chassis) for names in mine} == ({True, False} if chassis else {False})
+    laws = [law for one in drawn for law in one.scene.inputs.values()]
+    given = {key for law in laws for key, value in law.model_dump().items() if value is not None}
+    assert given == {"constant", "polynomial", "sine", "table"}
+    assert sum(one.scene.mechanism.up == (0.0, 0.0, 1.0) for one in drawn) in range(60, 190)
+    sizes = [Car.of(one.scene).size for one in drawn]
+    assert min(sizes) < 10.0
+    assert max(sizes) > 1e5

@@ -1,0 +1,307 @@
+"""How cost grows: a size in a process of its own, what is left out, and the chain with its closed form."""
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import grown_tasks
+import numpy as np
+import pytest
+from grown_tasks import Ends
+
+from pointcoord.linkage.constraints.link import Link
+from validate.cost.findings import frame, growths
+from validate.cost.growth import child, tasks
+from validate.cost.growth.chain import LANE, RISE, ROCKERS, SWING, FourBarChain
+from validate.cost.growth.child import Limits, measure_apart
+from validate.cost.growth.lines import FULL, QUICK, Line, Plan, foreseen, lines_of, nearest
+from validate.cost.growth.tasks import ManyDesigns, ManyInstants
+from validate.cost.growth.unknowns import INSTANTS, SOLVERS, TOLERANCE, LongChain
+from validate.cost.race import Effort, NoNumbers, race
+from validate.cost.row import Row
+from validate.cost.scenes import own_scene, study_scene
+from validate.cost.way import Answer
+from validate.cost.ways.registry import WAYS
+
+MB = 2**20
+LIMITS = Limits(seconds=0.5)
+ROW = Row("growth", "a", "series", "1e-9 mm", 1e-9, poses=10, against="instants", size=10)
+STEER = study_scene("steer", own_scene("steer"))
+TIMES = np.linspace(0.0, 1.0, 41)
+# A tip is rounded by half a unit in the last place of 256 mm at most, 2^-46 mm, along each axis; a length
+# between two of them by six of these, and the root and the difference add less than another.
+LENGTH = 8.0 * 2.0**-46
+
+
+@pytest.fixture(autouse=True)
+def _tasks_can_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(grown_tasks.__file__).parent))
+
+
+def apart(task: Any, limits: Limits = LIMITS) -> Row:
+    (row,) = measure_apart(task, ROW, limits)
+    return row
+
+
+def test_what_a_library_prints_does_not_spoil_the_answer() -> None:
+    row = apart(Ends("prints"))
+    assert (row.verdict, row.reason, row.error, row.numbers) == ("measured", "", 1e-9, 3)
+    assert row.time is not None
+    assert row.size == 10
+
+
+@pytest.mark.parametrize(
+    ("how", "verdict", "words"),
+    [
+        ("killed", "failed", "its process was ended by the signal SIGKILL, as a system out of memory does"),
+        ("exits", "failed", "its process ended with status 3 and no answer"),
+        ("raises", "failed", "ZeroDivisionError: a pivot is zero"),
+        ("does not apply", "left out", "only struts"),
+    ],
+)
+def test_a_process_that_dies_is_a_failure_with_its_reason(how: str, verdict: str, words: str) -> None:
+    row = apart(Ends(how))
+    assert (row.verdict, row.reason) == (verdict, words)
+    assert (row.time, row.peak_bytes, row.poses) == (None, None, 0)
+
+
+def test_a_process_that_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(child, "GRACE", 1.0)
+    assert apart(Ends("never ends"), Limits(seconds=0.1)).reason == "was ended after 2 s"
+
+
+def test_more_memory_than_allowed_is_a_failure_and_not_the_end_of_the_machine() -> None:
+    row = apart(Ends("takes and gives back", bytes=600 * MB), Limits(0.5, memory=256 * MB))
+    assert row.verdict == "failed"
+    assert "MemoryError: Unable to allocate 600" in row.reason
+
+
+def test_peak_memory_is_the_runs_own_and_not_of_those_who_started_it() -> None:
+    ballast = np.ones(300 * MB // 8)
+    taken = apart(Ends("takes and gives back", bytes=100 * MB)).peak_bytes
+    loaded = apart(Ends("takes and gives back", bytes=50 * MB, loading=200 * MB)).peak_bytes
+    nothing = apart(Ends("prints")).peak_bytes
+    assert ballast[-1] == 1.0
+    # What loading gave back is used again, and Python keeps some pages beside: a MB or two.
+    assert taken is not None
+    assert loaded is not None
+    assert nothing is not None
+    assert 98 * MB <= taken <= 104 * MB
+    assert 48 * MB <= loaded <= 54 * MB
+    assert nothing <= 4 * MB
+
+
+def test_the_environment_stays() -> None:
+    before = dict(os.environ)
+    (row,) = measure_apart(LongChain("newton", 15), ROW, Limits(seconds=100.0))
+    assert row.verdict == "measured", row.reason
+    assert row.repeats == 7
+    assert dict(os.environ) == before
+
+
+SMALL = Plan(Limits(20.0), (100, 1000, 10_000), (1, 10, 100), (15, 45, 150))
+
+
+def in_proportion(size: int) -> tuple[float, int]:
+    return 1e-4 * size, 1000 * size
+
+
+class Planned:
+    """Measures nothing: a run takes what a law says, s and bytes."""
+
+    def __init__(self, law: Callable[[int], tuple[float, int]] = in_proportion) -> None:
+        self.law = law
+        self.measured: list[Any] = []
+
+    def __call__(self, task: Any, row: Row, limits: Limits) -> list[Row]:
+        self.measured.append(task)
+        seconds, bytes_ = self.law(task.size)
+        time = {"time": seconds / row.poses, "lower": 0.0, "upper": 0.0, "set_up": 0.0}
+        return [replace(row, quantity="position", peak_bytes=bytes_, **time)]
+
+
+def line(sizes: tuple[int, ...]) -> Line:
+    return Line(replace(ROW, size=None), sizes, 1, lambda size: LongChain("series", size))
+
+
+def rows_of(one: Line, measure: Any = None, known: Sequence[Row] = ()) -> list[Row]:
+    return [row for rows in one.rows(known, SMALL.limits, measure or Planned()) for row in rows]
+
+
+def test_every_size_of_every_way_has_a_row_that_says_what_was_varied() -> None:
+    found = [row for one in lines_of(STEER, WAYS, plan=SMALL) for row in rows_of(one)]
+    by = {(row.against, row.scene, row.way, row.setting, row.size): row for row in found}
+    assert len(by) == len(found) == 3 * (2 * 5 + 6 + 4)
+    assert by["instants", "steer", "series", "1e-9 mm", 1000].poses == 1000
+    assert by["designs", "steer, positions alone", "newton", "1e-9 mm, one by one", 10].poses == 1010
+    assert by["unknowns", "chain of four-bars", "series", "", 45].poses == len(INSTANTS)
+    exponents = growths(frame(found)).exponent
+    assert exponents.tolist() == pytest.approx([1.0] * len(exponents), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (lambda size: (2.0 * size / 1000, 0), "it would take some 2e+02 s, as the smaller ones say"),
+        (lambda size: (1e-3, 2**20 * size), "it would need some 98 GiB, as the smaller ones say"),
+    ],
+)
+def test_what_would_take_too_much_is_left_out_with_the_reason(law: Any, words: str) -> None:
+    planned = Planned(law)
+    found = rows_of(line((100, 1000, 100_000, 1_000_000)), planned)
+    assert [task.size for task in planned.measured] == [100, 1000]
+    assert [row.verdict for row in found] == ["measured", "measured", "left out", "left out"]
+    assert found[2].reason.startswith(f"{words}; allowed: ")
+
+
+def test_sizes_above_one_that_failed_are_left_out() -> None:
+    def measure(task: Any, row: Row, limits: Limits) -> list[Row]:
+        if task.size == 1000:
+            return [replace(row, verdict="failed", reason="died")]
+        return Planned()(task, row, limits)
+
+    found = rows_of(line((100, 1000, 10_000)), measure)
+    assert [(row.size, row.verdict, row.reason) for row in found] == [
+        (100, "measured", ""),
+        (1000, "failed", "died"),
+        (10_000, "left out", "1000 instants failed"),
+    ]
+
+
+def test_a_size_that_is_known_is_not_measured_again_and_tells_of_larger_ones() -> None:
+    first = rows_of(line((100, 1000)))
+    planned = Planned()
+    more = rows_of(line((100, 1000, 10**7)), planned, first)
+    assert planned.measured == []
+    assert [(row.size, row.verdict) for row in more] == [(10**7, "left out")]
+
+
+def test_a_forecast_is_the_more_of_two_laws() -> None:
+    assert foreseen([10.0], [1.0], 100.0) is None
+    assert foreseen([10.0, 100.0], [1.0, 100.0], 1000.0) == pytest.approx(1e4)
+    # A fixed part hides the growth: the straight line says more than the power.
+    assert foreseen([10.0, 20.0], [1.01, 1.02], 1e4) == pytest.approx(1.02 + 0.001 * (1e4 - 20.0))
+    assert foreseen([10.0, 20.0], [0.0, 1.0], 1e4) is None
+
+
+@pytest.mark.parametrize("plan", [FULL, QUICK])
+def test_plans_name_ways_that_there_are(plan: Plan) -> None:
+    for sizes in (plan.instants, plan.designs, plan.unknowns):
+        assert list(sizes) == sorted(set(sizes))
+    assert all(size % 3 == 0 for size in plan.unknowns)
+    assert {*plan.ways, *plan.design_ways, *plan.chain_ways} <= {way.name for way in WAYS}
+    assert (nearest((1e-3, 1e-8, 1e-12)), nearest((None,))) == (1e-8, None)
+
+
+def test_numbers_at_many_instants_are_held_to_the_reference_the_last_ones_too() -> None:
+    runner = ManyInstants(STEER.scene, "series", 50).runner(ROW)
+    answer = runner.set_up()()
+    good = runner.found(answer).quantities
+    assert good["position"]["error"] <= 1e-9
+    assert {"velocity", "acceleration"} <= set(good)
+    places = dict(answer.numbers["position"])
+    places["wheel_centre"] = (
+        places["wheel_centre"] + np.array([0.0, 0.0, 1e-3]) * (np.arange(50) == 49)[:, None]
+    )
+    spoilt = Answer({**answer.numbers, "position": places})
+    assert runner.found(spoilt).quantities["position"]["error"] == pytest.approx(1e-3, rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ["steer", "double-wishbone", "off-axis-strut"])
+def test_designs_together_and_one_by_one_are_the_same_cars_held_to_the_reference(name: str) -> None:
+    scene = study_scene(name, own_scene(name)).positions_only()
+    places = {}
+    for together in (True, False):
+        runner = ManyDesigns(scene, "series", together, 4).runner(ROW)
+        answers = runner.set_up()()
+        assert runner.found(answers).quantities["position"]["error"] < 2e-9
+        places[together] = [answers(k).numbers["position"]["wheel_centre"] for k in range(4)]
+        # A wrong design is seen, whichever it is.
+        swapped = {0: 1, 1: 0, 2: 2, 3: 3}
+        assert runner.found(lambda k, a=answers, s=swapped: a(s[k])).quantities["position"]["error"] > 1e-3
+    np.testing.assert_allclose(places[True], places[False], atol=4e-9)
+    few, many = (tasks.drawn_at_random(scene, count) for count in (3, 7))
+    assert few.design(0).mechanism.points == scene.mechanism.points
+    assert few.design(2).mechanism.points != many.design(1).mechanism.points
+
+
+@pytest.mark.parametrize("rockers", [1, 2, 5, 6])
+def test_closed_form_keeps_every_link_at_its_drawn_length(rockers: int) -> None:
+    chain = FourBarChain(rockers)
+    tips, points = chain.closed_form(TIMES), chain.points
+    places = {name: np.broadcast_to(place, (len(TIMES), 3)) for name, place in points.items()}
+    places |= {name: tips[:, j] for j, name in enumerate(chain.tips)}
+    links = [c for c in chain.topology.constraints if isinstance(c, Link)]
+    assert len(links) == 3 * rockers - 1
+    for link in links:
+        length = np.linalg.norm(places[link.start] - places[link.end], axis=-1)
+        drawn = np.linalg.norm(points[link.start] - points[link.end])
+        assert np.abs(length - drawn).max() <= LENGTH, link.name
+
+
+def test_closed_form_follows_the_drive_and_stays_on_the_drawn_branch() -> None:
+    chain = FourBarChain(4)
+    tips = chain.closed_form(TIMES)
+    angle = SWING.series(TIMES, 0)[:, 0]
+    # The angle is rounded by 2^-52 rad, on an arm of 100 mm, and the sine and the product once each.
+    assert np.abs(tips[:, 0, 2] - ROCKERS[0] * np.cos(angle)).max() <= 4.0 * ROCKERS[0] * 2.0**-52
+    # The double nearest to a quarter turn is 2^-53 rad off at most.
+    drawn = np.array([chain.points[name] for name in chain.tips])
+    assert np.abs(tips[0] - drawn).max() <= 2.0**-53 * ROCKERS[0]
+    assert (np.abs(np.diff(tips, axis=0)) < 0.1 * ROCKERS[0]).all()
+    # The follower stays on the far side of the line from the even tip to the odd pivot.
+    y, z = tips[:, 0, 1], tips[:, 0, 2]
+    across = -y * (tips[:, 1, 2] - z) - (RISE - z) * (tips[:, 1, 1] - y)
+    assert (across < 0.0).all() or (across > 0.0).all()
+
+
+def test_rockers_of_a_long_chain_turn_as_those_of_the_single_linkage() -> None:
+    single, long = (FourBarChain(n).closed_form(TIMES) for n in (2, 501))
+    assert np.array_equal(long[:, :2], single)
+    assert np.array_equal(long[:, 500, 1:], single[:, 0, 1:])
+    assert np.array_equal(long[:, 499, 1:], single[:, 1, 1:])
+    assert (np.ptp(long[:, :, 2], axis=0) > 30.0).all()
+    assert long[0, 500, 0] == 500 * LANE
+
+
+@pytest.mark.parametrize("way", SOLVERS)
+@pytest.mark.parametrize("unknowns", [6, 15, 48])
+def test_every_way_finds_the_closed_form(way: str, unknowns: int) -> None:
+    (row,) = race([LongChain(way, unknowns).runner(ROW)], Effort(repeats=1))
+    # Series and Newton keep to the tolerance; a step of scipy that ends at 1e-12 of the coordinates leaves
+    # less, because its error falls faster than its steps.
+    assert row.error is not None
+    assert row.error <= TOLERANCE
+    assert row.numbers == len(INSTANTS) * unknowns
+
+
+def test_another_assembly_is_no_answer_and_a_small_error_is_told_with_its_size() -> None:
+    task = LongChain("series", 12)
+    right = FourBarChain.with_unknowns(12).closed_form(INSTANTS)
+    off = right.copy()
+    off[3, 2, 1] += 1e-6
+    assert task.check(off).quantities["position"]["error"] == pytest.approx(1e-6, rel=1e-6)
+    other = right.copy()
+    # The last rocker on the other side of the line from the tip before it to its own pivot.
+    pivot, before = np.array([0.0, RISE]), right[:, 2, 1:]
+    along = (pivot - before) / np.linalg.norm(pivot - before, axis=-1)[:, None]
+    foot = before + along * np.sum((right[:, 3, 1:] - before) * along, axis=-1)[:, None]
+    other[:, 3, 1:] = 2.0 * foot - right[:, 3, 1:]
+    rods = [np.linalg.norm(tips[:, 3] - tips[:, 2], axis=-1) for tips in (right, other)]
+    assert np.allclose(*rods, rtol=1e-12)
+    with pytest.raises(NoNumbers, match="tip_3"):
+        task.check(other)
+    with pytest.raises(NoNumbers, match="tip_0 is nan"):
+        task.check(np.full_like(right, np.nan))
+
+
+def test_a_chain_has_three_unknowns_a_rocker() -> None:
+    for rockers, chain in ((5, FourBarChain.with_unknowns(15)), (500, FourBarChain.with_unknowns(1500))):
+        assert chain.rockers == rockers
+        assert chain.topology.layout.unknowns == 3 * rockers
+        assert all(one != other for one, other in pairwise(chain.tips))
+    with pytest.raises(ValueError, match="allowed: 3, 6, 9"):
+        FourBarChain.with_unknowns(16)

@@ -1,0 +1,117 @@
+"""A race measures what it says it does: on a fake clock, of runs whose errors and times are known."""
+
+from collections import Counter
+
+import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
+from toy_ways import FakeClock, Toy
+
+from validate.cost.race import FULL, QUICK, Effort, LeftOut, race
+from validate.cost.row import Row
+
+
+def raced(*toys: Toy, effort: Effort = FULL) -> list[Row]:
+    """The rows of positions."""
+    rows = race([toy.runner for toy in toys], effort, clock=toys[0].clock)
+    return [row for row in rows if row.quantity != "wheel"]
+
+
+def test_set_up_and_solving_have_the_times_that_they_take() -> None:
+    position, wheel = race([(toy := Toy("toy")).runner], FULL, clock=toy.clock)
+    assert position.set_up == pytest.approx(20e-3, rel=1e-12)
+    assert (position.lower, position.time, position.upper) == pytest.approx((5e-4,) * 3, rel=1e-12)
+    assert position.repeats == FULL.repeats >= QUICK.repeats
+    assert position.first == pytest.approx(25e-3, rel=1e-12)
+    assert (position.error, position.numbers, position.work) == (1e-9, 3, "steps 4")
+    # What is not given is said, and has no error of zero.
+    assert (wheel.quantity, wheel.verdict, wheel.reason) == ("wheel", "left out", "gives no angles")
+    assert (wheel.error, wheel.time, wheel.poses) == (None, None, 0)
+
+
+def test_whatever_it_was_started_with_a_run_has_one_thread() -> None:
+    with threadpool_limits(limits=2):
+        before = {pool["num_threads"] for pool in threadpool_info()}
+        seen: list[int] = []
+        raced(Toy("toy", before=lambda _: seen.extend(pool["num_threads"] for pool in threadpool_info())))
+        assert {pool["num_threads"] for pool in threadpool_info()} == before
+    assert set(seen) == {1}
+
+
+def test_the_first_run_is_told_apart_from_the_others() -> None:
+    toy = Toy("toy")
+    toy.before = lambda phase: toy.clock.advance(10**9 if not toy.runs and phase == "set-up" else 0)
+    [row] = raced(toy)
+    assert row.first is not None
+    assert row.first > 1.0
+    assert row.set_up == pytest.approx(20e-3)
+
+
+def test_a_quick_run_is_repeated_until_a_sample_lasts_and_a_collector_never_runs() -> None:
+    toy = Toy("toy", costs={"solve": 1_000_000})
+    raced(toy)
+    # The first, the one that warms up, and samples of 20 ms.
+    assert toy.runs == 2 + FULL.repeats * 20
+    assert not toy.collecting
+
+
+@pytest.mark.parametrize(("seconds", "repeats", "runs"), [(1.0, 9, 11), (3.0, 6, 8), (11.0, 1, 1)])
+def test_repeats_are_as_many_as_the_time_allows(seconds: float, repeats: int, runs: int) -> None:
+    toy = Toy("slow", costs={"solve": int(seconds * 1e9)})
+    [row] = raced(toy)
+    assert (row.repeats, toy.runs) == (repeats, runs)
+    assert row.time == pytest.approx(seconds / 10)
+
+
+def test_runs_take_turns_in_another_order_each_round() -> None:
+    log: list[str] = []
+    clock = FakeClock()
+    toys = [Toy(name, clock, {"solve": 10**8}) for name in "abcde"]
+    for toy in toys:
+        toy.before = lambda phase, name=toy.name: log.append(name) if phase == "solve" else None
+    raced(*toys)
+    turns = log[2 * len(toys) :]
+    rounds = [tuple(turns[i : i + 5]) for i in range(0, len(turns), 5)]
+    assert len(rounds) == FULL.repeats
+    assert all(sorted(order) == list("abcde") for order in rounds)
+    assert len(set(rounds)) > FULL.repeats // 2
+
+
+def failing(phase: str, error: Exception, run: int) -> Toy:
+    """A toy that raises in a phase of one of its runs."""
+    seen: Counter[str] = Counter()
+
+    def before(now: str) -> None:
+        seen[now] += 1
+        if now == phase and seen[now] == run:
+            raise error
+
+    return Toy("toy", costs={"set-up": 10**8}, before=before)
+
+
+@pytest.mark.parametrize("phase", ["set-up", "solve"])
+@pytest.mark.parametrize("run", [1, 2, 5])
+def test_what_breaks_down_in_any_run_has_a_failed_row_and_no_time(phase: str, run: int) -> None:
+    toy = failing(phase, ZeroDivisionError("by\nnothing"), run)
+    row, fine = raced(toy, Toy("other", toy.clock))
+    assert (row.verdict, row.reason) == ("failed", "ZeroDivisionError: by nothing")
+    assert (row.time, row.error, row.poses) == (None, None, 0)
+    assert fine.verdict == "measured"
+
+
+@pytest.mark.parametrize("error", [LeftOut("not for struts"), ImportError("not for struts")])
+def test_what_does_not_apply_is_left_out(error: Exception) -> None:
+    [row] = raced(failing("set-up", error, 1))
+    assert (row.verdict, row.reason) == ("left out", "not for struts")
+
+
+def test_progress_counts_to_its_end_whatever_becomes_of_a_run() -> None:
+    told: list[tuple[str, int, int]] = []
+    toys = [Toy("a"), failing("solve", ValueError("no"), 6), Toy("c")]
+    for toy in toys:
+        toy.clock = toys[0].clock
+    race([toy.runner for toy in toys], FULL, lambda *what: told.append(what), toys[0].clock)
+    done = [number for _, number, _ in told]
+    assert done == sorted(done)
+    assert {of for *_, of in told} == {3 * (FULL.repeats + 1)}
+    assert max(done) < 3 * (FULL.repeats + 1)
+    assert any(words == "scene: a, repeat 3" for words, *_ in told)

@@ -1,0 +1,244 @@
+"""The study goes through its parts, keeps what it measured, and goes on where it was stopped."""
+
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, solve_poses
+from validate.cost import study as studying
+from validate.cost.growth import lines
+from validate.cost.instants import study_instants
+from validate.cost.parts import accuracy, effects, loading, unrelated
+from validate.cost.parts.effects import CHOICES, NO_EFFECT
+from validate.cost.parts.unrelated import NEAR, OTHERS, as_scene, drawn
+from validate.cost.race import Effort, Found, Runner, race
+from validate.cost.row import Row
+from validate.cost.scenes import STUDY_SCENES, own_scene, study_scene
+from validate.cost.store import Store, measured_here, read_rows
+from validate.cost.study import Study, measure
+from validate.cost.way import Way
+from validate.cost.ways.inputs import laws_at
+from validate.cost.ways.registry import WAYS, ways_named
+
+STEER = study_scene("steer", own_scene("steer"))
+FEW = Effort(repeats=2, least=0.0)
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(studying, "QUICK", FEW)
+
+
+def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None:
+    ways = ways_named(["series", "absolute", "series-differences"])
+    runners = accuracy.runners_of(STEER, ways)
+    count = {way.name: sum(one.row.way == way.name for one in runners) for way in ways}
+    assert count == {"series": 24, "absolute": 2, "series-differences": 5}
+    bare = study_scene("bare", STEER.positions_only())
+    assert len(accuracy.runners_of(bare, ways)) == 13
+    rows = race(accuracy.runners_of(STEER, ways, quick=True), FEW)
+    quantities = {row.quantity for row in rows if row.way == "series"}
+    assert quantities == {"position", *dict.fromkeys(row.quantity for row in rows)}
+    assert {"velocity", "acceleration", "angular_velocity", "angular_acceleration"} < quantities
+    assert all(row.verdict == "measured" and row.poses == 24 for row in rows)
+
+
+def test_a_quick_study_takes_the_first_and_the_last_setting_and_some_between() -> None:
+    assert accuracy.chosen(range(12), 3) in ([0, 5, 11], [0, 6, 11])
+    assert accuracy.chosen(range(2), 3) == [0, 1]
+    assert accuracy.chosen(range(12), None) == list(range(12))
+
+
+def test_a_way_that_is_not_installed_is_left_out_and_one_that_refuses_has_failed() -> None:
+    def refuses(scene: Scene, value: float) -> Any:
+        raise ValueError("it does not want to")
+
+    ways = [Way("a", "", refuses, (1.0,), package="no_such_package"), Way("b", "", refuses, (1.0,))]
+    rows = race(accuracy.runners_of(STEER, ways), FEW)
+    assert {(row.way, row.verdict, row.reason) for row in rows} == {
+        ("a", "left out", "needs the package 'no_such_package', which is not installed"),
+        ("b", "failed", "ValueError: it does not want to"),
+    }
+
+
+def test_a_scene_without_a_pose_fails_with_the_reason_of_the_reference() -> None:
+    inputs = {**STEER.scene.inputs, "rack": {"constant": 200.0}}
+    far = study_scene("far", STEER.scene.model_copy(update={"inputs": inputs}))
+
+    def solves(scene: Scene, value: float) -> Any:
+        return lambda instants: None
+
+    rows = race(accuracy.runners_of(far, [Way("a", "", solves, (1.0,))]), FEW)
+    assert all(row.reason.startswith("there is no reference to hold it to: ") for row in rows)
+
+
+def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, few: None) -> None:
+    path, here = tmp_path / "rows", measured_here("test")
+    study = Study(("accuracy",), (STEER,), ways_named(["series"]), quick=True)
+    rows = measure(study, Store(path, here))
+    before = path.read_bytes()
+    again = measure(study, Store(path, here), lambda *_: pytest.fail("measured again"))
+    assert (again, path.read_bytes()) == (rows, before)
+    assert {row.program for row in rows} == {here.program}
+    more = measure(replace(study, ways=ways_named(["series", "map"])), Store(path, here))
+    assert more[: len(rows)] == rows
+    assert {row.way for row in more[len(rows) :]} == {"map"}
+    changed = replace(STEER, digest="another")
+    assert not {row.key for row in measure(replace(study, scenes=(changed,)), Store(path, here))} & {
+        row.key for row in rows
+    }
+
+
+PROGRAM = """
+import sys, time
+from pathlib import Path
+from validate.cost import study
+from validate.cost.race import Found, Runner
+from validate.cost.row import Row
+from validate.cost.store import Store, measured_here
+from validate.cost.scenes import study_scene, own_scene
+def runners(scene, ways, quick):
+    def run():
+        time.sleep(0.0 if scene.name == "a" else 1000.0)
+    row = Row("accuracy", scene.name, "w", digest=scene.digest)
+    return [Runner(row, lambda: run, lambda _: Found({"position": {}}))]
+study.accuracy.runners_of = runners
+scenes = tuple(study_scene(name, own_scene("steer")) for name in "ab")
+study.measure(study.Study(("accuracy",), scenes, ()), Store(Path(sys.argv[1]), measured_here()))
+"""
+
+
+def test_a_killed_run_keeps_the_scenes_that_it_has_done_and_goes_on_with_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "rows"
+    process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(path)])
+    try:
+        while process.poll() is None and not path.exists():
+            time.sleep(0.05)
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    assert [row.scene for row in read_rows(path)] == ["a"]
+    kept = path.read_bytes()
+    raced: list[str] = []
+
+    def runners(scene: Any, ways: Any, quick: bool) -> list[Runner]:
+        def run() -> None:
+            raced.append(scene.name)
+
+        row = Row("accuracy", scene.name, "w", digest=scene.digest)
+        return [Runner(row, lambda: run, lambda _: Found({"position": {}}))]
+
+    monkeypatch.setattr(accuracy, "runners_of", runners)
+    scenes = tuple(study_scene(name, own_scene("steer")) for name in "ab")
+    rows = measure(Study(("accuracy",), scenes, ()), Store(path, measured_here()))
+    assert [row.scene for row in rows] == ["a", "b"]
+    assert set(raced) == {"b"}
+    assert path.read_bytes().startswith(kept)
+
+
+def test_growth_goes_on_with_the_size_that_it_was_stopped_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[int | None] = []
+
+    def planted(task: Any, row: Row, limits: Any) -> list[Row]:
+        if len(done) == 3:
+            raise KeyboardInterrupt
+        done.append(row.size)
+        return [replace(row, quantity="position", time=1e-9, set_up=0.0)]
+
+    monkeypatch.setattr(lines.Line.rows, "__defaults__", (planted,))
+    study = Study(("growth",), (STEER,), ways_named(["series"]), quick=True)
+    path = tmp_path / "rows"
+    with pytest.raises(KeyboardInterrupt):
+        measure(study, Store(path, measured_here()))
+    assert len(read_rows(path)) == 3
+    done[:] = [0] * 4
+    rows = measure(study, Store(path, measured_here()))
+    assert len(rows) == 8
+    assert len(done) == 4 + 5
+
+
+def test_parts_are_asked_for_by_name_and_unrelated_inputs_of_the_users_scene_or_of_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scenes = tuple(study_scene(name, own_scene(name)) for name in STUDY_SCENES)
+    raced = list(Study(("unrelated",), scenes, WAYS, quick=True).races())
+    assert {runner.row.scene for runners in raced for runner in runners} == {"bounce-and-steer"}
+    raced = list(Study(("effects", "unrelated"), (STEER,), WAYS, quick=True, own=True).races())
+    assert [(runners[0].row.part, runners[0].row.scene) for runners in raced] == [
+        ("effects", "steer"),
+        ("unrelated", "steer"),
+    ]
+    assert list(Study(("growth",), scenes, WAYS).races()) == []
+    assert not Study(("accuracy",), scenes, WAYS).lines()
+
+
+def test_reading_each_effect_stands_beside_a_copy_of_the_same_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(effects, "INSTANTS_QUICK", 500)
+    rows = race(effects.runners_of(STEER, quick=True), FEW)
+    assert {(row.setting, row.quantity) for row in rows} == {
+        (c, q) for c in CHOICES for q in ("read", "copy")
+    }
+    numbers = {row.setting: row.numbers for row in rows}
+    assert numbers[NO_EFFECT] == 3 * len(STEER.scene.mechanism.topology.points)
+    assert numbers["velocity"] == 2 * (numbers[NO_EFFECT] or 0)
+    assert all(row.verdict == "measured" and row.poses == 500 for row in rows)
+
+
+def test_a_process_that_fails_is_a_failed_row_with_what_it_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    wrong = {"python": ("-c", "pass"), "wrong": ("-c", "raise SystemExit('no such thing')")}
+    monkeypatch.setattr(loading, "LOADED", wrong)
+    found = {row.way: row for row in race(loading.runners_of(quick=True), FEW)}
+    assert found["python"].verdict == found["Scene.load('steer')"].verdict == "measured"
+    assert (found["python"].time or 0.0) > 1e-3
+    assert found["wrong"].reason == "NotRun: ended with status 1: no such thing"
+
+
+@pytest.mark.parametrize("name", ["bounce-and-steer", "double-wishbone"])
+def test_every_way_at_unrelated_inputs_is_as_near_as_asked(name: str) -> None:
+    study = study_scene(name, own_scene(name))
+    rows = race(unrelated.runners_of(study, WAYS, quick=True, poses=(300, 10)), FEW)
+    assert {row.way for row in rows} == {"map", "one by one", *OTHERS}
+    for row in rows:
+        assert row.verdict == "measured", row
+        assert row.poses == (10 if row.way in OTHERS else 300)
+        assert 0.0 < (row.error or 0.0) < NEAR
+
+
+def test_a_scene_that_jumps_has_the_same_inputs_as_those_that_are_solved_together() -> None:
+    scene = Scene.load("bounce-on-a-heaving-chassis")
+    ranges, inputs = drawn(scene, 50)
+    jumping, instants = as_scene(scene, inputs, 20)
+    laws = laws_at(jumping, instants)
+    for name, values in inputs.items():
+        np.testing.assert_array_equal(laws[name][:, 0], values[:20])
+    assert not laws["heave"][:, 0].any()
+    driven = laws_at(scene, study_instants(scene))["arm_angle"][:, 0]
+    assert driven.min() - 0.05 < ranges["arm_angle"][0] < ranges["arm_angle"][1] < driven.max() + 0.05
+
+
+def test_poses_that_are_wrong_or_not_proven_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    study = study_scene("bounce-and-steer", own_scene("bounce-and-steer"))
+
+    def changed(**change: Any) -> Row:
+        def solve(scene: Scene, inputs: Any, tolerance: float) -> Any:
+            found = solve_poses(scene, inputs, tolerance)
+            return replace(found, **{name: how(getattr(found, name)) for name, how in change.items()})
+
+        monkeypatch.setattr(unrelated, "solve_poses", solve)
+        return race(unrelated.runners_of(study, (), poses=(300, 24)), FEW)[1]
+
+    off = changed(position=lambda places: {name: place + 1e-6 for name, place in places.items()})
+    assert off.error == pytest.approx(1e-6, rel=1e-3)
+    doubtful = changed(bound=lambda bound: np.where(np.arange(len(bound)) == 250, 2e-9, bound))
+    assert (doubtful.verdict, doubtful.reason) == ("failed", "is proven to 2e-09 mm only, not to 1e-09 mm")

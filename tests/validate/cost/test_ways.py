@@ -1,0 +1,287 @@
+"""Every way gives what a scene asks for, as exactly as it is set; no failure of one passes for an answer."""
+
+import sys
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import PointcoordError, Scene, SceneError, simulate
+from validate.cost.errors import Truth, errors_of, truth_of
+from validate.cost.instants import study_instants
+from validate.cost.race import LeftOut
+from validate.cost.scenes import STUDY_SCENES, own_scene
+from validate.cost.way import Answer, Way
+from validate.cost.ways import scipy_solvers
+from validate.cost.ways.registry import OURS, WAYS, ways_named
+from validate.cost.ways.scipy_solvers import SolverStopped
+from validate.extras import MissingPackage
+from validate.peers import program
+from validate.peers.linkage import PeerError
+
+# What solves each instant, each as finely as it can be set.
+EXACT = [way.name for way in WAYS if way.name not in ("printed", "map", "series") and not way.rates_only]
+PEERS = ("mujoco", "exudyn")
+TRUTHS: dict[str, Truth] = {}
+
+
+def way(name: str) -> Way:
+    return ways_named([name])[0]
+
+
+def answer(name: str, scene: Scene, instants: Any, value: float | None = None) -> Answer:
+    found = way(name)
+    return found.prepare(scene, found.values[-1] if value is None else value)(instants)
+
+
+def errors(name: str, scene: Scene, value: float | None = None, count: int = 9) -> dict[str, float]:
+    """The largest by quantity; nothing that the scene asks for is missing."""
+    key, instants = f"{scene.model_dump_json()} {count}", study_instants(scene, count)
+    if key not in TRUTHS:
+        TRUTHS[key] = truth_of(scene, instants)
+    found = errors_of(answer(name, scene, instants, value), TRUTHS[key])
+    assert found.not_given == {}
+    return {quantity: columns["error"] for quantity, columns in found.quantities.items()}
+
+
+@pytest.mark.parametrize("name", STUDY_SCENES)
+@pytest.mark.parametrize("value", [1e-2, 1e-6, 1e-10])
+@pytest.mark.parametrize("who", OURS)
+def test_no_position_of_ours_is_farther_off_than_it_was_asked_to_be(
+    who: str, value: float, name: str
+) -> None:
+    # Beside it there is rounding: 1e-16 of 1000 mm, times a condition number of 1e4 near the toggle.
+    assert errors(who, own_scene(name), value)["position"] < value + 1e-11
+
+
+@pytest.mark.parametrize("name", [*STUDY_SCENES[:-1], "five-link", "semi-trailing-arm"])
+@pytest.mark.parametrize("who", EXACT)
+def test_what_solves_each_instant_is_off_by_its_rounding_in_every_quantity(who: str, name: str) -> None:
+    # Coordinates of up to 1024 mm; a last step of 1e-12 of them leaves as much, and these cars raise it by
+    # some ten and in what is twice differentiated by another ten. Others square the last step.
+    limit = 1e-8 if who.startswith(("scipy", "least")) else 1e-10
+    value = None if who == "absolute" else 1e-12
+    for quantity, error in errors(who, own_scene(name), value).items():
+        assert error < limit, quantity
+
+
+@pytest.mark.parametrize("who", ["newton", "chord", "absolute", "relative", *PEERS])
+def test_beside_the_toggle_positions_are_off_by_rounding_times_ten_thousand(who: str) -> None:
+    assert errors(who, own_scene("near-toggle"))["position"] < 1e-8
+
+
+@pytest.mark.parametrize("who", ["relative", "scipy-root", "scipy-root-jac", "least-squares", *PEERS])
+def test_the_error_follows_the_setting(who: str) -> None:
+    found = [errors(who, own_scene("off-axis-strut"), value)["position"] for value in (1e-2, 1e-12)]
+    assert 1e-6 < found[0] < 100.0
+    assert found[1] < 1e-4 * found[0]
+
+
+@pytest.mark.parametrize("who", ["series", "newton"])
+def test_a_way_gives_what_a_motion_gives_at_the_same_instants(who: str) -> None:
+    scene = Scene.load("bounce-on-a-heaving-chassis").model_copy(update={"tolerance": 1e-9})
+    motion, mine = simulate(scene, who), answer(who, scene, scene.instants, 1e-9).numbers
+    theirs = {q: dict(c) for q, c in motion.numbers.items() if c.computed}
+    assert {q: set(names) for q, names in mine.items()} == {q: set(names) for q, names in theirs.items()}
+    for quantity, names in theirs.items():
+        for name, array in names.items():
+            np.testing.assert_allclose(mine[quantity][name], array, rtol=1e-13, atol=1e-12)
+
+
+@pytest.mark.parametrize("who", ["series", "map", "newton", "absolute", "relative", "scipy-root-jac", *PEERS])
+def test_a_chassis_that_moves_and_an_origin_far_away_are_in_the_numbers(who: str) -> None:
+    content = Scene.load("bounce-on-a-heaving-chassis").model_dump(exclude_none=True)
+    points = content["mechanism"]["points"]
+    content["mechanism"]["points"] = {name: [x + 1e5, y, z] for name, (x, y, z) in points.items()}
+    found = errors(who, Scene.from_mapping(content))
+    # A place 1e5 mm away is rounded by 1e-11 mm.
+    assert found["position"] < 4e-11
+    assert found["velocity"] < 1e-8
+    assert found["acceleration"] < 1e-7
+
+
+@pytest.mark.parametrize("who", ["series-differences", "newton-differences"])
+def test_differences_are_off_by_the_square_of_their_step_and_then_by_rounding(who: str) -> None:
+    scene = own_scene("double-wishbone")
+    coarse, fine, finest = (errors(who, scene, share) for share in (1e-2, 1e-3, 1e-6))
+    for quantity in ("velocity", "angular_velocity", "acceleration", "angular_acceleration"):
+        assert coarse[quantity] / fine[quantity] == pytest.approx(100.0, rel=0.03), quantity
+    # The second difference of places that are rounded by 1e-13 mm, over the square of a step of 2e-6 s.
+    assert 1e-4 < finest["acceleration"] < 1.0
+    assert finest["velocity"] < 1e-6
+    assert coarse["position"] < 1e-11
+
+
+def test_near_an_end_of_the_time_differences_are_of_a_parabola_inside() -> None:
+    scene = own_scene("double-wishbone")
+    ends = np.array([0.001, 1.999])  # a step of 0.02 s does not fit beside them
+    right = truth_of(scene, ends)
+    coarse, fine = (
+        errors_of(answer("series-differences", scene, ends, share), right).quantities
+        for share in (1e-2, 5e-3)
+    )
+    # Off by the square of the step and by the step itself, and 0.001 s of the way in.
+    assert coarse["velocity"]["error"] / fine["velocity"]["error"] == pytest.approx(4.0, rel=0.25)
+    assert coarse["acceleration"]["error"] / fine["acceleration"]["error"] == pytest.approx(2.0, rel=0.2)
+
+
+def test_the_printed_formulas_are_right_in_position_and_wrong_in_acceleration() -> None:
+    found = errors("printed", own_scene("bounce"))
+    assert found["position"] < 1e-11
+    assert found["acceleration"] > 1.0
+
+
+def test_what_a_way_is_not_for_is_left_out_with_the_reason() -> None:
+    for name in ("off-axis-strut", "double-wishbone"):
+        with pytest.raises(
+            LeftOut, match="the strut that the paper prints, type = macpherson with closure = collinear"
+        ):
+            way("printed").prepare(own_scene(name), 1e-9)
+    content = own_scene("steer").model_dump(exclude_none=True)
+    content["time"] = {"start": 0.1, "stop": 0.1, "samples": 1}
+    with pytest.raises(LeftOut, match="one instant"):
+        way("newton-differences").prepare(Scene.from_mapping(content), 1e-3)
+    with pytest.raises(LeftOut, match="asks for no rates"):
+        way("series-differences").prepare(own_scene("steer").model_copy(update={"effects": ("toe",)}), 1e-3)
+
+
+@pytest.mark.parametrize("who", [one.name for one in WAYS if not one.rates_only])
+@pytest.mark.parametrize("effects", [(), ("wheel_angles",), ("velocity",), ("knuckle_rates", "toe")])
+def test_a_way_gives_what_a_scene_asks_for_and_no_rates_beside(who: str, effects: tuple[str, ...]) -> None:
+    scene = own_scene("bounce").model_copy(update={"effects": effects})
+    found = errors(who, scene, count=3)
+    if who != "printed":
+        assert all(error < 1e-7 for error in found.values())
+    given = answer(who, scene, study_instants(scene, 3)).numbers
+    # The tree and the programs tell of all rates or of none.
+    assert "velocity" in found or not effects or "velocity" not in given
+
+
+@pytest.mark.parametrize("who", EXACT)
+def test_a_way_starts_from_where_the_scene_does_at_any_instants(who: str) -> None:
+    scene = Scene.load("bounce")
+    late = np.array([1.9, 2.05, 2.6])
+    some = answer(who, scene, late).numbers["position"]["wheel_centre"]
+    every = answer(who, scene, np.linspace(0.0, 2.6, 53)).numbers["position"]["wheel_centre"]
+    assert np.abs(some - every[[38, 41, 52]]).max() < 1e-8
+
+
+@pytest.mark.parametrize("who", [name for name in (*OURS, *EXACT) if name != "map"])
+def test_what_was_done_is_counted_and_a_dense_way_does_no_more_for_more_instants(who: str) -> None:
+    scene = own_scene("steer")
+    few, many = (answer(who, scene, study_instants(scene, count)).work for count in (4, 40))
+    assert sum(few.values()) > 0
+    assert (few == many) == way(who).dense
+
+
+def steered(speed: float) -> Scene:
+    """The paper's car, its rack going at mm/s from the middle."""
+    content = Scene.load("steer").model_dump(exclude_none=True)
+    content["inputs"]["rack"] = {"polynomial": [0.0, speed]}
+    content["time"] = {"start": 0.0, "stop": 2.0, "samples": 81}
+    return Scene.from_mapping(content)
+
+
+@pytest.mark.parametrize("who", EXACT)
+def test_a_motion_through_a_fold_is_no_answer(who: str) -> None:
+    scene = steered(101.0)  # the tie rod ends at 130 mm
+    solve = way(who).prepare(scene, 1e-9)
+    whole = scene.instants[scene.instants < 1.2]
+    # Differences for a Jacobian fail where a coordinate is nearly zero, as at the middle of the rack.
+    assert len(solve(whole).numbers["position"]["wheel_centre"]) == len(whole)
+    with pytest.raises(Exception, match=r"t = 1\.|instant") as caught:
+        solve(scene.instants)
+    assert "Error" in type(caught.value).__name__ or isinstance(caught.value, SolverStopped | PointcoordError)
+
+
+def answering(change: Callable[[Any], Any]) -> Callable[..., Any]:
+    """SciPy's solver, whose answers are changed."""
+    real = scipy_solvers.root
+    return lambda *arguments, **options: change(real(*arguments, **options))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda it: SimpleNamespace(**{**it, "success": False, "message": "gave\nup"}), "gave up"),
+        (lambda it: SimpleNamespace(**{**it, "fun": it.fun + 1e-3}), r"the equations are left at 0\.001"),
+    ],
+)
+def test_a_solver_of_scipy_that_fails_is_told(
+    change: Any, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scipy_solvers, "root", answering(change))
+    scene = own_scene("off-axis-strut")
+    with pytest.raises(SolverStopped, match=rf"scipy\.optimize\.root at t = 0\.0\d+ s: {words}"):
+        answer("scipy-root-jac", scene, scene.instants)
+
+
+def test_an_answer_of_scipy_on_another_side_than_is_drawn_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = own_scene("off-axis-strut")
+    real, seen = np.linalg.slogdet, []
+
+    def turned(matrices: Any) -> Any:
+        signs, logs = real(matrices)
+        seen.append(len(signs))
+        return np.where(np.arange(len(signs)) == 7, -signs, signs), logs
+
+    monkeypatch.setattr(np.linalg, "slogdet", turned)
+    with pytest.raises(SolverStopped, match="another assembly than is drawn"):
+        answer("scipy-root-jac", scene, scene.instants)
+    assert seen
+
+
+def test_a_wrong_number_shows_as_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        scipy_solvers,
+        "root",
+        answering(lambda it: SimpleNamespace(**{**it, "x": it.x + 1e-7, "get": it.get})),
+    )
+    # A ten-millionth of 1024 mm.
+    assert errors("scipy-root-jac", own_scene("off-axis-strut"))["position"] > 5e-5
+
+
+@pytest.mark.parametrize("who", PEERS)
+def test_a_program_keeps_to_the_drawings_assembly_beside_a_toggle(
+    who: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The arm comes to a ten-thousandth of its toggle, and Newton's first try jumps to the other assembly."""
+    scene = own_scene("near-toggle")
+    solve = way(who).prepare(scene, 1e-12)
+    truth = truth_of(scene, scene.instants)
+    assert errors_of(solve(scene.instants), truth).quantities["position"]["error"] < 1e-8
+    # Planted: any step is taken, and no determinant is looked at.
+    monkeypatch.setattr(program, "LONGEST_STEP", np.inf)
+    monkeypatch.setattr(program, "CONTRACTED", np.inf)
+    sign = getclosurevars(solve).nonlocals["engine"].sign
+    monkeypatch.setattr(program, "_sign", lambda *_: sign)
+    assert errors_of(solve(scene.instants), truth).quantities["position"]["error"] > 1.0
+
+
+@pytest.mark.parametrize("who", PEERS)
+def test_what_a_program_cannot_follow_or_what_is_another_car_is_refused(who: str) -> None:
+    scene = steered(500.0)
+    with pytest.raises(PeerError, match=r"at t = .*no pose is reached"):
+        answer(who, scene, scene.instants)
+    content = Scene.load("off-axis-strut").model_dump(exclude_none=True)
+    content["mechanism"]["points"]["rack_centre"] = [150.0, -330.0, 335.0]
+    with pytest.raises(SceneError, match="that is another car"):
+        way(who).prepare(Scene.from_mapping(content), 1e-12)
+
+
+@pytest.mark.parametrize("who", PEERS)
+def test_a_program_that_is_not_there_is_named(who: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, who, None)
+    monkeypatch.delitem(sys.modules, f"validate.peers.in_{who}", raising=False)
+    with pytest.raises(MissingPackage, match=rf"'{who}', which is not installed.*\[peers\]"):
+        way(who).prepare(Scene.load("bounce"), 1e-12)
+
+
+def test_ways_and_their_settings_are_told_apart_and_go_from_coarse_to_fine() -> None:
+    assert len({one.name for one in WAYS}) == len(WAYS) == 16
+    for one in WAYS:
+        values = [value or 0.0 for value in one.values]
+        assert values == sorted(values, reverse=True)
+        assert len({one.says(value) for value in one.values}) == len(values)

@@ -1,0 +1,199 @@
+"""Mechanisms are where other people's tables and closed forms have them.
+
+What the witness says of every shipped one is in tests/mechanisms/test_formulations.py.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mechanism_files import mechanism_file, plain, plain_scene
+from numpy.typing import NDArray
+from relative_cars import sine
+
+from validate.relative.errors import InputError, PoseError
+from validate.relative.model import Model, build
+from validate.spanning_tree.chassis import ChassisMotion
+
+Array = NDArray[np.float64]
+TABLES = json.loads((Path(__file__).parent / "vdsim_rear_axles.json").read_text("utf-8"))
+CAR = {"right": (0.0, -1.0, 0.0)}  # x forward, y left
+
+
+def held(values: Array) -> Array:
+    """An input that goes through values, without rates."""
+    return np.stack([values, 0.0 * values, 0.0 * values], axis=-1)
+
+
+def everything(model: Model, laws: dict[str, Array]) -> tuple[Any, Any]:
+    """Numbers and error bounds of a motion."""
+    poses = model.poses(laws, np.arange(float(len(next(iter(laws.values()))))))
+    motion = model.rates(poses, laws)
+    return model.numbers(poses, motion), model.claims(poses, motion, model.deviations(poses, motion))
+
+
+@pytest.mark.parametrize("name", TABLES["cars"])
+def test_a_rear_axle_moves_as_vdsim_says(name: str) -> None:
+    car = TABLES["cars"][name]
+    points = {point: 1000.0 * np.array(place) for point, place in car["points"].items()}
+    points["wheel_axis_inner"] = points["wheel_centre"] - (0.0, 100.0, 0.0)
+    table = np.array(car["table"])
+    model = build(plain(mechanism_file(name), {"points": points, **CAR}, ["wheel_travel"]))
+    numbers, _ = everything(model, {"wheel_travel": held(1000.0 * table[:, 0])})
+    track = (numbers["position"]["wheel_centre"][:, 1] - points["wheel_centre"][1]) / 1000.0
+    found = np.stack([numbers["wheel"]["camber"], numbers["wheel"]["toe"], track], axis=-1)
+    assert np.abs(found - table[:, 1:]).max() < car["accuracy"]
+    # Any other angle would be seen.
+    assert np.abs(table[:, 1:]).max(axis=0).min() > 1e4 * car["accuracy"]
+
+
+def test_a_slider_crank_is_its_closed_form_over_three_turns() -> None:
+    mechanism = plain_scene("slider-crank")
+    p = {name: np.array(place, dtype=float) for name, place in mechanism["points"].items()}
+    turn = np.linspace(0.0, 6.0 * np.pi, 121)
+    x, z = p["crank_pin"][0], p["crank_pin"][2]
+    pin = np.stack([x * np.cos(turn) + z * np.sin(turn), z * np.cos(turn) - x * np.sin(turn)], axis=-1)
+    rod = np.linalg.norm(p["piston"] - p["crank_pin"])
+    height = pin[:, 1] + np.sqrt(rod**2 - (pin[:, 0] - p["piston"][0]) ** 2)
+    numbers, claims = everything(build(mechanism), {"crank": held(turn)})
+    error = np.abs(numbers["position"]["piston"][:, 2] - height)
+    # The closed form's own roundings, some ten of 145 mm.
+    assert (error <= claims["position"]["piston"][:, 2] + 3e-13).all()
+
+
+def test_a_dead_point_is_not_passed_where_the_stroke_is_driven() -> None:
+    mechanism = plain_scene("slider-crank", ["stroke"])
+    model = build(mechanism)
+    reach = 145.0 - 130.0
+    with pytest.raises(PoseError, match="connecting_rod and stroke hold each other") as caught:
+        model.poses({"stroke": np.array([reach, reach + 5.0, reach + 60.0])}, np.arange(3.0))
+    p = {name: np.array(place, dtype=float) for name, place in mechanism["points"].items()}
+    length = np.linalg.norm(p["piston"] - p["crank_pin"]) + np.hypot(40.0, 5.0)
+    top = np.sqrt(length**2 - 10.0**2) - 130.0
+    # A fold is found to the root of rounding squared away: the way is halved to 2^-44 of itself.
+    assert caught.value.reached["stroke"] == pytest.approx(top, abs=1e-9)
+
+
+@pytest.mark.parametrize("contact", [False, True])
+def test_a_wheel_is_lifted_by_its_contact_point_or_a_distance(contact: bool) -> None:
+    car = TABLES["cars"]["five_link"]
+    points = {point: 1000.0 * np.array(place) for point, place in car["points"].items()}
+    points["wheel_axis_inner"] = points["wheel_centre"] - (0.0, 100.0, 8.0)
+    tables, radius = mechanism_file("five_link"), 305.0
+    tables["inputs"] = {
+        "lift": {"contact": ["wheel_axis_inner", "wheel_centre"]},
+        "strut": {"distance": ["wheel_centre", "upper_front_inner"]},
+    }
+    part = {"points": points, "wheel_radius": radius, **CAR}
+    drawn = np.linalg.norm(points["wheel_centre"] - points["upper_front_inner"])
+    law = np.linspace(-30.0, 30.0, 5) + (0.0 if contact else drawn)
+    name = "lift" if contact else "strut"
+    numbers, claims = everything(build(plain(tables, part, [name])), {name: held(law)})
+    centre, inner = (numbers["position"][n] for n in ("wheel_centre", "wheel_axis_inner"))
+
+    def lowest(centre: Array, inner: Array) -> Array:
+        axis = (centre - inner) / np.linalg.norm(centre - inner, axis=-1, keepdims=True)
+        return centre[..., 2] - radius * np.sqrt(1.0 - axis[..., 2] ** 2)
+
+    found = (
+        lowest(centre, inner) - lowest(points["wheel_centre"], points["wheel_axis_inner"])
+        if contact
+        else np.linalg.norm(centre - points["upper_front_inner"], axis=-1)
+    )
+    # A contact point is further out than what is claimed of the centre, whose own bounds are some 1e-12.
+    assert np.abs(found - law).max() < 1e-11
+    assert max(np.abs(claim).max() for claim in claims["position"].values()) < 1e-11
+    if not contact:
+        with pytest.raises(InputError, match="a distance above 0"):
+            everything(build(plain(tables, part, [name])), {name: held(np.array([-1.0]))})
+
+
+def test_rows_that_depend_on_others_are_left_out_by_name_and_checked_at_every_answer() -> None:
+    """The Bricard mechanism moves although its rows are as many as its joints."""
+    model = build(plain_scene("bricard"))
+    assert [row.name for row in model.tree.left_out.rows] == ["P4"]
+    mechanism = plain_scene("bricard")
+    laws = {name: held(np.linspace(0.0, 0.5, 6)) for name in mechanism["inputs"]}
+    everything(model, laws)
+    # Points that are off by 1e-7 mm leave the drawing dependent to rounding, and the motion not.
+    rng = np.random.default_rng(3)
+    for point, place in mechanism["points"].items():
+        mechanism["points"][point] = (np.array(place) + 1e-7 * rng.standard_normal(3)).tolist()
+    with pytest.raises(PoseError, match="follows from the other rows only as drawn"):
+        everything(build(mechanism), laws)
+
+
+def test_a_hinge_that_closes_a_loop_cannot_be_driven_by_its_turn() -> None:
+    """All four hinges of a planar four-bar: the loop's last hinge is cut, and a driven one is not."""
+    pins = {"A": (0, 0, 0), "B": (0, 0, 100), "C": (200, 0, 120), "D": (180, 0, 0)}
+    points = pins | {f"{name}2": (x, 30, z) for name, (x, _, z) in pins.items()}
+    tables = {
+        "title": "four-bar",
+        "bodies": {
+            "chassis": ["A", "A2", "D", "D2"],
+            "crank": ["A", "A2", "B", "B2"],
+            "coupler": ["B", "B2", "C", "C2"],
+            "rocker": ["C", "C2", "D", "D2"],
+        },
+        "inputs": {"turn": {"angle": "crank", "from": "drawing"}},
+    }
+    model = build(plain(tables, {"points": points}, ["turn"]))
+    assert len(model.tree.left_out.rows) == 3  # a planar loop says three times that its hinges are parallel
+    numbers, _ = everything(model, {"turn": held(np.linspace(0.0, 0.6, 7))})
+    places = numbers["position"]
+    for one, other in (("B", "C"), ("C", "D"), ("A", "B")):
+        drawn = np.linalg.norm(np.subtract(points[one], points[other]))
+        np.testing.assert_allclose(np.linalg.norm(places[one] - places[other], axis=-1), drawn, atol=1e-11)
+    assert np.abs(places["C"][:, 1]).max() < 1e-11
+
+
+def test_a_car_turns_right_handed_about_a_direction() -> None:
+    mechanism = plain_scene("double-wishbone")
+    mechanism["inputs"] |= {"roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"}}
+    quarter = np.array([[0.5 * np.pi, 0.0, 0.0]])
+    chassis = ChassisMotion.of(mechanism, {"roll": quarter})
+    assert chassis is not None
+    # About forward, which is -x of this car, y goes to -z and z to y.
+    for before, after in (([0.0, 1.0, 0.0], [0.0, 0.0, -1.0]), ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0])):
+        np.testing.assert_allclose(chassis.directions(np.array([before]))[0], after, atol=1e-15)
+
+
+def test_every_scene_of_a_moved_chassis_is_moved_as_a_whole() -> None:
+    mechanism = plain_scene("double-wishbone")
+    mechanism["inputs"] |= {
+        "roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"},
+        "heave": {"moves": "chassis", "along": "up"},
+    }
+    model = build(mechanism)
+    step, times = 1e-3, 0.4 + 1e-3 * np.arange(-2.0, 3.0)
+    laws = {
+        drive.input: sine(drive.drawn * (1.0 if drive.is_angle else model.unit), 0.1, 2.0, times)
+        for drive in model.tree.drives
+    }
+    laws |= {"roll": sine(0.02, 0.1, 3.0, times), "heave": sine(0.0, 20.0, 1.0, times)}
+    poses = model.poses(laws, times)
+    chassis = ChassisMotion.of(mechanism, laws)
+    assert chassis is not None
+    still = model.numbers(poses, model.rates(poses, laws))
+    moved = chassis.moved(still)
+    for name, place in moved["position"].items():
+        first = (place[0] - 8.0 * place[1] + 8.0 * place[3] - place[4]) / (12.0 * step)
+        second = (-place[0] + 16.0 * place[1] - 30.0 * place[2] + 16.0 * place[3] - place[4]) / (
+            12.0 * step**2
+        )
+        # step^4 of fifth derivatives, below 1e6 mm/s^5; rounding of 1e-13 mm over step and step^2.
+        np.testing.assert_allclose(moved["velocity"][name][2], first, atol=1e-6)
+        np.testing.assert_allclose(moved["acceleration"][name][2], second, atol=1e-5)
+    # The knuckle's turn is that of its points.
+    spin, rate = (moved[q]["knuckle"] for q in ("angular_velocity", "angular_acceleration"))
+    r, v, a = (
+        moved[q]["wheel_centre"] - moved[q]["tie_rod_outer"] for q in ("position", "velocity", "acceleration")
+    )
+    np.testing.assert_allclose(v, np.cross(spin, r), atol=1e-9)
+    np.testing.assert_allclose(a, np.cross(rate, r) + np.cross(spin, np.cross(spin, r)), atol=1e-9)
+    bounds = chassis.bounds(
+        still, {q: {n: np.full_like(x, 1e-12) for n, x in still[q].items()} for q in moved if q != "wheel"}
+    )
+    assert all((bound >= 1e-12).all() for bound in bounds["position"].values())

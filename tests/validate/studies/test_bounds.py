@@ -1,0 +1,163 @@
+"""Proven bounds against the reference on random cars, up to the poses where they lock."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from counted_study import worked_out
+from hypothesis import assume, given, settings, target
+from hypothesis import strategies as st
+
+from pointcoord import Scene
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.cars.accepted import cars
+from validate.cars.base_cars import variants
+from validate.cars.near_singular import NearPose, approach, near_pose
+from validate.cars.scene_content import content_of
+from validate.exit_status import ExitStatus
+from validate.output.table import text_of
+from validate.reference import InfeasibleError
+from validate.studies.bounds import Checks, bounds, fitted, held_pose, moving_instants
+from validate.studies.study import Row, Study
+
+EXAMPLES = settings.default.max_examples if settings.default else 100
+# An end and its pose take a second, so the short profile searches briefly and the deep one as long as any.
+searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 5)
+NUMBERS = st.integers(0, 2**32 - 1)
+# Ends of four mechanisms whose way there is short, by their numbers.
+ENDS = (4, 5, 7, 8)
+
+
+@st.composite
+def checks(draw: st.DrawFn) -> Checks:
+    """A random car held near the end of an input, at a distance that a search can move."""
+    car, variant = draw(cars())
+    names = draw(st.sampled_from(variant.input_sets))
+    pose = approach(
+        car,
+        variant,
+        names,
+        driven=draw(st.sampled_from(names)),
+        forward=draw(st.booleans()),
+        aside=draw(st.floats(-1.0, 1.0)),
+        distance=10.0 ** draw(st.floats(-12.0, -1.0)),
+    )
+    assume(pose is not None)
+    assert pose is not None
+    (row,) = held_pose(pose)
+    assume("refusal" not in row)
+    return Checks((row,))
+
+
+@searched
+@given(check=checks())
+def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(check: Checks) -> None:
+    (share,), (loss,) = check.share, check.loss
+    if 0.0 < share < math.inf:
+        target(math.log10(share), label="error / bound")
+        target(-math.log10(share), label="bound / error")
+    assert share <= 1.0, check
+    # Newton ends where its step is no larger than its own rounding: 6 u in each of 17 rows, C_u^-1 and the
+    # size of the car, where eps is 2 u; the reported point is rounded once more.
+    assert loss <= 17 * 6, check
+
+
+@settings(searched, max_examples=EXAMPLES if EXAMPLES > 100 else 2)
+@given(number=NUMBERS)
+def test_bounds_hold_between_the_ends_of_the_segments_of_a_motion(number: int) -> None:
+    answered = Checks(tuple(row for row in moving_instants(number, seed=1) if "refusal" not in row))
+    assert (answered.share <= 1.0).all(), answered
+
+
+def beside(pose: NearPose, distance: float) -> NearPose:
+    """The same end from another distance."""
+    outward = math.copysign(1.0, pose.inputs[pose.driven] - pose.home[pose.driven])
+    near = pose.inputs[pose.driven] + outward * (pose.distance - distance) * pose.reach
+    return replace(pose, inputs=pose.inputs | {pose.driven: near}, distance=distance)
+
+
+@pytest.fixture(scope="module")
+def poses() -> list[NearPose]:
+    return [near_pose(number) for number in ENDS]
+
+
+@pytest.fixture(scope="module")
+def held(poses: list[NearPose]) -> list[Row]:
+    """Each end from seven distances, over the decades from 1e-8 to 1e-2."""
+    near = [beside(pose, 10.0**-k) for pose in poses for k in range(2, 9)]
+    common = {"part": "held", "seconds": 0.0, "worker": "here"}
+    return [{**common, "number": i, **row} for i, pose in enumerate(near) for row in held_pose(pose)]
+
+
+def test_bounds_are_loose_by_about_one_digit_and_errors_follow_the_condition_number(held: list[Row]) -> None:
+    found = Checks(tuple(row for row in held if "refusal" not in row))
+    assert len(found.rows) >= 26
+    assert (found.share <= 1.0).all()
+    assert np.median(found.looseness["solved points"]) < 20.0
+    # Errors scatter by 0.6 decades, over 6 decades of distance (deviation 2) and 3 of rounding (1): slopes of
+    # a fit of 26 vary by 0.6 / (sqrt(26) 2) = 0.06 and 0.6 / (sqrt(26) 1) = 0.12; three times that is let.
+    assert abs(found.error_over_rounding.slope - 1.0) < 0.36
+    assert abs(found.error_over_distance.slope + 0.5) < 0.18
+
+
+def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
+    poses: list[NearPose], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from pointcoord.bounds import proof
+
+    honest = proof._reported_bound
+    monkeypatch.setattr(proof, "_reported_bound", lambda *a: honest(*a) * 1e-6)
+    (row,) = held_pose(beside(poses[0], 1e-4))
+    findings = bounds().summary([{"part": "held", "number": 0, **row}])
+    assert findings.status == ExitStatus.DISAGREE
+    assert "bounds below the error: 1" in text_of(findings.parts)
+
+
+def test_every_pose_is_counted_once_in_text_and_in_plain_data(held: list[Row]) -> None:
+    study: Study = bounds(1, motions=1, seed=0)
+    reason = "pointcoord: AssemblyError; reference: answers"
+    refused = {"part": "held", "number": 99, "suspension": variants()[0].words, "distance": 1e-12}
+    some = {"part": "moving", "number": 0, "suspension": held[0]["suspension"]}
+    rows = [*held, refused | {"refusal": reason}, {**held[0], **some}]
+    findings = study.summary(rows)
+    text, data = text_of(findings.parts), findings.data
+    assert findings.status == ExitStatus.AGREE
+    assert "bounds below the error: 0" in text
+    assert f"refused: 1\n  1  {reason}" in text
+    assert data["refusals"] == [{"reason": reason, "poses": 1}]
+    counts = {variant.words: data["held"][variant.words]["count"] for variant in variants()}
+    assert sum(counts.values()) == len(held)
+    for words, count in counts.items():
+        if count:
+            assert f"{count} poses of cars ({words}), held" in text
+            assert f"slope {data['held'][words]['error_over_rounding']['slope']:.3f}" in text
+    assert sum(one["count"] for one in data["moving"].values()) == 1
+
+
+def test_a_mechanism_without_carried_points_has_no_error_of_them() -> None:
+    (row,) = worked_out(replace(bounds(), tasks=bounds(6, 0).tasks[5:]))
+    assert row["suspension"] == "n four bar"
+    assert row["carried_error"] is row["carried_bound"] is None
+    assert Checks((row,)).share <= 1.0
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int, poses: list[NearPose]) -> None:
+    # The end is where the reference says so too, to 1e-11 of the range on either side.
+    for distance, there in ((1e-11, True), (-1e-11, False)):
+        pose = beside(poses[number], distance)
+        scene = Scene.from_mapping(content_of(pose.car, pose.inputs, effects=()))
+        if there:
+            reference_instant(scene, inputs_at(scene, 0.0))
+        else:
+            with pytest.raises(InfeasibleError):
+                reference_instant(scene, inputs_at(scene, 0.0))
+
+
+def test_power_laws_are_fitted() -> None:
+    fit = fitted(np.array([1.0, 10.0, 100.0, 1000.0]), np.array([2.0, 0.2, 0.02, 0.0]))
+    assert fit.slope == pytest.approx(-1.0)
+    assert fit.scatter < 1e-12
+    assert fit.poses == 3
+    assert math.isnan(fitted(np.array([1.0]), np.array([1.0])).slope)

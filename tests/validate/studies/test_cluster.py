@@ -1,0 +1,348 @@
+"""Studies on Dask: whoever works out a task, it is worked out once and recorded whole."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import dask
+import pandas
+import psutil
+import pytest
+from counted_study import counted, without_who_and_how_long, worked_out
+from program import ENVIRONMENT, PROGRAM
+
+from validate.cli import main
+from validate.extras import MissingPackage
+from validate.studies import cluster
+from validate.studies.hard_cases import hard
+from validate.studies.random_cars import random_cars
+from validate.studies.store import Store, adding_to, look
+from validate.studies.study import ClusterLost, NoCluster, Row, Task, TaskFailed, made_by
+
+
+def cluster_of(threads_per_worker: int = 1, **options: Any) -> Any:
+    distributed = cluster.quiet_dask()
+    pages = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
+    more = {"dashboard_address": None, "scheduler_kwargs": pages, "silence_logs": 100, "protocol": "tcp://"}
+    return distributed.LocalCluster(
+        host="127.0.0.1", threads_per_worker=threads_per_worker, **(more | options)
+    )
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """Of a cluster that this program did not start."""
+    with cluster_of(n_workers=1, processes=True) as other:
+        yield other.scheduler_address
+
+
+def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "WRITTEN", 0.3)
+    study = counted(60, tmp_path / "marks", pause=0.05)
+    before = dict[Path, bytes]()
+    with adding_to(tmp_path / "records", study) as store, cluster.opened("local", 2) as client:
+        pids = client.run(os.getpid)
+        assert len(set(pids.values())) == 2
+
+        def tell(done: int) -> None:
+            if done and not before:
+                time.sleep(0.5)  # until the scheduler knows that these are handed over
+                os.kill(pids[store.rows()[0]["worker"]], signal.SIGKILL)
+                before.update({file: file.read_bytes() for file in store.files()})
+                # Others can read what is there while the rest is worked out.
+                assert len(pandas.read_parquet(store.folder)) == done < 60
+
+        cluster.run(study, study.tasks, store, client, tell)
+        rows = store.rows(study.tasks)
+    assert [row["square"] for row in rows] == [number**2 for number in range(60)]
+    assert len(pandas.read_parquet(store.folder)) == 60, "nothing is recorded twice"
+    early = {number for file in before for number in pandas.read_parquet(file)["number"]}
+    begun = [int(line) for line in (tmp_path / "marks").read_text().split()]
+    assert early
+    assert all(begun.count(number) == 1 for number in early), "what was recorded is not worked out again"
+    assert {file: file.read_bytes() for file in before} == before
+    assert {row["threads"] for row in rows} == {1}
+    # The killed worker's tasks of the time, done by others.
+    assert len({row["worker"] for row in rows}) >= 2
+
+
+def test_processes_of_this_machine_listen_to_this_machine_only() -> None:
+    with cluster.opened("local", 1):
+        own = psutil.Process()
+        found = [c for one in (own, *own.children(recursive=True)) for c in one.net_connections("inet")]
+        ours = {c.laddr.ip for c in found if c.status == psutil.CONN_LISTEN}
+    assert ours == {"127.0.0.1"}
+
+
+def test_a_task_is_the_same_wherever_it_is_worked_out(
+    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cases = ["minus-infinity", "link-twice"]
+    words = ["study", "hard", *cases, "--records", str(tmp_path)]
+    assert main([*words, "--scheduler", address, "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert "; a study that is stopped goes on with the same command" in err
+    assert main(["hard", *cases, "--json", "-"]) == 0
+    there, here = (json.loads(text)["cases"] for text in (out, capsys.readouterr().out))
+    assert [{**case, "seconds": None} for case in there] == [{**case, "seconds": None} for case in here]
+    study = hard(["link-twice"])
+    rows = look(tmp_path).rows(study.tasks)
+    assert without_who_and_how_long(rows) == without_who_and_how_long(worked_out(study))
+    # Nobody is asked for what is recorded.
+    assert main([*words, "--scheduler", "tcp://127.0.0.1:1"]) == 0
+    assert "All as expected" in capsys.readouterr().out
+
+
+def test_a_worker_of_another_version_records_nothing(
+    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = dict(made_by())
+    monkeypatch.setattr(cluster, "made_by", lambda: {**mine, "numpy": "1.0"})
+    folder = tmp_path / "records"
+    assert main(["study", "random", "--scheduler", address, "--records", str(folder), "--count", "2"]) == 2
+    *_, line = capsys.readouterr().err.splitlines()
+    assert line.startswith("pointcoord: the worker tcp://127.0.0.1:")
+    assert f"runs something else: numpy {mine['numpy']}, here 1.0; install the same there" in line
+    assert not folder.exists()
+
+
+def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> None:
+    with adding_to(folder, study) as store, cluster.opened(other.scheduler_address) as client:
+        cluster.run(study, study.tasks, store, client, told)
+
+
+def test_a_worker_of_several_tasks_is_refused(tmp_path: Path) -> None:
+    with (
+        cluster_of(n_workers=1, threads_per_worker=2, processes=False) as other,
+        pytest.raises(NoCluster, match=r"takes 2 tasks at once.* --nthreads 1"),
+    ):
+        ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
+
+
+def test_a_cluster_without_workers_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "FIRST_WORKER", 0.2)
+    with (
+        cluster_of(n_workers=0, processes=False) as other,
+        pytest.raises(NoCluster, match=r"has no worker after .* dask worker .* --nthreads 1"),
+    ):
+        ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
+
+
+def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, tmp_path: Path) -> None:
+    study, other = counted(6, tmp_path / "marks", wrong=5), SimpleNamespace(scheduler_address=address)
+    with pytest.raises(TaskFailed, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "):
+        ran(study, tmp_path / "records", other)
+    assert {task.number for task in look(tmp_path / "records").tasks()} == {0, 1, 2, 3}
+
+
+def test_a_package_that_a_worker_lacks_is_named_and_is_no_defect() -> None:
+    def lacking(task: Task) -> list[Row]:
+        raise MissingPackage("mujoco", ModuleNotFoundError(name="mujoco"), "peers")
+
+    with pytest.raises(NoCluster, match=r"^worker tcp://far:1: 'mujoco' needs the package .*peers\]'$"):
+        cluster.rows_of(lacking, Task("scenes", 0), "tcp://far:1")
+
+
+def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
+    killed = cluster.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3)
+
+    class Fatal:
+        key = "random-1a-scenes-7"
+
+        def result(self) -> None:
+            raise killed
+
+    with pytest.raises(ClusterLost, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
+        cluster._result(Fatal(), None)
+
+
+def test_ctrl_c_just_when_a_file_is_written_records_nothing_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "WRITTEN", 0.0)
+    write, told = Store.write, list[int]()
+
+    def interrupted(store: Store, file: Path, rows: Any) -> None:
+        write(store, file, rows)
+        monkeypatch.setattr(Store, "write", write)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Store, "write", interrupted)
+    study = counted(4, tmp_path / "marks", pause=0.1)
+    with cluster_of(n_workers=1, processes=False) as other, pytest.raises(KeyboardInterrupt):
+        ran(study, tmp_path / "records", other, told.append)
+    assert list(pandas.read_parquet(tmp_path / "records")["number"]) == [0, 1]
+    assert told[-1] == 2
+
+
+def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "WRITTEN", 0.1)
+    study = counted(40, tmp_path / "marks", pause=0.05)
+    with cluster_of(n_workers=1, processes=False) as gone:
+
+        def tell(done: int) -> None:
+            if done:
+                gone.close()
+
+        with pytest.raises(ClusterLost, match="does not answer any more; the same command goes on"):
+            ran(study, tmp_path / "records", gone, tell)
+    store = look(tmp_path / "records")
+    assert 0 < len(store.tasks()) == len(store.rows()) < 40
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="there is no openssl to make a certificate with")
+def test_dasks_settings_of_tls_are_taken(tmp_path: Path) -> None:
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    made = [
+        "openssl",
+        "req",
+        "-x509",
+        "-newkey",
+        "rsa:2048",
+        "-nodes",
+        "-days",
+        "1",
+        "-subj",
+        "/CN=127.0.0.1",
+    ]
+    made += ["-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(made, check=True, capture_output=True)
+    cluster.quiet_dask()  # whose own settings come with it
+    files = {"cert": str(certificate), "key": str(key)}
+    roles = [(role, kind) for role in ("client", "scheduler", "worker") for kind in files]
+    tls = {f"distributed.comm.tls.{role}.{kind}": files[kind] for role, kind in roles}
+    tls["distributed.comm.tls.ca-file"] = str(certificate)
+    study = counted(4, tmp_path / "marks")
+    with dask.config.set(tls), cluster_of(n_workers=1, processes=False, protocol="tls://") as other:
+        assert other.scheduler_address.startswith("tls://")
+        ran(study, tmp_path / "records", other)
+    assert len(look(tmp_path / "records").tasks()) == 4
+
+
+@pytest.mark.parametrize("listening", [False, True])
+def test_an_address_that_does_not_answer_is_said_in_a_line(
+    listening: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cluster, "ANSWER", 1.0)
+    with closing(socket.create_server(("127.0.0.1", 0))) as server:
+        port = server.getsockname()[1]
+        if not listening:
+            server.close()
+        began = time.monotonic()
+        words = ["study", "random", "--count", "2", "--records", str(tmp_path / "records")]
+        assert main([*words, "--scheduler", f"tcp://127.0.0.1:{port}"]) == 2
+    took = time.monotonic() - began
+    # One line, and no word of a study that goes on: there is none.
+    said = capsys.readouterr().err.splitlines()
+    (line,) = [line for line in said if ": note: after " not in line]
+    assert f"the scheduler tcp://127.0.0.1:{port} does not answer as a Dask scheduler (" in line
+    (seconds,) = re.findall(r", after (\d+\.\d) s\); give --scheduler an address", line)
+    assert float(seconds) <= took + 0.05
+    assert "Error" not in line
+    assert not (tmp_path / "records").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["random", "--workers", "0"], "--workers 0: allowed: 1 or more"),
+        (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of them out"),
+        (["random", "--scheduler", "nonsense"], "does not answer as a Dask scheduler"),
+        (["random", "--scheduler", ""], "allowed: local, or an address"),
+        (["random", "--count", "0"], "no scene is asked for"),
+        (["random", "--count", "-1"], "--count -1: allowed: 0 or more"),
+        (["random", "--records", " "], "names no folder"),
+        (["random", "--from-records", "--count", "3"], "leave --count out"),
+        (["random", "--from-records", "--records", "nowhere"], "holds no records of a study"),
+        (["random", "--first", "absolute"], "invalid choice: 'absolute'"),
+        (["claims", "--formulation", "nobody"], "invalid choice: 'nobody'"),
+        (["bounds", "--seed", "-1"], "--seed -1: allowed: 0 or more"),
+        (["hard", "at-rests"], "near names: at-rest"),
+        (["hard", "at-rest", "--from-records"], "leave CASE out"),
+    ],
+)
+def test_a_mistake_of_the_command_line_is_one_line(
+    words: list[str],
+    told: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["study", *words]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = [line for line in err.splitlines() if ": note: " not in line]
+    assert told in line
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("package", ["distributed", "pyarrow.parquet"])
+def test_without_the_extra_one_line_names_it(
+    package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    folder = tmp_path / "records"
+    assert main(["study", "random", "--count", "2", "--records", str(folder)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"'study' needs the package '{package}'" in line
+    assert "pip install 'pointcoord[cluster]'" in line
+    assert not folder.exists()
+
+
+def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(tmp_path: Path) -> None:
+    words = ["study", "random", "--count", "80", "--workers", "1", "--records", "kept"]
+    folder, seen = tmp_path / "kept", dict[Path, bytes]()
+    for end in (signal.SIGINT, signal.SIGKILL):
+        process = subprocess.Popen(
+            [*PROGRAM, *words],
+            cwd=tmp_path,
+            env=ENVIRONMENT,
+            start_new_session=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        while process.poll() is None and len(list(folder.glob("*.parquet"))) == len(seen):
+            time.sleep(0.01)
+        assert process.poll() is None, process.communicate()
+        # All of it, workers included, as a terminal does and as when a machine goes down.
+        os.killpg(process.pid, end)
+        out, err = process.communicate(timeout=60)
+        assert {file: file.read_bytes() for file in seen} == seen
+        seen = {file: file.read_bytes() for file in look(folder).files()}
+        count = len(look(folder).tasks())
+        assert 0 < count < 80
+        if end == signal.SIGINT:
+            assert process.returncode == 130
+            # Before it may stand how far the study was.
+            *_, line = err.splitlines()
+            told = f"kept holds {count} of 80 scenes; the same command goes on"
+            assert line == f"pointcoord: interrupted; {told}"
+            assert out == ""
+    # How many are asked for may change: some more than there are.
+    last = count + 4
+    words[words.index("80")] = str(last)
+    assert main([*words[:-1], str(folder), "--quiet"]) == 0
+    assert {file: file.read_bytes() for file in seen} == seen
+    table = pandas.read_parquet(folder)
+    assert len(set(table["number"])) == len(table), "nothing is recorded twice"
+    assert set(range(last)) <= set(table["number"])
+    study = random_cars(2)
+    found = without_who_and_how_long(look(folder).rows(study.tasks))
+    assert found == without_who_and_how_long(worked_out(study))

@@ -1,0 +1,154 @@
+"""Random scenes through both models: every scene is counted once, and a planted fault is found."""
+
+import re
+
+import pytest
+from counted_study import worked_out
+
+from pointcoord import Scene
+from validate.adjudication.reference_solution import reference_solution
+from validate.adjudication.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
+from validate.cars.base_cars import variants
+from validate.cars.random_scenes import KINDS, RandomScene, random_scene
+from validate.exit_status import ExitStatus
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.output.table import text_of
+from validate.studies import random_cars as deep
+from validate.studies.random_cars import random_cars
+from validate.studies.study import Row
+
+
+def test_a_scene_that_is_close_to_a_lock_is_close_to_singular() -> None:
+    near = [random_scene(number) for number in (16, 43, 48, 51)]
+    assert {car.kind for car in near} == {"near an end"}
+    conditions = [formulation("pointcoord").solve(car.scene).accuracy.condition.max() for car in near]
+    assert min(conditions) > 1e5
+
+
+def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
+    study = random_cars(12)
+    rows = worked_out(study)
+    assert [row["number"] for row in rows] == list(range(12))
+    data = study.summary(rows).data
+    assert sum(counted["scenes"] for counted in data["outcomes"]) == data["scenes"] == 12
+    kept = {row["number"] for row in rows if row.get("scene") is not None}
+    assert {one["number"] for one in data["written_down"]} == kept
+    # Every scene is recorded, most of them by their number alone; work that is recorded was done by any run.
+    seconds = [100.0, 20.0, *[0.0] * (len(rows) - 2)]
+    timed = [row | {"seconds": spent} for row, spent in zip(rows, seconds, strict=True)]
+    told = str(study.summary(timed).parts[-1])
+    assert told.startswith(f"12 scenes recorded, {len(kept)} of them as a whole scene")
+    assert told.endswith("; 120 s of work, of all runs and processes.")
+    for row in rows:
+        assert set(row) <= {*study.columns, "part", "number", "seconds", "worker"}
+        shares = [name for name in row if name.startswith("share_")]
+        assert bool(shares) == row["outcome"].startswith("agreed")
+    for one in data["written_down"]:
+        assert Scene.from_mapping(one["scene"]) == random_scene(one["number"]).scene
+
+
+@pytest.mark.parametrize("model", ["pointcoord", "absolute"])
+@pytest.mark.parametrize("quantity", ["position", "velocity", "acceleration", "angular_velocity"])
+def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quantity: str) -> None:
+    scene = Scene.load("bounce-and-steer")
+    time = scene.time.model_copy(update={"samples": 3})
+    scene = scene.model_copy(update={"time": time, "effects": ("velocity", "acceleration", "knuckle_rates")})
+    solutions = {name: formulation(name).solve(scene) for name in (deep.OURS, deep.OTHER)}
+    faulty = dict(solutions[model].numbers[quantity])
+    name = next(iter(faulty))
+    faulty[name] = faulty[name] + 1e-3
+    solutions[model] = solutions[model].with_numbers({quantity: faulty})
+    assert judged(scene, solutions["pointcoord"], solutions["absolute"]) == f"{model} wrong"
+
+
+def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    honest = deep._solved
+
+    def shared(name: str, car: RandomScene) -> Solution:
+        solution = honest(name, car)
+        moved = solution.position["wheel_centre"] + 1e-3
+        return solution.with_numbers({"position": {**solution.position, "wheel_centre": moved}})
+
+    cars = (random_scene(number) for number in range(0, 200, deep.HELD))
+    car = next(car for car in cars if deep.examined(car)["outcome"] == "agreed, and with the reference")
+    monkeypatch.setattr(deep, "_solved", shared)
+    found = deep.examined(car)
+    assert found["outcome"] == "agreed, the reference: pointcoord and absolute wrong"
+    assert found["scene"] is not None
+    assert any(word in found["outcome"] for word in deep.FAULTY)
+
+
+def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
+    scene = Scene.load("bounce").model_copy(update={"effects": ()})
+    scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 3})})
+    answer = formulation("absolute").solve(scene)
+    assert judged_alone(scene, answer) == "answer right"
+    moved = {name: place + 1e-6 for name, place in answer.position.items()}
+    assert judged_alone(scene, answer.with_numbers({"position": moved})) == "answer wrong"
+    reference: Solution = reference_solution(scene)
+    assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
+    assert obstacle(scene) == "no obstacle found"
+
+
+def test_a_refused_scene_is_told_apart_from_one_that_need_not_be() -> None:
+    scene = Scene.load("bounce")
+    time = scene.time.model_copy(update={"samples": 3})
+    scene = scene.model_copy(update={"time": time})
+    part = scene.inputs["arm_angle"]
+    assert unanswered(scene) == NO_OBSTACLE
+
+    def with_arm(law: tuple[float, ...]) -> Scene:
+        held = part.model_copy(update={"polynomial": law})
+        return scene.model_copy(update={"inputs": {**scene.inputs, "arm_angle": held}, "time": time})
+
+    assert unanswered(with_arm((0.05,))) == "an instant has no pose"
+    # From 0.8 past the dead point and back, while the instants themselves have poses.
+    stop = scene.time.stop
+    over = 4.0 * 0.75 / (0.5 * stop) ** 2
+    time = scene.time.model_copy(update={"samples": 2})
+    assert unanswered(with_arm((0.8, -over * stop / 2, over / 2))) == "no pose between the instants"
+
+
+def test_scenes_can_be_solved_through_the_map_and_its_faults_are_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    car = next(c for c in map(random_scene, range(20)) if deep.examined(c)["outcome"].startswith("agreed"))
+    assert deep.examined(car, "pointcoord-map")["outcome"].startswith("agreed")
+    honest = deep._solved
+
+    def off(name: str, car: RandomScene) -> Solution:
+        solution = honest(name, car)
+        if name != "pointcoord-map":
+            return solution
+        moved = solution.position["wheel_centre"] + 1e-3
+        return solution.with_numbers({"position": {**solution.position, "wheel_centre": moved}})
+
+    monkeypatch.setattr(deep, "_solved", off)
+    found = deep.examined(car, "pointcoord-map")
+    assert found["outcome"] == "disagreed in position: pointcoord-map wrong"
+    assert deep.examined(car)["outcome"].startswith("agreed")
+
+
+def row(number: int, outcome: str, **more: float) -> Row:
+    texts = {"suspension": variants()[0].words, "kind": KINDS[0], "outcome": outcome}
+    every = {"part": "scenes", "number": number, "seconds": 1.0, "worker": "here"}
+    return {**every, **texts, **more}
+
+
+def test_the_status_says_whether_any_disagreed() -> None:
+    study = random_cars(2)
+    agreed = [row(0, "agreed", share_position=0.25), row(1, "agreed", share_position=0.125)]
+    findings = study.summary(agreed)
+    assert findings.status == ExitStatus.AGREE
+    assert re.search(r"^agreed +2 ", text_of(findings.parts), flags=re.M)
+    assert findings.data["largest_shares"] == [{"quantity": "position", "share": 0.25, "scene": 0}]
+    for outcome in (
+        "disagreed in wheel: absolute wrong",
+        "pointcoord fails: TypeError",
+        "agreed, the reference: pointcoord and absolute wrong",
+        "only absolute refuses, locked: answer wrong",
+    ):
+        wrong = study.summary([agreed[0], row(1, outcome)])
+        assert wrong.status == ExitStatus.DISAGREE
+        assert outcome in text_of(wrong.parts)

@@ -1,0 +1,164 @@
+"""The cars that others are made from: of every mechanism and closure the first shipped scene of it.
+
+A mechanism is here as soon as there is a scene of it among pointcoord's; a scene file of a user's does as
+well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from pointcoord import PointcoordError, Scene, built_in_scenes
+from pointcoord.mechanism import shipped
+from validate.cars.car import Car, Closure
+from validate.cars.input_ends import condition, drawn_inputs, end
+
+ALIKE = 5.0  # times the condition number of the base car by its own inputs: what holds some freedom hardly
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A mechanism with what closes its drawing.
+
+    Attributes:
+        suspension: its type, as a scene names it.
+        scene: name or path of the scene whose car is its base car.
+    """
+
+    suspension: str
+    closure: Closure
+    scene: str = field(default="", compare=False)
+
+    @property
+    def base(self) -> Car:
+        """A car to make others from."""
+        return Car.of(_loaded(self.scene))
+
+    @property
+    def chassis_motions(self) -> tuple[str, ...]:
+        """Inputs that move the whole car."""
+        return tuple(name for name, one in self.base.structure.inputs.items() if one.moves_the_chassis)
+
+    @property
+    def of_parts(self) -> bool:
+        """Whether other mechanisms are its parts, as two corners are of an axle."""
+        return bool(_loaded(self.scene).mechanism.file.mirrored)
+
+    @property
+    def holds_its_shape(self) -> bool:
+        """Whether rows follow from others in the drawing, as of parallel hinges: no point moves alone."""
+        return bool(_loaded(self.scene).mechanism.topology.left_out)
+
+    @property
+    def input_sets(self) -> tuple[tuple[str, ...], ...]:
+        """Sets of inputs that move the mechanism, that of the base car's scene first."""
+        return _input_sets(self.scene)
+
+    @property
+    def ending_sets(self) -> tuple[tuple[str, ...], ...]:
+        """Those of them of which some input has an end, from the drawing of the base car."""
+        return _ending_sets(self.scene)
+
+    @property
+    def words(self) -> str:
+        """In words; the closure only where there are several."""
+        name = self.suspension.replace("_", " ")
+        closures = {variant.closure for variant in variants() if variant.suspension == self.suspension}
+        return name if len(closures) <= 1 else f"{name}, {self.closure}"
+
+
+@cache
+def variants() -> tuple[Variant, ...]:
+    """Every mechanism and closure with a shipped scene, mechanisms in the order of their names."""
+    found = (_of_scene(name) for name in built_in_scenes())
+    known = [variant for variant in dict.fromkeys(found) if variant.suspension in shipped()]
+    return tuple(sorted(known, key=lambda v: (v.suspension, v.closure != "drawn", v.closure)))
+
+
+def variants_of(suspension: str | None = None, closure: Closure | None = None) -> list[Variant]:
+    """Those that are asked for.
+
+    Args:
+        suspension: its type, or the path of a scene file (.toml); any shipped one if not given.
+        closure: any if not given.
+    Raises:
+        ValueError: there is none.
+        SceneError: the scene file cannot be read.
+    """
+    if suspension is not None and Path(suspension).suffix == ".toml":
+        there: tuple[Variant, ...] = (_of_scene(suspension),)
+    else:
+        there = tuple(one for one in variants() if suspension in (None, one.suspension))
+    found = [one for one in there if closure in (None, one.closure)]
+    if not found:
+        known = "; ".join(f"{one.suspension}: {one.closure}" for one in there or variants())
+        raise ValueError(f"no car has suspension={suspension!r} and closure={closure!r}; there are: {known}")
+    return found
+
+
+def _of_scene(name: str) -> Variant:
+    part = _loaded(name).mechanism
+    return Variant(part.name, part.closure, name)
+
+
+@cache
+def _loaded(name: str) -> Scene:
+    return Scene.load(name)
+
+
+def input_sets(car: Car) -> tuple[tuple[str, ...], ...]:
+    """Sets of inputs that move a car; of a shipped mechanism those that move its base car."""
+    for variant in variants():
+        if (variant.suspension, variant.closure, None) == (car.suspension, car.closure, car.tables):
+            return variant.input_sets
+    known = car.structure.inputs
+    each = (_moving_sets(car, size) for size in range(1, len(known) + 1))
+    return next((sets for sets in each if sets), ())
+
+
+@cache
+def _input_sets(name: str) -> tuple[tuple[str, ...], ...]:
+    scene = _loaded(name)
+    known = scene.mechanism.structure.inputs
+    own = tuple(one for one in scene.inputs if not known[one].moves_the_chassis)
+    car = Car.of(scene)
+    limit = ALIKE * condition(car, drawn_inputs(car, own))
+    return own, *(one for one in _moving_sets(car, len(own), limit) if set(one) != set(own))
+
+
+@cache
+def _ending_sets(name: str) -> tuple[tuple[str, ...], ...]:
+    car = Car.of(_loaded(name))
+    return tuple(names for names in _input_sets(name) if any(_ends(car, names, one) for one in names))
+
+
+def _moving_sets(car: Car, size: int, limit: float = np.inf) -> tuple[tuple[str, ...], ...]:
+    """The sets of so many inputs that are as many as there are freedoms, and hold them all.
+
+    Args:
+        limit: of the condition number of the drawing.
+    """
+    inputs = car.structure.inputs
+    names = [name for name, one in inputs.items() if not one.moves_the_chassis]
+    return tuple(chosen for chosen in combinations(names, size) if _moves(car, chosen, limit))
+
+
+def _ends(car: Car, inputs: tuple[str, ...], driven: str) -> bool:
+    home = drawn_inputs(car, inputs)
+    try:
+        return any(end(car, home, driven, ahead) is not None for ahead in (False, True))
+    except PointcoordError:
+        return False
+
+
+def _moves(car: Car, inputs: tuple[str, ...], limit: float) -> bool:
+    try:
+        home = drawn_inputs(car, inputs)
+        return set(home) == set(inputs) and condition(car, home) < limit
+    except PointcoordError:
+        return False

@@ -1,0 +1,274 @@
+"""The verdict of a run in words, for a terminal, for Markdown and for a page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from typing import get_args
+
+from validate.ci.moves import lost_lines
+from validate.ci.record import Record, why_undecided
+from validate.comparison.compare import Comparison, Outcome, Verdict
+from validate.comparison.examined import Examined
+from validate.exit_status import ExitStatus
+from validate.output.report import (
+    about,
+    agreeing,
+    explained_lines,
+    heading,
+    held_to,
+    pair_of,
+    share_of,
+    silent_lines,
+    used,
+    when,
+    with_unit,
+    worst_rows,
+)
+from validate.output.table import Cell, Table
+from validate.plain_text import shown
+
+NAMED = 10  # scenes that a sentence names of each verdict
+NOT_TESTED = "not tested"
+
+
+def named(names: Sequence[str]) -> str:
+    """The first names of many."""
+    rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + rest
+
+
+def standing(examined: Examined) -> tuple[str, str]:
+    """The verdict on a scene, and why there is none, in a word or two; empty where claims are too wide."""
+    status = examined.status
+    if status in (ExitStatus.AGREE, ExitStatus.DISAGREE):
+        return ("agrees" if status is ExitStatus.AGREE else "disagrees"), ""
+    if not examined.complaint:
+        return NOT_TESTED, ""
+    if status is ExitStatus.WRONG_INPUT:
+        return NOT_TESTED, status.verdict
+    return NOT_TESTED, "failed" if status is ExitStatus.NOT_FINISHED else "refused"
+
+
+def standing_of(outcome: Outcome) -> str:
+    """The verdict on one comparison."""
+    return "agrees" if outcome.passed else "disagrees" if outcome.disagreements else NOT_TESTED
+
+
+def sentence(record: Record) -> str:
+    """What a run comes to; what does not agree is named."""
+    parts = [*_of_files(record)] if record.files else [*_of_scenes(record)]
+    if record.factor != 1.0:
+        parts.append(held_to(record.factor))
+    return "; ".join([*parts, *_since(record)])
+
+
+def _of_files(record: Record) -> Iterator[str]:
+    for name, file in record.files.items():
+        by_verdict: dict[str, list[str]] = {}
+        for row in file.outcome.rows:
+            by_verdict.setdefault(row.verdict, []).append(about(row.quantity, row.name))
+        agree, source = len(by_verdict.pop("agrees", ())), file.outcome.solutions[0].formulation
+        yield f"{source} and the car of {name}: {agree} of {len(file.outcome.rows)} agree"
+        yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+
+
+def _of_scenes(record: Record) -> Iterator[str]:
+    by_verdict: dict[str, list[str]] = {}
+    for one in record.examined:
+        verdict, why = standing(one)
+        by_verdict.setdefault(f"{verdict} ({why})" if why else verdict, []).append(one.name)
+    yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
+    yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+    if record.not_run:
+        yield f"not run ({record.stopped}): {named(record.not_run)}"
+    # How much of what is asked for was compared, of a solver that may give what it has.
+    stated = [outcome.counts for _, outcome in record.outcomes if outcome.stated]
+    counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
+    if count := sum(counts[verdict] for verdict in get_args(Verdict)):
+        rest = "".join(f", {counts[v]} {v}" for v in ("not given", NOT_TESTED) if counts[v])
+        back = (
+            f", {counts['given back']} of them data that the solver was given" if counts["given back"] else ""
+        )
+        yield f"{counts['agrees'] + counts['disagrees']} of {count} numbers compared{back}{rest}"
+
+
+def _since(record: Record) -> Iterator[str]:
+    """What moved, went or could not be held to the baseline."""
+    if record.baseline is None:
+        return
+    held = [since for since in record.since if since.compared]
+    moved = [since.scene for since in held if since.moved]
+    target = shown(record.baseline.target)
+    if not held:
+        yield f"nothing could be held to the baseline {target}"
+    else:
+        yield (
+            f"moved since the baseline {target}: {named(moved)}"
+            if moved
+            else "nothing moved since the baseline"
+        )
+    if lost := [line for since in record.since for line in lost_lines(since)]:
+        yield f"given then and not now: {'; '.join(lost)}"
+    yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
+    if record.gone:
+        yield f"gone, in the baseline and not in this run: {named(record.gone)}"
+
+
+def scene_line(examined: Examined, seconds: float, width: int) -> str:
+    """A scene in one line: its verdict, how long it took, the largest share of a tolerance and where."""
+    verdict, why = standing(examined)
+    shares = [(row.share, row, outcome) for outcome in examined.outcomes for row in outcome.rows]
+    finite = [one for one in shares if math.isfinite(one[0])]
+    # A number that is none disagrees however small the others are.
+    wrong = [one for one in shares if one[1].verdict == "disagrees" and one not in finite]
+    told = why
+    if verdict == NOT_TESTED and not why:
+        told = silence(examined)
+    elif not why and (shares := wrong[:1] or finite):
+        share, row, outcome = max(shares, key=lambda one: one[0]) if not wrong else shares[0]
+        told = f"{share_of(share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+        if outcome is not examined.outcomes[0]:
+            told += f", {outcome.solutions[0].formulation}"
+    word = verdict.upper() if verdict == "disagrees" else verdict
+    return f"{examined.name.ljust(width)}  {word:<10}  {seconds:>5.1f} s  {told}".rstrip()
+
+
+def scene_head(width: int) -> str:
+    """What the columns of the scenes' lines are."""
+    return f"{'scene'.ljust(width)}  {'verdict':<10}    time  largest share of a tolerance, and where"
+
+
+def scene_parts(examined: Examined, seconds: float, width: int) -> Iterator[str]:
+    """The line of a scene, and below it what would explain that it does not agree."""
+    yield scene_line(examined, seconds, width)
+    for outcome in examined.outcomes:
+        if not outcome.passed:
+            yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
+            yield from explained_lines(outcome)
+
+
+def next_step(record: Record, verbose: bool = False) -> str:
+    """What to do next where something is not as wanted; empty where all is."""
+    words = {standing(one): one.name for one in record.examined}
+    verdicts = {verdict for verdict, why in words if not why}
+    steps = []
+    if record.files and record.status is not ExitStatus.AGREE:
+        steps.append("--report DIR draws the file's columns beside ours")
+    elif verdicts - {"agrees"}:
+        table = "" if verbose else "-v prints the table of every quantity, "
+        steps.append(f"{table}--report DIR makes a page with both models in motion")
+    if name := words.get((NOT_TESTED, "refused")):
+        steps.append(f"pointcoord plan {name} says how far each input can go and what holds it there")
+    if name := words.get((NOT_TESTED, "wrong input")):
+        steps.append(f"mend {name} as the message about it says")
+    if name := words.get((NOT_TESTED, "failed")):
+        steps.append(f"report what failed on {name}, with its file")
+    if any(since.moved or since.lost for since in record.since):
+        steps.append("if the new numbers are right, keep them by --save-baseline FILE")
+    return f"Next: {'; '.join(steps)}." if steps else ""
+
+
+Lines = Callable[[Examined], Iterator[str]]
+
+
+def disagreements(examined: Examined) -> Iterator[str]:
+    """What does not agree, the worst first, and what would explain it."""
+    for outcome in examined.outcomes:
+        for row in sorted(outcome.disagreements, key=lambda row: -row.share):
+            apart, allowed = with_unit(row.difference, row.unit, 2), with_unit(row.tolerance, row.unit, 2)
+            yield (
+                f"{pair_of(outcome)}: {about(row.quantity, row.name)}: {apart} apart at {when(row, 6)}, "
+                f"tolerance there {allowed}; at most {used(row.share)}"
+            )
+        yield from (line.strip() for line in explained_lines(outcome))
+
+
+def complaints(examined: Examined) -> Iterator[str]:
+    """Why there is no verdict on a scene."""
+    if examined.complaint:
+        complaint, why = examined.complaint.removeprefix(f"{examined.name}: "), standing(examined)[1]
+        yield f"{why}: {complaint}" if why else complaint
+
+
+def undecided(examined: Examined) -> Iterator[str]:
+    """Of what nothing can be said, and why; what has one reason together."""
+    for outcome in examined.outcomes:
+        yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
+        found: dict[str, list[str]] = {}
+        for row in sorted(outcome.undecided, key=lambda row: row.verdict == "not given"):
+            reason = f"{row.verdict}: {why_undecided(row, outcome)}"
+            found.setdefault(reason, []).append(about(row.quantity, row.name))
+        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in found.items())
+
+
+def silence(examined: Examined) -> str:
+    """Why there is no verdict on a scene that was solved, in one line."""
+    whys = dict.fromkeys(line.partition(": ")[2] for line in undecided(examined))
+    return "; ".join(islice(whys, 2))
+
+
+def notes(examined: Examined) -> Iterator[str]:
+    """What the user should know of a scene, beside what is told already."""
+    yield from (*examined.warnings, *examined.defaults)
+    told = " ".join(undecided(examined))
+    for outcome in examined.outcomes:
+        yield from (line for line in (*outcome.missing, *outcome.notes) if line not in told)
+
+
+def by_scene(record: Record, *lines: Lines) -> list[str]:
+    """Lines of all scenes, each once, with the scenes that it is about."""
+    told = []
+    for of in lines:
+        scenes: dict[str, dict[str, None]] = {}
+        for one in record.examined:
+            for line in of(one):
+                scenes.setdefault(line, {})[one.name] = None
+        told += [f"{named(list(names))}: {line}" for line, names in scenes.items()]
+    return told
+
+
+def agreement(record: Record, most: int) -> Table:
+    """Scenes by quantities: the verdict of each, and how much of its tolerance it uses.
+
+    Args:
+        most: rows; where there are more, those that agree are left out first.
+    """
+    rows = [row for one in record.examined for row in _rows(one)]
+    rows += [
+        (name, "", Cell(NOT_TESTED, f"not run: {record.stopped}", NOT_TESTED), {}) for name in record.not_run
+    ]
+    quantities = list(dict.fromkeys(heading for *_, cells in rows for heading in cells))
+    rest = {*sorted(range(len(rows)), key=lambda i: rows[i][2].verdict == "agrees")[most:]}
+    kept = [row for i, row in enumerate(rows) if i not in rest]
+    blank = {True: Cell("not asked for"), False: Cell(NOT_TESTED, verdict=NOT_TESTED)}
+    lines: tuple[tuple[str | Cell, ...], ...] = tuple(
+        (name, pair, verdict, *(cells.get(quantity, blank[bool(cells)]) for quantity in quantities))
+        for name, pair, verdict, cells in kept
+    )
+    caption = "For each quantity the verdict, and below it the number that uses most of its tolerance."
+    if rest:
+        caption += f" and {len(rest)} rows more: --json has them all."
+    return Table(("scene", "compared", "verdict", *quantities), lines, caption=caption)
+
+
+def _rows(one: Examined) -> Iterator[tuple[str, str, Cell, dict[str, Cell]]]:
+    """A row for each pair that was compared; of a scene without one, why there is none."""
+    why = ": ".join(complaints(one))
+    if not one.outcomes:
+        yield one.name, "", Cell(NOT_TESTED, why, NOT_TESTED), {}
+    for outcome in one.outcomes:
+        verdict = standing_of(outcome)
+        if why and verdict == "agrees":
+            verdict = standing(one)[0]  # one of the other formulations has no answer
+        cells = {heading(row.quantity, row.name): _cell(row) for row in worst_rows(outcome)}
+        yield one.name, pair_of(outcome), Cell(verdict, why, verdict), cells
+
+
+def _cell(row: Comparison) -> Cell:
+    if row.verdict == "not given":
+        return Cell(row.verdict, row.name, row.verdict)
+    of = "" if row.name == heading(row.quantity, row.name) else f"{row.name}, "
+    text = f"disagrees, {used(row.share)}" if row.verdict == "disagrees" else row.verdict
+    return Cell(text, f"{used(row.share)}: {of}{when(row, 4)}", row.verdict)

@@ -1,0 +1,105 @@
+"""`pointcoord new`: a scene and its mechanism file to start from."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from functools import partial
+from pathlib import Path
+from typing import IO
+
+from pointcoord import Scene, SceneError, built_in_scenes
+from pointcoord.mechanism.file import MECHANISMS, is_path, shipped
+from pointcoord.scene.scene_file import SCENES
+from pointcoord.toml_text import parsed, read_file
+from validate.commands.usage import UsageError
+from validate.exit_status import ExitStatus
+from validate.output.console import Console
+from validate.output.files import require_writable, write_whole
+from validate.plain_text import shown
+
+DESCRIPTION = """\
+Write NAME.toml, a copy of a scene, and NAME-mechanism.toml, a copy of its mechanism with a note on
+every table: change names, bodies, rods and slides there, and points and inputs in the scene. A scene
+that holds its mechanism's tables itself stays one file."""
+
+TYPE = re.compile(r"^([ \t]*type[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')", re.MULTILINE)
+
+SCENE_NOTE = """\
+# A scene: mechanism, points as drawn (mm), inputs over time, instants, effects.
+# Try: pointcoord plan {name}.toml, pointcoord draw {name}.toml -o {name}.svg, pointcoord validate {name}.toml
+"""
+MECHANISM_NOTE = """\
+# A mechanism: which points make a body, what joins the bodies, what can be driven.
+#   [bodies]     a point of two bodies is a ball joint, two points of the same two are a hinge;
+#                chassis is the ground, every other body has three points or more
+#   [rods]       two points at their drawn distance
+#   [slides]     a point stays on a line of a body, along up, right, down, left, forward, rearward or a point
+#   [inputs]     angle, travel, height, contact, distance, or what moves the chassis
+#   [roles]      knuckle, wheel_axis, steering_axis, inboard, front_and_rear: effects ask for them
+#   [stand_ins]  points that a drawing may leave out, and the ones that then stand in for them
+# A scene drives as many inputs as there are freedoms: pointcoord plan says how many these are.
+"""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command with its options."""
+    parser = commands.add_parser(
+        "new", help="write a scene and its mechanism file to start from", description=DESCRIPTION
+    )
+    parser.add_argument("name", metavar="NAME", help="of the new files, without .toml; may have a folder")
+    parser.add_argument(
+        "--from",
+        dest="scene",
+        metavar="SCENE",
+        default="double-wishbone",
+        help="the scene to copy, built-in or a file; double-wishbone if not given",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write both files.
+
+    Raises:
+        UsageError: a file of that name is there.
+        SceneError: there is no such scene, or it is wrong.
+        OutputError: a file cannot be written.
+    """
+    name = options.name.removesuffix(".toml")
+    if not name:
+        raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")
+    Scene.load(options.scene)
+    written, folder = _scene_text(options.scene)
+    of_type = parsed(written, options.scene)["mechanism"].get("type")
+    files = {}
+    text = written.decode("utf-8-sig")
+    if of_type is not None:
+        own = f"{Path(name).name}-mechanism.toml"
+        text, count = TYPE.subn(lambda found: f'{found[1]}"{own}"', text)
+        if count != 1:
+            raise SceneError(options.scene, "mechanism.type", "is not written as one line type = ...")
+        source = folder / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
+        files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + read_file(source, ", ".join(shipped())).decode()
+    files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text, **files}
+    for target in files:
+        if Path(target).exists():
+            raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
+        require_writable(target)
+    for target, content in files.items():
+        write_whole(target, partial(_written, content))
+    console.written = [f"{' and '.join(files)} hold the scene"]
+    console.say(f"{' and '.join(map(shown, files))} written; try: pointcoord plan {shown(name)}.toml")
+    return ExitStatus.AGREE
+
+
+def _scene_text(scene: str) -> tuple[bytes, Path]:
+    """A scene's text and the folder that its paths are counted from."""
+    if scene in built_in_scenes():
+        return (SCENES / f"{scene}.toml").read_bytes(), SCENES
+    return read_file(scene, f"a path, or one of {', '.join(built_in_scenes())}"), Path(scene).parent
+
+
+def _written(content: str, stream: IO[bytes]) -> None:
+    """Text into a file."""
+    stream.write(content.encode())

@@ -1,0 +1,69 @@
+"""`pointcoord help`: the pages that stand beside what they are about."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pointcoord
+import validate
+from validate.commands.usage import UsageError
+from validate.exit_status import ExitStatus
+from validate.output.console import Console
+
+PAGE = "README.md"
+TOPICS = {
+    "scenes": (pointcoord, "scenes"),
+    "mechanisms": (pointcoord, "mechanisms"),
+    "python": (pointcoord, ""),
+    "models": (validate, "formulations"),
+    "solvers": (validate, "solvers"),
+    "results": (validate, "measured"),
+    "fit": (validate, "fitting"),
+    "tests": (validate, "testing"),
+    "ci": (validate, "ci"),
+    "report": (validate, "html"),
+    "hard": (validate, "hard"),
+    "study": (validate, "studies"),
+    "cost": (validate, "cost"),
+    "program": (validate, "commands"),
+}
+"""Every topic: the package and the folder in it whose page it is."""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command."""
+    topics = commands.add_parser(
+        "help",
+        help="print a page on a topic",
+        description=f"Print a page on a topic, or the list of topics: {', '.join(TOPICS)}.",
+    )
+    topics.add_argument("topic", nargs="?", metavar="TOPIC")
+    topics.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Print a page, or which there are.
+
+    Raises:
+        UsageError: there is no such topic.
+        OutputError: standard output does not take it.
+    """
+    console.require("it is where the page goes")
+    if options.topic is None:
+        console.say("\n".join(f"{name.ljust(12)}{_title(name)}" for name in TOPICS))
+    elif options.topic in TOPICS:
+        console.say(page(options.topic).rstrip())
+    else:
+        raise UsageError(f"help: no topic {options.topic!r}; there are {', '.join(TOPICS)}")
+    return ExitStatus.AGREE
+
+
+def page(topic: str) -> str:
+    """The page of a topic, Markdown."""
+    package, folder = TOPICS[topic]
+    return (Path(str(package.__file__)).parent / folder / PAGE).read_text(encoding="utf-8")
+
+
+def _title(topic: str) -> str:
+    return page(topic).splitlines()[0].lstrip("# ")

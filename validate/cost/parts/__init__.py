@@ -1,0 +1,1 @@
+"""The parts of the study: each gives the races that it consists of."""

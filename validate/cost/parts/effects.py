@@ -1,0 +1,65 @@
+"""What each effect costs: a solved scene read at many instants with none, with each alone and with all.
+
+A scene is solved once for each choice of effects; timed is reading the motion into arrays that are there
+already, and beside it, in the same rounds, a copy of the same bytes: less than that nothing can take that
+fills such arrays. Both rates of all points are read together too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+
+from pointcoord import Motion, simulate
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.results.even_instants import even_instants
+from validate.cost.race import Found, Runner
+from validate.cost.row import Row
+from validate.cost.scenes import StudyScene
+
+INSTANTS, INSTANTS_QUICK = 100_000, 10_000
+NO_EFFECT = "no effect"
+CHOICES: dict[str, tuple[str, ...]] = {
+    NO_EFFECT: (),
+    **{name: (name,) for name in EFFECTS},
+    "both rates of points": tuple(name for name, effect in EFFECTS.items() if effect.reports_states),
+    "all effects": tuple(EFFECTS),
+}
+"""Which effects are asked for, by what a row says of it."""
+
+
+def runners_of(study: StudyScene, quick: bool = False) -> list[Runner]:
+    """Reading and copying, for each choice of effects."""
+    count = INSTANTS_QUICK if quick else INSTANTS
+    scene = study.scene
+    instants = even_instants(scene.time.start, scene.time.stop, count)
+
+    @cache
+    def motion(choice: str) -> Motion:
+        return simulate(scene.model_copy(update={"effects": CHOICES[choice]}))
+
+    @cache
+    def room(height: int) -> tuple[Any, Any]:
+        return np.zeros((height, count)), np.zeros((height, count))
+
+    def reading(choice: str) -> Callable[[], Any]:
+        solved = motion(choice)
+        return partial(solved.at, instants, room(solved.height)[0])
+
+    def copying(choice: str) -> Callable[[], Any]:
+        out, other = room(motion(choice).height)
+        return partial(np.copyto, other, out)
+
+    def found(choice: str, quantity: str, _: Any) -> Found:
+        return Found({quantity: {"numbers": motion(choice).height}})
+
+    row = Row("effects", study.name, "series", dense=True, poses=count, digest=study.digest, quick=quick)
+    return [
+        Runner(replace(row, setting=choice), partial(make, choice), partial(found, choice, quantity))
+        for choice in CHOICES
+        for quantity, make in (("read", reading), ("copy", copying))
+    ]

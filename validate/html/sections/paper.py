@@ -1,0 +1,98 @@
+"""The paper: its figures and tables as its own equations give them, and what is wrong in it by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from validate.html.plot import OTHER, OURS, Panel, Plots, axis, numbers
+from validate.html.run import Run
+from validate.html.section import Block, Paragraph, Section
+from validate.output.report import findings_table, paper_sentence, paper_tables
+from validate.output.table import Table
+from validate.paper.figures import Figure, figures
+from validate.paper.measured_errata import errata
+from validate.paper.tables import WHY_NOT_EQUAL, PaperRow
+
+FIGURES = (
+    "What the paper's Figures 5 to 8 show, computed from its hardpoints and its laws of the inputs; crosses "
+    "are the rows of its printed tables, which print no angle."
+)
+DASHES = ("solid", "dash")
+
+
+def _blocks(run: Run) -> Sequence[Block]:
+    return [*(_of_paper(run.paper) if run.paper else ()), *_by_scene(run)]
+
+
+def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
+    yield Paragraph(FIGURES)
+    yield Plots("Figures 5 to 8 of the paper", tuple(map(_of_figure, figures())))
+    yield Paragraph(f"{WHY_NOT_EQUAL} {paper_sentence(rows)}")
+    for table, number in zip(paper_tables(rows), (2, 3), strict=True):
+        panels = tuple(_panels([row for row in rows if row.printed.table == number]))
+        yield Plots(f"Table {number}: crosses as printed, rings as computed", panels)
+        yield table
+    lines = tuple((str(e.number), e.where, e.wrong, e.measures or "changes no number") for e in errata(rows))
+    caption = "What is wrong in the paper, and what it measures."
+    yield Table(("no.", "where", "what", "measures"), lines, caption=caption)
+
+
+def _of_figure(figure: Figure) -> Panel:
+    layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{figure.unit}]")}
+    return Panel(f"Figure {figure.number}: {figure.words}, over time", tuple(_traces(figure)), layout)
+
+
+def _traces(figure: Figure) -> Iterator[Mapping[str, Any]]:
+    times = numbers(figure.times, 6)
+    for (name, values), dash in zip(figure.curves.items(), DASHES, strict=False):
+        line = {"color": OURS, "dash": dash}
+        yield {"x": times, "y": numbers(values, 6), "name": name, "mode": "lines", "line": line}
+    if figure.printed is not None:
+        at, values = figure.printed
+        marker = {"symbol": "x", "color": OTHER, "size": 7}
+        shown = {"x": numbers(at, 6), "y": numbers(values, 6)}
+        yield {**shown, "name": "printed", "mode": "markers", "marker": marker}
+
+
+def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
+    kinds = (
+        ("wheel centre", "mm", [(row.printed.wheel_centre, row.wheel_centre) for row in rows]),
+        ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
+        ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
+    )
+    times = numbers(np.array([row.printed.time for row in rows]), 6)
+    for words, unit, pairs in kinds:
+        values = np.array(pairs)
+        for i, component in enumerate("xyz"):
+            layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{unit}]")}
+            looks = (("printed", "x", OTHER), ("computed", "circle-open", OURS))
+            traces = tuple(
+                {
+                    "x": times,
+                    "y": numbers(values[:, side, i], 6),
+                    "name": name,
+                    "mode": "markers",
+                    "marker": {"symbol": symbol, "color": colour, "size": 7},
+                }
+                for side, (name, symbol, colour) in enumerate(looks)
+            )
+            yield Panel(f"{words}, {component}, over time", traces, layout)
+
+
+def _by_scene(run: Run) -> Iterator[Block]:
+    """What the formulas as printed get wrong."""
+    examined = () if run.record is None else run.record.examined
+    tried = [one.name for one in examined if one.printed is not None]
+    if run.record is not None and run.record.findings:
+        yield findings_table(run.record.findings)
+    elif tried:
+        yield Paragraph(f"The paper's printed formulas agree in {', '.join(tried)}.")
+    for one in examined:
+        if one.unprinted is not None:
+            yield Paragraph(f"The formulas as printed cannot solve {one.name}: {one.unprinted.message}")
+
+
+SECTION = Section("paper", "The paper", 60, _blocks, folded=True)

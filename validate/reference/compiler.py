@@ -1,0 +1,299 @@
+r"""A mechanism's description, compiled: its equations C(y, w) = 0, every one at most quadratic.
+
+The unknowns y are, in local coordinates (see `design`) and relative to the chassis:
+
+    of a body hinged on the chassis     c, s      it is turned about n, the line of its two points there:
+                                                  v -> n (n.v)/n^2 + c (v - n (n.v)/n^2) + s (n x v)
+    of any other body                   c1 c2 c3  the columns of its matrix R,
+    and if no point of it is placed yet p         the place of its first point
+    of a point on a slide               s         where on the line, p = through + s line
+    of a free point                     p         where it is, unless a slide of the chassis says so
+    of a contact height, or an angle between two moving bodies, one or two numbers more: see `drives`
+
+and the rows are
+
+    n^2 s^2 + c^2 = 1,  ci . cj = 1 if i = j else 0      a body turns and does not deform
+    p = p'                                               a point of two bodies is one point, three rows
+    R u . (p - p') = R v . (p - p') = 0                  the second point of a hinge, two rows; u, v across it
+    |a - b|^2 = d^2                                      a rod
+    p = through + s R line                               a point on a slide; R u . R' v = 0 if it may not turn
+    and those of the inputs: see `drives`
+
+A body that shares a point with one before it hangs on that point, so its place is no unknown. The numbers w
+are what the inputs stand for. Everything that the drawing gives is exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+from validate.reference.directions import direction_of
+from validate.reference.errors import BadInputError
+from validate.reference.polynomial import Polynomial
+from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
+
+CHASSIS = "chassis"
+Table = Mapping[str, Vector]
+Exact = Callable[[Fraction], Scalar]
+Reader = Callable[[Table, Sequence[Scalar], Exact], Sequence[Scalar]]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body in the equations: where a vector fixed in it points to, and where a point of it is."""
+
+    turned: Callable[[Vector], Vector]
+    place: Callable[[str], Vector]
+
+
+class Compiler:
+    """Unknowns and rows as they are found; symbols of the numbers w are negative until all are known."""
+
+    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction) -> None:
+        self.plain, self.table, self.unit = plain, table, unit
+        self.lengths: list[bool] = []
+        self.rows: list[tuple[str, Polynomial]] = []
+        self.readers: list[Reader] = []
+        self.positive: list[Polynomial] = []
+        self.triples: list[tuple[Vector, Vector, Vector]] = []
+        self.frames: dict[str, tuple[Vector, Vector]] = {}
+        self.numbers = 0
+        self.lines: dict[str, tuple[list[Polynomial], Vector, bool]] = {}
+        self.free: dict[str, Vector] = {}
+        chassis = plain["bodies"][CHASSIS]
+        self.bodies = {CHASSIS: Body(lambda v: v, lambda name: self.table[name])}
+        self.holder = dict.fromkeys(chassis, CHASSIS)
+
+    def add_parts(self) -> None:
+        """The rows of bodies, slides and rods."""
+        for name in self._in_order():
+            self._add_body(name)
+        for name, slide in self.plain["slides"].items():
+            self._add_slide(name, slide)
+        for name, ends in self.plain["rods"].items():
+            gap = minus(*(self.place(end) for end in ends))
+            drawn = minus(*(self.table[end] for end in ends))
+            if dot(drawn, drawn) == 0:
+                raise BadInputError(f"the length of {name}", 0, "more than 0")
+            self.row(name, dot(gap, gap) - dot(drawn, drawn))
+
+    def unknowns(self, count: int, read: Reader, length: bool = False) -> list[Polynomial]:
+        """New ones; `read` gives their values from points and the unknowns before them."""
+        first = len(self.lengths)
+        self.lengths += [length] * count
+        self.readers.append(read)
+        return [Polynomial.symbol(first + i) for i in range(count)]
+
+    def number(self) -> Polynomial:
+        """A new number w."""
+        self.numbers += 1
+        return Polynomial.symbol(-self.numbers)
+
+    def row(self, name: str, row: Scalar) -> None:
+        """One equation: what is named is 0."""
+        self.rows.append((name, row))
+
+    def place(self, point: str) -> Vector:
+        """Where a point is."""
+        if point in self.holder:
+            return self.bodies[self.holder[point]].place(point)
+        if point not in self.free:
+            if point not in self.table:
+                raise BadInputError("a point", point, f"one of {', '.join(self.table)}")
+            x, y, z = self.unknowns(3, lambda points, *_: points[point], length=True)
+            self.free[point] = (x, y, z)
+        return self.free[point]
+
+    def _in_order(self) -> Iterator[str]:
+        """The moving bodies, each after those that it hangs on."""
+        left = {name: set(points) for name, points in self.plain["bodies"].items() if name != CHASSIS}
+        chassis = set(self.plain["bodies"][CHASSIS])
+        placed = set(chassis)
+        while left:
+            name = max(left, key=lambda n: (min(len(left[n] & chassis), 2), bool(left[n] & placed)))
+            placed |= left.pop(name)
+            yield name
+
+    def _add_body(self, name: str) -> None:
+        points: list[str] = self.plain["bodies"][name]
+        shared: dict[str, list[str]] = {}
+        for other in self.bodies:
+            both = [p for p in points if p in self.plain["bodies"][other]]
+            if both:
+                shared[other] = both
+        if any(len(both) > 2 for both in shared.values()):
+            raise BadInputError(f"the body {name}", "three points with another body", "at most two")
+        # A hinge is told by both its points: bodies with two come first.
+        ties = sorted(shared.items(), key=lambda item: -len(item[1]))
+        on_chassis = shared.get(CHASSIS, [])
+        if len(on_chassis) == 2:
+            self.bodies[name] = self._hinged(name, points, on_chassis[0], on_chassis[1])
+            tied = set(on_chassis)
+        else:
+            hung = ties[0][1][0] if ties else None
+            base = self.bodies[ties[0][0]].place(ties[0][1][0]) if ties else None
+            self.bodies[name] = self._loose(name, points, hung or points[0], base)
+            tied = {hung} if hung else set()
+        body = self.bodies[name]
+        for other, both in ties:
+            if other == CHASSIS and len(both) == 2:
+                continue
+            for i, point in enumerate(both):
+                if point in tied:
+                    continue
+                tied.add(point)
+                apart = minus(body.place(point), self.bodies[other].place(point))
+                if i == 0:
+                    for axis in range(3):
+                        self.row(f"{point} of {name} and {other}", apart[axis])
+                else:
+                    self._close_hinge(name, other, both, apart)
+        for point in points:
+            self.holder.setdefault(point, name)
+
+    def _close_hinge(self, name: str, other: str, both: Sequence[str], apart: Vector) -> None:
+        axis = minus(self.table[both[1]], self.table[both[0]])
+        if dot(axis, axis) == 0:
+            raise BadInputError(f"the hinge of {name} and {other}", "both points in one place", "a line")
+        for side in across(axis):
+            self.row(f"hinge of {name} and {other}", dot(self.bodies[other].turned(side), apart))
+        self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
+
+    def _hinged(self, name: str, points: Sequence[str], a: str, b: str) -> Body:
+        """A body on a hinge of the chassis."""
+        n = near_one(minus(self.table[b], self.table[a]))
+        if n is None:
+            raise BadInputError(f"the hinge of {name}", f"{a} and {b} in one place", "a line")
+        nn, start = dot(n, n), self.table[a]
+
+        def beside(point: str) -> Vector:
+            return cross(n, minus(self.table[point], start))
+
+        seen = max(points, key=lambda point: float(dot(beside(point), beside(point))))
+        g = beside(seen)
+        gg = dot(g, g)
+        if gg == 0:
+            raise BadInputError(f"the points of {name}", "all on one line", "a point beside the hinge")
+        h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point seen, square to it
+
+        cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / gg)
+
+        def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+            r = minus(points[seen], points[a])
+            return [dot(r, each(exact, cosine)), dot(r, each(exact, sine))]
+
+        c, s = self.unknowns(2, read)
+        self.row(f"turn of {name}", c * c + s * s * nn - 1)
+
+        def turned(v: Vector) -> Vector:
+            along = times(n, dot(n, v) / nn)
+            return plus(along, plus(times(minus(v, along), c), times(cross(n, v), s)))
+
+        self.frames[name] = (turned(h), turned(n))
+        return Body(turned, lambda point: plus(start, turned(minus(self.table[point], start))))
+
+    def _loose(self, name: str, points: Sequence[str], base: str, origin: Vector | None) -> Body:
+        """A body that hangs on a point, or on none."""
+        given = [(p, minus(self.table[p], self.table[q])) for p, q in combinations(points, 2)]
+        ends = dict(zip(combinations(points, 2), (v for _, v in given), strict=True))
+        (i, j), (k, m) = max(combinations(ends, 2), key=lambda pair: _spread(ends[pair[0]], ends[pair[1]]))
+        one, two = ends[i, j], ends[k, m]
+        normal = cross(one, two)
+        area = dot(normal, normal)
+        if area == 0:
+            raise BadInputError(f"the points of {name}", "all on one line", "a triangle")
+        # Rows that give 1 with one, two and the normal, each 0 with the others.
+        duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
+
+        def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+            a, b = minus(points[i], points[j]), minus(points[k], points[m])
+            images, g = (a, b, cross(a, b)), [each(exact, dual) for dual in duals]
+            return [
+                images[0][axis] * g[0][column]
+                + images[1][axis] * g[1][column]
+                + images[2][axis] * g[2][column]
+                for column in range(3)
+                for axis in range(3)
+            ]
+
+        y = self.unknowns(9, read)
+        c1, c2, c3 = columns = ((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]))
+        for p in range(3):
+            for q in range(p, 3):
+                self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
+        self.triples.append(columns)
+        if origin is None:
+            px, py, pz = self.unknowns(3, lambda points, *_: points[base], length=True)
+            origin = (px, py, pz)
+
+        def turned(v: Vector) -> Vector:
+            return plus(plus(times(c1, v[0]), times(c2, v[1])), times(c3, v[2]))
+
+        self.frames[name] = (c1, c2)
+        return Body(turned, lambda point: plus(origin, turned(minus(self.table[point], self.table[base]))))
+
+    def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
+        """Points on a line of a body."""
+        body, through = self.bodies[slide["body"]], slide["through"]
+        if through not in self.plain["bodies"][slide["body"]]:
+            raise BadInputError(f"slides.{name}: through", through, f"a point of {slide['body']}")
+        along = direction_of(self.plain, slide["along"])
+        of_the_car = along is not None
+        if along is None:
+            along = near_one(minus(self.table[slide["along"]], self.table[through]))
+        if along is None:
+            raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
+        line, start = body.turned(along), body.place(through)
+        shares = []
+        for point in slide["points"]:
+            shares.append(self._on_line(name, point, slide["body"], through, along, line, start))
+        self.lines[name] = (shares, along, of_the_car)
+        if not slide["turns"]:
+            self._hold(name, slide, along)
+
+    def _on_line(
+        self, name: str, point: str, body: str, through: str, along: Vector, line: Vector, start: Vector
+    ) -> Polynomial:
+        shorter = times(line, 1 / dot(along, along))
+
+        def read(points: Table, unknown: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+            now = each(exact, shorter) if body == CHASSIS else at(shorter, unknown, exact)
+            return [dot(minus(points[point], points[through]), now)]
+
+        (share,) = self.unknowns(1, read)
+        there = plus(start, times(line, share))
+        if body == CHASSIS and point not in self.holder and point not in self.free:
+            self.free[point] = there  # its place needs no unknowns besides
+        else:
+            for axis in range(3):
+                self.row(f"{point} on {name}", self.place(point)[axis] - there[axis])
+        return share
+
+    def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
+        """A sliding joint that may not turn."""
+        one = self.bodies[slide["body"]]
+        holders = [b for b in self.bodies if b != slide["body"] and self._holds(b, slide["points"])]
+        if not holders:
+            raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
+        u, v = across(along)
+        other = self.bodies[holders[0]]
+        self.row(f"turn of {name}", dot(one.turned(u), other.turned(v)))
+        self.positive.append(dot(one.turned(u), other.turned(u)))
+
+    def _holds(self, body: str, points: Sequence[str]) -> bool:
+        return all(point in self.plain["bodies"][body] for point in points)
+
+
+def at(vector: Vector, values: Sequence[Scalar], exact: Exact) -> Vector:
+    """The values of a vector of polynomials."""
+    return each(lambda one: one.at(values, exact), vector)
+
+
+def _spread(k: Vector, m: Vector) -> float:
+    """|k x m|^2 / (|k|^2 + |m|^2): errors of two vectors turn a body the less the greater this is."""
+    normal = cross(k, m)
+    return float(dot(normal, normal)) / (float(dot(k, k) + dot(m, m)) or 1.0)

@@ -1,0 +1,119 @@
+r"""The equations of a mechanism in one kind of number: their values, their Jacobian, and what they place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import arb, arb_mat
+
+from validate.reference.mechanism import Mechanism
+from validate.reference.polynomial import Monomial, Polynomial, value_of
+from validate.reference.vectors import Scalar, Vector, each
+
+Terms = tuple[tuple[Monomial, Scalar], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """C(y, w) with its coefficients in one kind of number; y and w may be jets or power series of it.
+
+    Attributes:
+        size: unknowns, and equations.
+        rows: of each row its terms, in the unknowns and the numbers w behind them.
+        entries: (row, column, terms) of the Jacobian by the unknowns, zeros left out.
+        places: of each point, relative to the chassis.
+        frames: of each moving body two vectors fixed in it.
+    """
+
+    size: int
+    rows: tuple[Terms, ...]
+    entries: tuple[tuple[int, int, Terms], ...]
+    places: Mapping[str, tuple[Terms, Terms, Terms]]
+    frames: Mapping[str, tuple[tuple[Terms, Terms, Terms], tuple[Terms, Terms, Terms]]]
+
+    def residual(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+        """C(y, w)."""
+        values = [*unknown, *numbers]
+        return [value_of(row, values) for row in self.rows]
+
+    def jacobian(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
+        """dC/dy as (row, column, entry), zeros left out."""
+        values = [*unknown, *numbers]
+        return [(row, column, value_of(terms, values)) for row, column, terms in self.entries]
+
+    def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> arb_mat:
+        """dC/dy as a square matrix of balls."""
+        matrix = arb_mat(self.size, self.size)
+        for row, column, entry in self.jacobian(unknown, numbers):
+            matrix[row, column] = entry
+        return matrix
+
+    def bend(self, unknown: Sequence[arb], numbers: Sequence[arb] = ()) -> arb_mat:
+        """By how much these changes of y and w change dC/dy, which is linear in both."""
+        matrix = arb_mat(self.size, self.size)
+        values = [*unknown, *numbers]
+        for row, column, terms in self.entries:
+            moved = [one for one in terms if one[0] and one[0][0] < len(values)]
+            if moved:
+                matrix[row, column] = value_of(moved, values)
+        return matrix
+
+    def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
+        """Where every point is, relative to the chassis."""
+        return {name: _vector(place, unknown) for name, place in self.places.items()}
+
+    def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
+        """Of every moving body two vectors fixed in it and not parallel."""
+        return {
+            name: (_vector(one, unknown), _vector(two, unknown)) for name, (one, two) in self.frames.items()
+        }
+
+
+def equations_in(
+    mechanism: Mechanism,
+    rows: Sequence[int],
+    number: Callable[[Sequence[Fraction]], Scalar],
+    *moved: Mechanism,
+) -> Equations:
+    """The equations with their coefficients in one kind of number.
+
+    Args:
+        rows: those that are solved, as many as unknowns.
+        number: the coefficient of that kind, from the exact one and the same one of each `moved` drawing.
+    """
+    every = (mechanism, *moved)
+
+    def terms(polynomials: Sequence[Polynomial]) -> Terms:
+        monomials = {m: None for one in polynomials for m in one.terms}
+        ordered = sorted(monomials, key=lambda m: -len(m))
+        zero = Fraction(0)
+        return tuple((m, number([one.terms.get(m, zero) for one in polynomials])) for m in ordered)
+
+    def vector(vectors: Sequence[Vector]) -> tuple[Terms, Terms, Terms]:
+        x, y, z = (terms([v[axis] for v in vectors]) for axis in range(3))
+        return x, y, z
+
+    chosen = [[one.rows[row] for one in every] for row in rows]
+    entries = []
+    for i, row in enumerate(chosen):
+        for j in sorted({s for one in row for m in one.terms for s in m if s < mechanism.size}):
+            entries.append((i, j, terms([one.derivative(j) for one in row])))
+    return Equations(
+        size=mechanism.size,
+        rows=tuple(terms(row) for row in chosen),
+        entries=tuple(entries),
+        places={name: vector([one.places[name] for one in every]) for name in mechanism.places},
+        frames={
+            name: (
+                vector([one.frames[name][0] for one in every]),
+                vector([one.frames[name][1] for one in every]),
+            )
+            for name in mechanism.frames
+        },
+    )
+
+
+def _vector(terms: tuple[Terms, Terms, Terms], values: Sequence[Scalar]) -> Vector:
+    return each(lambda one: value_of(one, values), terms)

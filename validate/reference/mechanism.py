@@ -1,0 +1,109 @@
+"""A mechanism's description, compiled: equations and inputs in their final numbering."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from validate.reference.compiler import Compiler, Exact, Reader, Table, at
+from validate.reference.drives import Drive, drive_of
+from validate.reference.errors import BadInputError
+from validate.reference.polynomial import Polynomial
+from validate.reference.vectors import Scalar, Vector, cross, dot, each
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """The compiled description.
+
+    Attributes:
+        size: unknowns.
+        lengths: of every unknown, whether it is a length (else a turn or a share of a line).
+        rows: C(y, w); symbols from `size` on are the numbers w.
+        names: of every row, what it says.
+        places: of every point, relative to the chassis.
+        frames: of every moving body two vectors fixed in it and not parallel.
+        triples: the columns of every matrix R; an assembly's are right-handed.
+        positive: products that are positive in an assembly: where not, a hinge is mounted the wrong way round
+            or an angle is off by half a turn.
+        readers: give the unknowns of assembled points, one after the other.
+        drives: by input, what its numbers w are; chassis motions are not among them.
+    """
+
+    size: int
+    lengths: tuple[bool, ...]
+    rows: tuple[Polynomial, ...]
+    names: tuple[str, ...]
+    places: Mapping[str, Vector]
+    frames: Mapping[str, tuple[Vector, Vector]]
+    triples: tuple[tuple[Vector, Vector, Vector], ...]
+    positive: tuple[Polynomial, ...]
+    readers: tuple[Reader, ...]
+    drives: Mapping[str, Drive]
+
+    def unknown_of(self, points: Table, exact: Exact) -> list[Scalar]:
+        """The unknowns of assembled points, relative to the chassis, in their kind of number.
+
+        Args:
+            exact: a fraction in that kind.
+        """
+        unknown: list[Scalar] = []
+        for read in self.readers:
+            unknown.extend(read(points, unknown, exact))
+        return unknown
+
+    def handed(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+        """Numbers that are all positive in an assembly, and one of them not in a zero that is none."""
+        values = [*unknown, *numbers]
+        found = [one.at(values, exact) for one in self.positive]
+        for columns in self.triples:
+            a, b, c = (at(column, values, exact) for column in columns)
+            found.append(dot(cross(a, b), c))
+        return found
+
+
+def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction) -> Mechanism:
+    """The equations of a description, its points taken from `table`, local.
+
+    Raises:
+        BadInputError: something in the description cannot be.
+    """
+    compiler = Compiler(plain, table, unit)
+    compiler.add_parts()
+    drives = {
+        name: drive_of(compiler, name, spec)
+        for name, spec in compiler.plain["inputs"].items()
+        if "moves" not in spec and "turns" not in spec
+    }
+    for name in compiler.table:
+        if name not in compiler.holder and name not in compiler.free:
+            raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
+    size = len(compiler.lengths)
+
+    def final(vector: Vector) -> Vector:
+        return each(lambda one: _final(one, size), vector)
+
+    return Mechanism(
+        size=size,
+        lengths=tuple(compiler.lengths),
+        rows=tuple(_final(row, size) for _, row in compiler.rows),
+        names=tuple(name for name, _ in compiler.rows),
+        places={name: final(compiler.place(name)) for name in compiler.table},
+        frames={body: (final(u), final(v)) for body, (u, v) in compiler.frames.items()},
+        triples=tuple((final(a), final(b), final(c)) for a, b, c in compiler.triples),
+        positive=tuple(_final(one, size) for one in compiler.positive),
+        readers=tuple(compiler.readers),
+        drives=drives,
+    )
+
+
+def _final(one: Scalar, size: int) -> Polynomial:
+    """With the symbols of the numbers behind the unknowns."""
+    terms = {
+        tuple(sorted(s if s >= 0 else size - 1 - s for s in monomial)): coefficient
+        for monomial, coefficient in (Polynomial({}) + one).terms.items()
+        if coefficient
+    }
+    return Polynomial(dict(sorted(terms.items(), key=lambda term: -len(term[0]))))

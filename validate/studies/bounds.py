@@ -1,0 +1,388 @@
+r"""Whether pointcoord's proven bounds hold, and how loose they are, up to the poses where a car locks.
+
+Two sets of random poses of every mechanism (see `near_singular`), each reproducible by its number: cars held
+close to the end of an input, and motions that run towards such an end, at random instants between. Each
+instant is proven alone and among many that are close to it; the lesser bound counts.
+
+    pointcoord study bounds --poses 10000
+
+The error of a pose is its distance from the reference, whose own is below 1e-40 of the car. It must never
+exceed the bound:
+
+    error <= bound,    and    loss = error / (eps (condition size + far))    must not grow to the end,
+
+with size the power of two in which the mechanism counts lengths and far its distance from the origin.
+Near the end of an input the condition number grows as distance^(-1/2), because the end is a fold, so an
+error that follows condition eps has slope 1 over that rounding and -1/2 over the distance in
+double-logarithmic scales.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from functools import partial
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord.numerics.rounding import EPS
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.cars.base_cars import Variant, variants
+from validate.cars.near_singular import NearPose, near_pose
+from validate.cars.scene_content import content_of
+from validate.exit_status import ExitStatus
+from validate.output.table import Part, Table
+from validate.reference import InfeasibleError, Instant, NoReferenceError
+from validate.reference.exact import as_fraction
+from validate.studies.study import Findings, Row, Study, Task
+
+Array = NDArray[np.float64]
+Answer = TypeVar("Answer")
+
+MOTIONS = 20  # poses for each motion, unless they are counted
+DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
+INSTANTS = 4  # per motion
+COMPANY = 63  # instants beside each
+CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
+LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
+HELD, MOVING = "held", "moving"
+FOLD = 1e-3  # nearer to the end than this part of the range, its fold is all that matters
+
+# Lengths in mm. A refused pose has a suspension, a distance and a refusal alone.
+COLUMNS: Mapping[str, str] = {
+    **dict.fromkeys(("suspension", "driven", "lock", "refusal"), "string"),  # driven, lock: of the `NearPose`
+    "distance": "float64",  # of the instant, from the end, in parts of the input's range
+    "instant": "float64",  # s; 0 of a held pose
+    "condition": "float64",  # of the Jacobian
+    "size": "float64",  # of the mechanism, a power of two
+    "far": "float64",  # largest coordinate of a point in the frame of the scene
+    **dict.fromkeys(("error", "bound"), "float64"),  # of the solved points
+    **dict.fromkeys(("carried_error", "carried_bound"), "float64"),  # of those carried, where there are any
+}
+
+
+def bounds(poses: int = 2000, motions: int | None = None, seed: int = 0) -> Study:
+    """Poses held close to the end of an input, and motions towards one."""
+    motions = poses // MOTIONS if motions is None else motions
+    held = [Task(HELD, number) for number in range(poses)]
+    moving = [Task(MOVING, number) for number in range(motions)]
+    examine, summary = partial(examined, seed=seed), partial(found, seed=seed)
+    return Study("bounds", "pose", {"seed": seed}, COLUMNS, [*held, *moving], examine, summary, chunk=8)
+
+
+def examined(task: Task, seed: int) -> list[Row]:
+    """Hold a pose, or the instants of a motion, against the reference."""
+    if task.part == HELD:
+        return held_pose(near_pose(task.number, seed))
+    return moving_instants(task.number, seed)
+
+
+def held_pose(pose: NearPose) -> list[Row]:
+    """The check of a car whose inputs are constant."""
+    laws = {name: [value] for name, value in pose.inputs.items()}
+    return _checked(pose, laws, np.zeros(1), stop=0.0)
+
+
+def moving_instants(number: int, seed: int) -> list[Row]:
+    """Checks at random instants of a motion from the drawing towards the end of an input.
+
+    All inputs run at constant rates for one second; half the instants lie anywhere, half towards the end.
+    """
+    pose = near_pose(number, seed, nearest=1e-8)
+    rng = np.random.default_rng([seed, number, 1])
+    laws = {name: [pose.home[name], value - pose.home[name]] for name, value in pose.inputs.items()}
+    late = 1.0 - 10.0 ** rng.uniform(-8.0, 0.0, INSTANTS // 2)
+    return _checked(pose, laws, np.concatenate([rng.uniform(0.0, 1.0, INSTANTS - len(late)), late]), stop=1.0)
+
+
+def _checked(pose: NearPose, laws: Mapping[str, Sequence[float]], instants: Array, stop: float) -> list[Row]:
+    samples = 1 if stop == 0.0 else 2
+    scene = Scene.from_mapping(content_of(pose.car, laws, stop=stop, samples=samples, effects=()))
+    motion = _answer(lambda: simulate(scene))
+    return [{"suspension": pose.variant.words, **_check(pose, scene, float(t), motion)} for t in instants]
+
+
+def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -> Row:
+    # The distance of a motion shrinks with the part of its way that is left.
+    rate = (*(scene.inputs[pose.driven].polynomial or ()), 0.0)[1]
+    distance = pose.distance + abs(rate) * (1.0 - instant) / pose.reach
+    # For the values that the laws have in double precision, as the bound is for these.
+    inputs = {name: (value, 0.0, 0.0) for name, (value, *_) in inputs_at(scene, instant).items()}
+    reference = _answer(lambda: reference_instant(scene, inputs, digits=DIGITS))
+    if isinstance(motion, str) or (isinstance(reference, str) and reference != InfeasibleError.__name__):
+        ours, theirs = (one if isinstance(one, str) else "answers" for one in (motion, reference))
+        return {"distance": distance, "refusal": f"pointcoord: {ours}; reference: {theirs}"}
+    company, place = _company(motion, instant)
+    together = motion.at(company)
+    samples = together.part(place, place + 1)
+    # Neighbours share an inverse; what is proven among them must hold as well as what is proven alone.
+    proof, among = motion.proof_of(samples), motion.proof_of(together)
+    bound, carried = (
+        min(float(getattr(proof, name)[0]), float(getattr(among, name)[place]))
+        for name in ("bound", "carried_bound")
+    )
+    if not math.isfinite(bound):
+        return {"distance": distance, "refusal": "pointcoord: no finite bound"}
+
+    def error(names: set[str]) -> float | None:
+        if not names:
+            return None
+        # Where the reference has no such assembly, nothing bounds the error.
+        exact = reference if isinstance(reference, Instant) else None
+        return max(math.inf if exact is None else _error(exact, n, samples.position[n][0]) for n in names)
+
+    names = set(scene.mechanism.topology.carried)
+    return {
+        "driven": pose.driven,
+        "lock": pose.lock,
+        "distance": distance,
+        "instant": instant,
+        "condition": float(proof.condition[0]),
+        "size": motion.unit,
+        "far": max(float(np.abs(place).max()) for place in samples.position.values()),
+        "error": error(set(samples.position) - names),
+        "bound": bound,
+        "carried_error": error(names),
+        "carried_bound": carried if names else None,
+    }
+
+
+def _company(motion: Motion, instant: float) -> tuple[Array, int]:
+    """An instant of a motion among many that are close to it, and its place among them."""
+    first, last = float(motion.times[0]), float(motion.times[-1])
+    # Closer where an end is near, in whose last part everything changes as fast as in all that is before.
+    near = min(CLOSE, NEARER * (last - instant))
+    company = np.unique(np.clip(instant + near * np.linspace(-1.0, 1.0, COMPANY), first, last))
+    company = np.unique(np.append(company, instant))
+    return company, int(np.searchsorted(company, instant))
+
+
+def _answer(ask: Callable[[], Answer]) -> Answer | str:
+    """What is asked for, or the name of the error that refuses it."""
+    try:
+        return ask()
+    except (PointcoordError, NoReferenceError) as error:
+        return type(error).__name__
+
+
+def _error(reference: Instant, name: str, place: Array) -> float:
+    """Largest component of the distance of a computed point from the true one, mm."""
+    pairs = zip(reference.position[name], place, strict=True)
+    return max(float(abs(as_fraction(exact, name) - Fraction(float(found)))) for exact, found in pairs)
+
+
+@dataclass(frozen=True)
+class Checks:
+    """Poses held against the reference; a column is an array of a number for each of them."""
+
+    rows: tuple[Row, ...]
+
+    def __getitem__(self, name: str) -> Array:
+        """A column; NaN where a row has no such number."""
+        return np.array([row[name] for row in self.rows], dtype=float)
+
+    def part(self, chosen: NDArray[np.bool_]) -> Checks:
+        """Those that are chosen."""
+        return Checks(tuple(row for row, one in zip(self.rows, chosen, strict=True) if one))
+
+    @property
+    def share(self) -> Array:
+        """The larger error in parts of its bound: above 1 the bound is broken."""
+        solved, carried = self["error"] / self["bound"], self["carried_error"] / self["carried_bound"]
+        return np.where(
+            [row["carried_bound"] is None for row in self.rows], solved, np.maximum(solved, carried)
+        )
+
+    @property
+    def rounding(self) -> Array:
+        """What rounding may do: eps (condition size + far), mm."""
+        return EPS * (self["condition"] * self["size"] + self["far"])
+
+    @property
+    def loss(self) -> Array:
+        """Error in parts of that rounding."""
+        return self["error"] / self.rounding
+
+    @property
+    def broken(self) -> Checks:
+        """Where the bound is below the error."""
+        return self.part(~(self.share <= 1.0))
+
+    @property
+    def looseness(self) -> dict[str, Array]:
+        """Bound over error, which is infinite where the error is zero, for both kinds of points."""
+        carried = self.part(np.isfinite(self["carried_bound"]))
+        with np.errstate(divide="ignore"):
+            return {
+                "solved points": self["bound"] / self["error"],
+                "carried points": carried["carried_bound"] / carried["carried_error"],
+            }
+
+    @property
+    def error_over_rounding(self) -> Fit:
+        """Error over eps (condition size + far): slope 1 where rounding alone makes it."""
+        return fitted(self.rounding / self["size"], self["error"] / self["size"])
+
+    @property
+    def error_over_distance(self) -> Fit:
+        """The same over the distance from the end, near it, of cars near the origin: slope -1/2 at a fold."""
+        near = self.part((self["distance"] < FOLD) & (self["far"] < 10.0 * self["size"]))
+        return fitted(near["distance"], near["error"] / near["size"])
+
+
+@dataclass(frozen=True)
+class Fit:
+    """log10 y = slope log10 x + constant by least squares.
+
+    Attributes:
+        slope: its value. scatter: root mean square of what is left, in decades.
+        poses: how many were fitted; errors of zero have no logarithm and are left out.
+    """
+
+    slope: float
+    scatter: float
+    poses: int
+
+
+def fitted(x: Array, y: Array) -> Fit:
+    """Fit a power law; NaN with fewer than three different x."""
+    there = (y > 0.0) & (y < math.inf)
+    u, v = np.log10(x[there]), np.log10(y[there])
+    if len(np.unique(u)) < 3:
+        return Fit(math.nan, math.nan, len(u))
+    slope, constant = np.polyfit(u, v, 1)
+    return Fit(float(slope), float(np.sqrt(np.mean((v - slope * u - constant) ** 2))), len(u))
+
+
+def found(rows: Sequence[Row], seed: int) -> Findings:
+    """Whether every bound holds, and how loose they are."""
+    checks = Checks(tuple(row for row in rows if row.get("refusal") is None))
+    refused = Counter(row["suspension"] for row in rows if row.get("refusal") is not None)
+    reasons = Counter(row["refusal"] for row in rows if row.get("refusal") is not None).most_common()
+    broken = checks.broken
+    parts: list[Part] = [_summary(checks, refused), ""]
+    data: dict[str, Any] = {
+        "seed": seed,
+        "refusals": [{"reason": reason, "poses": count} for reason, count in reasons],
+        "broken": _records(broken),
+    }
+    for part, what in (
+        (HELD, "poses of cars ({}), held close to the end of an input"),
+        (MOVING, "instants of motions of cars ({}) that run towards the end of an input"),
+    ):
+        data[part] = {}
+        for variant in variants():
+            here = _of(checks, variant, part)
+            parts += _set_parts(what.format(variant.words), here)
+            data[part][variant.words] = _set_data(here)
+    parts += [
+        f"refused: {sum(refused.values())}",
+        *(f"  {count}  {reason}" for reason, count in reasons),
+        f"bounds below the error: {len(broken.rows)}",
+        *(f"  {_case(broken, i)}" for i in range(len(broken.rows))),
+    ]
+    return Findings(tuple(parts), data, ExitStatus.DISAGREE if broken.rows else ExitStatus.AGREE)
+
+
+def _of(checks: Checks, variant: Variant, part: str | None = None) -> Checks:
+    """The checks of one kind of suspension, held or moving or both."""
+    words = variant.words
+    return Checks(tuple(r for r in checks.rows if r["suspension"] == words and part in (None, r["part"])))
+
+
+def _summary(checks: Checks, refused: Mapping[str, int]) -> Table:
+    """A row for each suspension and closure."""
+    rows = []
+    for variant in variants():
+        here, parts = _of(checks, variant), [_of(checks, variant, part) for part in (HELD, MOVING)]
+        counts = (*(len(one.rows) for one in parts), refused[variant.words], len(here.broken.rows))
+        share = f"{here.share.max():.7g}" if here.rows else "-"
+        loose = f"{np.median(here.looseness['solved points']):.3g}" if here.rows else "-"
+        rows.append((variant.words, *map(str, counts), share, loose))
+    head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")
+    return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
+
+
+def _set_parts(name: str, checks: Checks) -> tuple[Part, ...]:
+    if not checks.rows:
+        return (f"{name}: none",)
+    decades = np.floor(np.log10(checks["distance"])).astype(int)
+    rows = []
+    for decade in np.unique(decades):
+        part = checks.part(decades == decade)
+        rows.append(
+            (
+                f"1e{decade} to 1e{decade + 1}",
+                str(len(part.rows)),
+                f"{np.median(part['condition']):.1e}",
+                f"{np.median(part['error'] / part['size']):.1e}",
+                f"{np.median(part.loss):.2g}",
+                f"{part.loss.max():.2g}",
+                f"{np.median(part.looseness['solved points']):.3g}",
+                f"{part.share.max():.2g}",
+            )
+        )
+    head = (
+        *("distance / range", "poses", "condition", "error / size", "loss", "largest loss"),
+        *("bound / error", "largest error / bound"),
+    )
+    quantiles = [
+        (points, *(f"{np.quantile(ratio, level, method='nearest'):.3g}" for level in LEVELS))
+        for points, ratio in checks.looseness.items()
+        if len(ratio)
+    ]
+    by_rounding, by_distance = checks.error_over_rounding, checks.error_over_distance
+    return (
+        f"{len(checks.rows)} {name}; medians, unless it says largest",
+        "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
+        Table(head, tuple(rows)),
+        Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(quantiles)),
+        f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
+        f"scatter {by_rounding.scatter:.2f} decades",
+        f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
+        f"scatter {by_distance.scatter:.2f} decades",
+        f"nearest to its bound: {_case(checks, int(checks.share.argmax()))}",
+        f"largest loss: {_case(checks, int(checks.loss.argmax()))}",
+        "",
+    )
+
+
+def _case(checks: Checks, i: int) -> str:
+    row, carried = checks.rows[i], checks["carried_error"][i]
+    return (
+        f"number {row['number']}, {row['suspension']}, "
+        f"{row['driven']} {row['distance']:.2e} from the end ({row['lock']}), "
+        f"t = {row['instant']!r} s: error / bound {checks.share[i]:.3g}, error {row['error']:.2e} mm, "
+        + (f"carried points {carried:.2e} mm, " if row["carried_bound"] is not None else "")
+        + f"condition {row['condition']:.2e}, loss {checks.loss[i]:.2g}"
+    )
+
+
+def _set_data(checks: Checks) -> dict[str, Any]:
+    return {
+        "count": len(checks.rows),
+        "bound_over_error": {
+            points.replace(" ", "_"): {
+                f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS
+            }
+            for points, ratio in checks.looseness.items()
+            if len(ratio)
+        },
+        "error_over_rounding": asdict(checks.error_over_rounding),
+        "error_over_distance": asdict(checks.error_over_distance),
+        "largest_loss": float(checks.loss.max()) if checks.rows else None,
+        "largest_error_over_bound": float(checks.share.max()) if checks.rows else None,
+        "checks": _records(checks),
+    }
+
+
+def _records(checks: Checks) -> list[dict[str, Any]]:
+    of = {variant.words: asdict(variant) for variant in variants()}
+    names = ("number", *(name for name in COLUMNS if name not in ("suspension", "refusal")))
+    return [{"variant": of[row["suspension"]], **{name: row[name] for name in names}} for row in checks.rows]

@@ -1,0 +1,266 @@
+"""Who works out the tasks of a study: processes of this machine, or any Dask cluster by its address."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
+from importlib import import_module
+from multiprocessing import resource_tracker
+from typing import Any
+
+from validate.comparison.examined import told_failure
+from validate.extras import MissingPackage
+from validate.plain_text import one_line, shown
+from validate.studies.store import Store
+from validate.studies.study import (
+    ClusterLost,
+    NoCluster,
+    Row,
+    Study,
+    Task,
+    TaskFailed,
+    differences,
+    made_by,
+)
+
+LOCAL = "local"
+HERE = "127.0.0.1"  # nobody else reaches processes of this machine: what they are sent, they run
+ANSWER = 5.0  # seconds that a scheduler is given to answer
+FIRST_WORKER = 10.0  # and a cluster to have a worker
+WRITTEN = 2.0  # seconds of what is worked out that one file holds: what the end of this process can cost
+MOST = 5000  # Dask tasks of a run: a scheduler needs a millisecond for each
+LOGGERS = ("distributed", "tornado", "asyncio")
+INSTALL = "pip install 'pointcoord[validate,cluster]'"
+
+
+def run(
+    study: Study,
+    tasks: Sequence[Task],
+    store: Store,
+    client: Any,
+    told: Callable[[int], None] = lambda done: None,
+) -> None:
+    """Work out tasks of a study and record them; whatever ends it, what was done before is recorded.
+
+    A worker that dies costs the tasks that it was at: another one works them out.
+
+    Args:
+        told: how many of the tasks are recorded, whenever there are more.
+    Raises:
+        NoCluster: a worker runs another program, or several tasks at once.
+        ClusterLost: the scheduler is gone, or a task ends its workers one after the other.
+        TaskFailed: a task raised an error.
+        OutputError: the records cannot be written.
+    """
+    distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
+    chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
+    # Each run has keys of its own: a scheduler gives what it still has of another one's otherwise.
+    run = os.urandom(4).hex()
+    keys = [f"{study.name}-{run}-{first.part}-{first.number}" for first, *_ in chunks]
+    work = partial(_work_out, study.examine, made_by())
+    held: list[Row] = []
+    file, done, last = store.next_file(), 0, time.monotonic()
+
+    def record() -> None:
+        nonlocal held, file, last
+        if held:
+            # Ctrl-C may come between any two steps: the same rows are then written again to the same file.
+            store.write(file, held)
+            held, file, last = [], store.next_file(), time.monotonic()
+        told(done)
+
+    try:
+        for future in distributed.as_completed(client.map(work, chunks, key=keys), loop=client.loop):
+            count, rows = _result(future, client)
+            # What is handed over is not to be worked out again when the worker that still has it dies.
+            future.release()
+            held, done = [*held, *rows], done + count
+            if time.monotonic() - last >= WRITTEN:
+                record()
+    finally:
+        record()
+
+
+def _work_out(
+    examine: Callable[[Task], list[Row]], program: Mapping[str, str], tasks: Sequence[Task]
+) -> tuple[int, list[Row]]:
+    """How many tasks there are, and their rows, worked out in the process of a worker by one thread."""
+    worker = import_module("distributed").get_worker()
+    if told := differences(made_by(), program):
+        raise NoCluster(f"the worker {worker.address} runs something else: {told}; install the same there")
+    if worker.state.nthreads != 1:
+        # What tasks share, such as the filter of warnings, they would share unguarded.
+        raise NoCluster(
+            f"the worker {worker.address} takes {worker.state.nthreads} tasks at once, a study takes workers "
+            "of one; start it with --nthreads 1"
+        )
+    return len(tasks), [row for task in tasks for row in rows_of(examine, task, worker.address)]
+
+
+def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> list[Row]:
+    """The rows of a task, worked out here by one thread.
+
+    Raises:
+        NoCluster: a package is not there. TaskFailed: the task raised an error.
+    """
+    began = time.perf_counter()
+    try:
+        with import_module("threadpoolctl").threadpool_limits(1):
+            rows = examine(task)
+    except ImportError as error:
+        raise NoCluster(f"worker {worker}: {error}") from error
+    except Exception as error:
+        raise TaskFailed(
+            f"{' '.join(map(str, task))}: {type(error).__name__}: {told_failure(error)}"
+        ) from error
+    every = {**task._asdict(), "seconds": time.perf_counter() - began, "worker": worker}
+    return [{**every, **row} for row in rows]
+
+
+def _result(future: Any, client: Any) -> tuple[int, list[Row]]:
+    """What came of a future that is finished; it is worked out again if its worker has died since."""
+    distributed = quiet_dask()
+    try:
+        result: tuple[int, list[Row]] = future.result()
+        return result
+    except (NoCluster, TaskFailed):
+        raise
+    except distributed.KilledWorker as error:
+        raise ClusterLost(
+            f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
+            f"them {error.last_worker.address}; look into its log, and at its memory"
+        ) from None
+    except Exception as error:
+        if isinstance(error, distributed.CancelledError) or client.status != "running":
+            raise ClusterLost(
+                "the scheduler does not answer any more; the same command goes on elsewhere"
+            ) from None
+        told = one_line(f"{type(error).__name__}: {error}")
+        raise NoCluster(
+            f"a worker cannot run this program ({told}); it needs {INSTALL}, of this version"
+        ) from None
+
+
+@contextmanager
+def opened(address: str, workers: int | None = None) -> Iterator[Any]:
+    """Dask's client of the cluster at an address, or for `local` of processes of this machine.
+
+    Args:
+        workers: how many processes of this machine; as many as it has processors for us, if not given.
+    Raises:
+        MissingPackage: Dask is not there.
+        NoCluster: nothing answers, or there is no worker.
+    """
+    distributed = quiet_dask()
+    with ExitStack() as stack:
+        cluster = stack.enter_context(_local(distributed, workers)) if address == LOCAL else address
+        if address != LOCAL:
+            _require_scheduler(distributed, address)
+        with warnings.catch_warnings():
+            # Of other versions; those that matter are refused.
+            warnings.simplefilter("ignore")
+            client = distributed.Client(cluster, set_as_default=False)
+        stack.callback(_quietly, client.close)
+        try:
+            client.wait_for_workers(1, timeout=FIRST_WORKER)
+        except TimeoutError:
+            raise NoCluster(
+                f"the scheduler {shown(address)} has no worker after {FIRST_WORKER:g} s; start one: "
+                f"dask worker {shown(address)} --nthreads 1"
+            ) from None
+        yield client
+
+
+def quiet_dask() -> Any:
+    """The package `distributed`, which says nothing by itself: what matters is said by this program.
+
+    Raises:
+        MissingPackage: it is not there.
+    """
+    try:
+        import_module("dask").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
+        distributed = import_module("distributed")
+    except ImportError as error:
+        raise MissingPackage("study", error, "cluster") from None
+    for name in LOGGERS:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    return distributed
+
+
+@contextmanager
+def _local(distributed: Any, workers: int | None) -> Iterator[Any]:
+    """Processes of this machine, one thread each; one that dies is started again.
+
+    Raises:
+        NoCluster: they do not start.
+    """
+    # A terminal sends Ctrl-C to all; who ends the workers is this program. Threads and processes that begin
+    # here, and theirs, never see it. Whoever starts the tracker of multiprocessing would hear again.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        cluster = distributed.LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            host=HERE,
+            # No pages of its own; the port of those that any other cluster here may have is left alone.
+            dashboard_address=None,
+            scheduler_kwargs={"dashboard": False, "dashboard_address": f"{HERE}:0"},
+            memory_limit=0,
+            silence_logs=logging.CRITICAL + 1,
+        )
+    except Exception as error:
+        told = one_line(f"{type(error).__name__}: {error}")
+        raise NoCluster(f"processes of this machine do not start ({told}); try --workers 1") from None
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    try:
+        yield cluster
+    finally:
+        _quietly(cluster.close)
+
+
+def _require_scheduler(distributed: Any, address: str) -> None:
+    """See that a scheduler answers: a client of something else waits for ever.
+
+    Raises:
+        NoCluster: none does.
+    """
+
+    async def asked() -> Any:
+        how = distributed.Security().get_connection_args("client")
+        async with distributed.rpc(address, timeout=ANSWER, connection_args=how) as scheduler:
+            return await scheduler.identity(n_workers=0)
+
+    async def answered() -> Any:
+        return await asyncio.wait_for(asked(), ANSWER)
+
+    began = time.monotonic()
+    try:
+        if asyncio.run(answered()).get("type") == "Scheduler":
+            return
+        told = "something else answers"
+    except MemoryError:
+        # What another program says may be taken for the size of an answer.
+        told = "something else answers"
+    except Exception as error:
+        told = one_line(str(error)) or "no answer"
+    raise NoCluster(
+        f"the scheduler {shown(address)} does not answer as a Dask scheduler ({told}, after "
+        f"{time.monotonic() - began:.1f} s); give --scheduler an address such as tcp://HOST:8786, where dask "
+        "scheduler runs, or leave it out"
+    )
+
+
+def _quietly(close: Callable[..., object]) -> None:
+    """End a client or a cluster, also one that is gone."""
+    with suppress(Exception):
+        close(timeout=ANSWER)

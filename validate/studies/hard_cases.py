@@ -1,0 +1,71 @@
+"""The hard cases worked out value by value: `pointcoord study hard`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+
+from validate.exit_status import ExitStatus
+from validate.hard.case import Answer, Case, Trial
+from validate.hard.catalogue import chosen
+from validate.hard.report import results_data, summary_parts
+from validate.hard.run import Examined, as_expected, examined, tried
+from validate.studies.study import Findings, Row, Study, Task
+
+ANSWER = {
+    **dict.fromkeys(("formulation", "outcome", "reason"), "string"),
+    **dict.fromkeys(("error", "bound", "share", "condition"), "float64"),
+}
+
+
+def hard(cases: Sequence[str] = ()) -> Study:
+    """Hard cases, by name or all of them: a task is one value of the parameter of one case.
+
+    A row is what one formulation answers at one value: the value, an `Answer`, and as JSON the facts, what
+    else was measured there.
+
+    Raises:
+        UnknownCase: there is no such case.
+    """
+    tasks = [Task(case.name, i) for case in chosen(cases) for i in range(len(case.values))]
+    return Study(
+        "hard", "scene", {}, {"value": "float64", "facts": "string", **ANSWER}, tasks, answers, found
+    )
+
+
+def answers(task: Task) -> list[Row]:
+    """Try one value by every formulation of its case."""
+    (case,) = chosen([task.part])
+    trial = tried(case, task.number)
+    every = {"value": trial.value, "facts": json.dumps(dict(trial.facts))}
+    return [{**every, **{name: getattr(answer, name) for name in ANSWER}} for answer in trial.answers]
+
+
+def found(rows: Sequence[Row]) -> Findings:
+    """What `pointcoord hard` says of the same cases."""
+    by_case: dict[str, dict[int, list[Row]]] = {}
+    for row in rows:
+        by_case.setdefault(row["part"], {}).setdefault(row["number"], []).append(row)
+    results = [_examined(case, by_case[case.name]) for case in chosen(()) if case.name in by_case]
+    unlike = [
+        f"NOT AS EXPECTED: {result.case.name}: {a.formulation} is {a.outcome} at {value:g}: {a.reason}"
+        for result in results
+        for value, a in dict.fromkeys((*result.unexpected, *result.wrong))
+    ]
+    status = ExitStatus.AGREE if as_expected(results) else ExitStatus.DISAGREE
+    return Findings((*unlike, *summary_parts(results)), results_data(results), status)
+
+
+def _examined(case: Case, rows: dict[int, list[Row]]) -> Examined:
+    """A case with the values that were tried."""
+    values = tuple(case.values[i] for i in rows)
+    trials = [
+        Trial(
+            value,
+            tuple(Answer(**{name: row[name] for name in ANSWER}) for row in of),
+            json.loads(of[0]["facts"]),
+        )
+        for value, of in zip(values, rows.values(), strict=True)
+    ]
+    return examined(replace(case, values=values), trials, sum(of[0]["seconds"] for of in rows.values()))

@@ -1,0 +1,249 @@
+"""Random scenes by the hundred thousand through both models: `pointcoord study random`.
+
+Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
+in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
+to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from pointcoord import SceneError
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from validate.adjudication.verdicts import (
+    NEITHER_WRONG,
+    NO_OBSTACLE,
+    judged,
+    judged_alone,
+    obstacle,
+    unanswered,
+)
+from validate.cars.base_cars import variants
+from validate.cars.random_scenes import KINDS, SEED, RandomScene, random_scene
+from validate.comparison.compare import Outcome, compare_solutions
+from validate.exit_status import ExitStatus
+from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.refusals import same_reason, why_refused
+from validate.formulations.registry import formulation
+from validate.output.table import Part, Table
+from validate.studies.study import Findings, Row, Study, Task
+
+PART = "scenes"
+OURS = "pointcoord"
+OTHER = "absolute"
+ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
+HELD = 20  # every so many scenes are held to the reference although both models agree
+# What makes the status 1; an answer that stands alone and is wrong is one of them.
+FAULTY = (
+    "disagreed",
+    " fails: ",
+    "agreed, the reference: pointcoord",
+    "agreed, the reference: absolute",
+    "agreed, the reference: no such pose",
+    "answer wrong",
+)
+
+# What a share of a tolerance is told of: each quantity, and each number of the whole car.
+SHARED = tuple(
+    dict.fromkeys(
+        name
+        for effect in (*ALWAYS, *EFFECTS.values())
+        for quantity, names in effect.gives_numbers.items()
+        for name in (names or () if QUANTITIES[quantity].of == "car" else (quantity,))
+    )
+)
+COLUMNS: Mapping[str, str] = {
+    **dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene"), "string"),
+    **{f"share_{quantity}": "float64" for quantity in SHARED},
+}
+# How outcomes begin, in the order in which they are shown.
+HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
+
+
+def random_cars(count: int = 20_000, first: str = OURS, seed: int = SEED) -> Study:
+    """Random scenes of the numbers from 0 up through two models.
+
+    A row is a scene: suspension, kind of scene, outcome, and where there is more to say reason and scene, as
+    JSON; `share_...`, the largest part of its tolerance that each quantity used up, where both models agree.
+
+    Args:
+        first: by which of pointcoord's methods. seed: of the recipe of the scenes, which has one.
+    """
+    settings: dict[str, str | int] = {"seed": seed, "first": first}
+    tasks = [Task(PART, number) for number in range(count)]
+    examine, summary = partial(scene_row, first=first), partial(found, settings=settings)
+    return Study("random", "scene", settings, COLUMNS, tasks, examine, summary, chunk=4)
+
+
+def scene_row(task: Task, first: str) -> list[Row]:
+    """Solve the scene of a number by both models."""
+    car = random_scene(task.number)
+    return [{"suspension": car.variant.words, "kind": car.kind, **examined(car, first)}]
+
+
+def examined(car: RandomScene, ours: str = OURS) -> Row:
+    """Solve one scene by both models and say what came of it: the outcome and what there is to say of it.
+
+    Args:
+        ours: by which of pointcoord's methods.
+    """
+    answers: list[Solution | FormulationError] = []
+    for name in (ours, OTHER):
+        try:
+            answers.append(_solved(name, car))
+        except FormulationError as error:
+            answers.append(error)
+        # Any other error is a defect of a model: it is counted and written down, and the run goes on.
+        except Exception as error:
+            return _kept(car, f"{name} fails: {type(error).__name__}", " ".join(str(error).split()))
+    first, second = answers
+    if isinstance(first, Solution) and isinstance(second, Solution):
+        return _compared(car, first, second)
+    if isinstance(first, FormulationError) and isinstance(second, FormulationError):
+        reasons = why_refused(first), why_refused(second)
+        shown = reasons[0] if reasons[0] == reasons[1] else " | ".join(reasons)
+        alike = "same reason" if same_reason(*reasons) else "different reasons"
+        why, told = unanswered(car.scene), " ".join(str(first.reason).split())
+        outcome = f"both refuse, {alike}: {shown}: {why}"
+        # A refusal that nothing explains is worth a look, even if both models agree in it.
+        return _kept(car, outcome, told) if why == NO_OBSTACLE else {"outcome": outcome, "reason": told}
+    return _one_sided(car, answers)
+
+
+def _kept(car: RandomScene, outcome: str, reason: str | None = None) -> Row:
+    """An outcome whose whole scene is recorded, to be looked into."""
+    content = car.scene.model_dump(mode="json", exclude_none=True)
+    return {"outcome": outcome, "reason": reason or None, "scene": json.dumps(content)}
+
+
+def _solved(name: str, car: RandomScene) -> Solution:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            return formulation(name).solve(car.scene)
+        except SceneError as error:
+            raise FormulationError(name, error) from error
+
+
+def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
+    outcome = compare_solutions(car.scene, first, second, car.scene.title)
+    if outcome.agreed:
+        verdict = judged(car.scene, first, second) if car.number % HELD == 0 else None
+        if verdict in (None, NEITHER_WRONG):
+            name = "agreed" if verdict is None else "agreed, and with the reference"
+            return {"outcome": name, **_shares(outcome)}
+        return _kept(car, f"agreed, the reference: {verdict}") | _shares(outcome)
+    worst = (*outcome.disagreements, *outcome.undecided)[0]
+    reason = (
+        f"{worst.quantity} of {worst.name} differs by {worst.difference:.3g} {worst.unit}, "
+        f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
+    )
+    if worst.verdict != "disagrees":
+        said = f", {worst.part:.6f} of it what {worst.rests_on} claims"
+        return _kept(car, f"{worst.verdict}: {worst.quantity}", reason + said)
+    return _kept(car, f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}", reason)
+
+
+def _one_sided(car: RandomScene, answers: Sequence[Solution | FormulationError]) -> Row:
+    (error,) = (a for a in answers if isinstance(a, FormulationError))
+    (answer,) = (a for a in answers if isinstance(a, Solution))
+    verdict = judged_alone(car.scene, answer)
+    if verdict == "answer right":
+        verdict += f", {obstacle(car.scene)}"
+    outcome = f"only {error.formulation} refuses, {why_refused(error)}: {verdict}"
+    return _kept(car, outcome, " ".join(str(error.reason).split()))
+
+
+def _shares(outcome: Outcome) -> Row:
+    """Largest share of each quantity, and of each wheel angle.
+
+    Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
+    """
+    largest: Row = {}
+    for row in outcome.rows:
+        if row.part < ALONE:
+            name = f"share_{row.name if QUANTITIES[row.quantity].of == 'car' else row.quantity}"
+            largest[name] = max(largest.get(name, 0.0), row.share)
+    return largest
+
+
+def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
+    """Every outcome counted, and the largest share of each tolerance."""
+    total, shares = (
+        Counter((row["suspension"], row["kind"], row["outcome"]) for row in rows),
+        _shares_of(rows),
+    )
+    kept = [row for row in rows if row.get("scene") is not None]
+    data = {
+        **settings,
+        "scenes": len(rows),
+        "outcomes": [
+            {"suspension": suspension, "kind": kind, "outcome": outcome, "scenes": count}
+            for (suspension, kind, outcome), count in sorted(total.items())
+        ],
+        "largest_shares": [
+            {"quantity": quantity, "share": share, "scene": number}
+            for quantity, (share, number) in shares.items()
+        ],
+        "written_down": [
+            {name: row[name] for name in ("number", "suspension", "kind", "outcome", "reason")}
+            | {"scene": json.loads(row["scene"])}
+            for row in kept
+        ],
+    }
+    parts: list[Part] = [_summary(total)]
+    for variant in variants():
+        parts += ["", f"{variant.words}:", _outcomes(total, variant.words)]
+    if shares:
+        lines = ((q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items())
+        head = ("quantity", "largest share of tolerance", "scene")
+        parts += ["", "Where both agreed:", Table(head, tuple(lines))]
+    recorded = (
+        f"{len(rows):,} scene{'' if len(rows) == 1 else 's'} recorded, {len(kept):,} of them as a whole"
+    )
+    seconds = sum(row["seconds"] for row in rows)
+    parts += [
+        "",
+        f"{recorded} scene, to be looked into; {seconds:.0f} s of work, of all runs and processes.",
+    ]
+    faulty = any(word in outcome for _, _, outcome in total for word in FAULTY)
+    return Findings(tuple(parts), data, ExitStatus.DISAGREE if faulty else ExitStatus.AGREE)
+
+
+def _shares_of(rows: Sequence[Row]) -> dict[str, tuple[float, int]]:
+    """Per quantity, the largest share of its tolerance and the scene that used it."""
+    given = {q: [(r[n], r["number"]) for r in rows if r.get(n := f"share_{q}") is not None] for q in SHARED}
+    return {quantity: max(shares) for quantity, shares in given.items() if shares}
+
+
+def _summary(total: Counter[tuple[str, str, str]]) -> Table:
+    """A row for each suspension and closure."""
+    rows = []
+    for variant in variants():
+        here = {outcome: 0 for _, _, outcome in total}
+        for (suspension, _, outcome), count in total.items():
+            here[outcome] += count * (suspension == variant.words)
+        begun = [sum(n for outcome, n in here.items() if outcome.startswith(h)) for h in HEADS]
+        faulty = sum(n for outcome, n in here.items() if any(word in outcome for word in FAULTY))
+        rows.append((variant.words, *map(str, (sum(here.values()), *begun, faulty))))
+    return Table(("suspension", "scenes", *HEADS, "of these wrong"), tuple(rows))
+
+
+def _outcomes(total: Counter[tuple[str, str, str]], suspension: str) -> Table:
+    outcomes = sorted({outcome for where, _, outcome in total if where == suspension}, key=_order)
+    rows = []
+    for outcome in outcomes:
+        counts = [total[suspension, kind, outcome] for kind in KINDS]
+        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
+    tried = [sum(total[suspension, kind, outcome] for outcome in outcomes) for kind in KINDS]
+    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
+    return Table(("outcome", "all", *KINDS), tuple(rows))
+
+
+def _order(outcome: str) -> tuple[int, str]:
+    return next((i for i, head in enumerate(HEADS) if outcome.startswith(head)), len(HEADS)), outcome

@@ -1,0 +1,214 @@
+"""The records of a study: a folder of Parquet files to which files are added and nothing else is done.
+
+`_study.json` says what the records are of. Each other file holds all rows of some tasks, and is there whole
+or not at all, so that the folder can be read at any time, also while the study runs:
+
+    import pandas
+    pandas.read_parquet("pointcoord-random")
+
+Names that begin with `_` or `.` are left out there, as what is being written does. The columns that every
+study has: part and number are the task, seconds how long it took (the same in all of its rows), worker who
+did it. What the others are stands with the study.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from validate.extras import MissingPackage
+from validate.output.files import unwritable, write_whole
+from validate.studies.study import RecordsError, Row, Study, Task, differences, made_by
+
+HEAD, LOCK = "_study.json", "_lock"
+EVERY = {"part": "string", "number": "int64", "seconds": "float64", "worker": "string"}
+ANOTHER = "give another folder by --records, or delete this one to begin again"
+
+
+@dataclass(frozen=True)
+class Store:
+    """A folder of records.
+
+    Attributes:
+        study: its name. settings: all that a row depends on beside its task.
+        columns: of every row, with their types. made_by: what made the rows.
+    """
+
+    folder: Path
+    study: str
+    settings: Mapping[str, str | int]
+    columns: Mapping[str, str]
+    made_by: Mapping[str, str]
+
+    def files(self) -> list[Path]:
+        """What holds rows, in the order in which it was written."""
+        return sorted(path for path in self.folder.glob("*.parquet") if path.name[0] not in "_.")
+
+    def tasks(self) -> set[Task]:
+        """Those that need not be worked out again.
+
+        Raises:
+            RecordsError: a file cannot be read.
+        """
+        return {Task(row["part"], row["number"]) for row in self._read(Task._fields)}
+
+    def rows(self, tasks: Sequence[Task] | None = None) -> list[Row]:
+        """The rows of tasks in their order, whenever they were worked out; of all tasks if none are given.
+
+        Raises:
+            RecordsError: a file cannot be read.
+        """
+        found: dict[Task, list[Row]] = {}
+        for row in self._read(tuple(self.columns)):
+            found.setdefault(Task(row["part"], row["number"]), []).append(row)
+        return [row for task in (sorted(found) if tasks is None else tasks) for row in found.get(task, ())]
+
+    def _read(self, columns: Sequence[str]) -> Iterator[Row]:
+        # Two runs on a disk that knows no locks may have worked out the same task: it counts once.
+        known: set[Task] = set()
+        for file in self.files():
+            try:
+                rows = (
+                    _arrow("parquet").read_table(file, columns=list(columns), partitioning=None).to_pylist()
+                )
+                here = {Task(row["part"], row["number"]) for row in rows}
+            except (OSError, ValueError, KeyError) as error:
+                told = " ".join(str(error).split())
+                raise RecordsError(
+                    self.folder,
+                    f"{file.name} cannot be read as what this study records ({told}); delete this file to "
+                    "work out its tasks again",
+                ) from None
+            yield from (row for row in rows if Task(row["part"], row["number"]) not in known)
+            known |= here
+
+    def next_file(self) -> Path:
+        """The file for what is worked out next."""
+        last = max((int(file.stem) for file in self.files() if file.stem.isdigit()), default=-1)
+        return self.folder / f"{last + 1:06d}.parquet"
+
+    def write(self, file: Path, rows: Sequence[Row]) -> None:
+        """Write a file: all rows of some tasks. Whoever was interrupted may write the same one again.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        pa = _arrow()
+        schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
+        table = pa.Table.from_pylist(list(rows), schema=schema)
+        _put(file, lambda stream: _arrow("parquet").write_table(table, stream))
+
+
+def look(folder: Path) -> Store:
+    """The records that are in a folder, whoever made them, to be read only.
+
+    Raises:
+        RecordsError: there are none.
+    """
+    if (store := _found(folder)) is None:
+        raise RecordsError(folder, "holds no records of a study; run the study first")
+    return store
+
+
+@contextmanager
+def adding_to(folder: Path, study: Study) -> Iterator[Store]:
+    """The records in a folder, to be gone on with, or begun; one run at a time.
+
+    A folder that is made here goes again if nothing comes into it.
+
+    Raises:
+        RecordsError: they are of something else, another run adds to them now, or there is no room.
+        OutputError: the folder takes no files.
+    """
+    _arrow("parquet")
+    store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
+    new, there = not folder.exists(), _found(folder)
+    # A run that ended before anything was recorded left nothing to be held to.
+    if there is not None and there.files():
+        _require_same(there, store)
+    elif not new and not folder.is_dir():
+        raise RecordsError(folder, "is a file, and records take a folder; give another name")
+    elif not new and set(os.listdir(folder)) - {HEAD, LOCK}:
+        raise RecordsError(folder, "holds something else than records of a study; give another folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise unwritable(str(folder), error) from None
+    try:
+        _take(lock, folder)
+        if there is None or not there.files():
+            head = {name: value for name, value in vars(store).items() if name != "folder"}
+            text = json.dumps(head, indent=1) + "\n"
+            _put(folder / HEAD, lambda stream: stream.write(text.encode()))
+        yield store
+    finally:
+        os.close(lock)
+        if new and set(os.listdir(folder)) <= {HEAD, LOCK}:
+            for name in (HEAD, LOCK):
+                (folder / name).unlink(missing_ok=True)
+            folder.rmdir()
+
+
+def _put(file: Path, write: Any) -> None:
+    def put(stream: BinaryIO) -> None:
+        write(stream)
+
+    write_whole(str(file), put)
+
+
+def _require_same(there: Store, here: Store) -> None:
+    if there.study != here.study:
+        raise RecordsError(there.folder, f"holds the study {there.study!r}, not {here.study!r}; {ANOTHER}")
+    if told := differences({**there.settings, **there.made_by}, {**here.settings, **here.made_by}):
+        raise RecordsError(there.folder, f"was begun with something else: {told}; {ANOTHER}")
+
+
+def _take(lock: int, folder: Path) -> None:
+    """Take the folder for this run alone; the lock goes with the process, however it ends.
+
+    Raises:
+        RecordsError: another run has it.
+    """
+    import fcntl
+
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise RecordsError(folder, "another run adds to them now; wait, or give another folder") from None
+    except OSError:
+        pass  # A disk that knows no locks: a task that two runs work out counts once.
+
+
+def _found(folder: Path) -> Store | None:
+    """What a folder says that it holds; None if it says nothing.
+
+    Raises:
+        RecordsError: it says something that this program does not know.
+    """
+    try:
+        return Store(folder=folder, **json.loads((folder / HEAD).read_text(encoding="utf-8")))
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise RecordsError(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
+    except (ValueError, TypeError):
+        raise RecordsError(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
+
+
+def _arrow(module: str = "") -> Any:
+    """pyarrow, or a module of it.
+
+    Raises:
+        MissingPackage: it is not there.
+    """
+    try:
+        return import_module(f"pyarrow.{module}" if module else "pyarrow")
+    except ImportError as error:
+        raise MissingPackage("study", error, "cluster") from None
