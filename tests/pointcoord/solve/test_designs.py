@@ -1,6 +1,7 @@
 """Designs solved together are the designs solved one by one."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest

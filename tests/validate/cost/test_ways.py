@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from inspect import getclosurevars
 from types import SimpleNamespace
 from typing import Any
 
