@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import ceil
@@ -166,7 +166,7 @@ def test_the_page_is_there_after_few_seconds_of_work(report: Opened) -> None:
 
 
 def test_all_of_the_page_is_drawn_without_a_complaint_or_a_request(report: Opened) -> None:
-    settled(report.page)
+    settled(report.page, folded=99)
     assert report.page.locator("[data-plot] .main-svg").count() > 20
     assert report.complaints == []
 
@@ -363,7 +363,8 @@ def test_each_model_can_be_taken_away(page: Page) -> None:
 def test_names_of_points_cover_neither_each_other_nor_the_joints(page: Page) -> None:
     settled(page)
     covered = page.evaluate(
-        """() => [...document.querySelectorAll(".spatial > svg")].flatMap((svg) => {
+        """() => [...document.querySelectorAll(".spatial > svg")]
+            .filter((svg) => svg.checkVisibility()).flatMap((svg) => {
             const meet = (a, b) =>
                 a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
             // The letters reach less high and deep than their line.
@@ -410,7 +411,7 @@ def accessible(page: Page) -> list[tuple[str, str]]:
 
 
 def test_everything_that_can_be_used_and_every_picture_has_a_name(page: Page) -> None:
-    settled(page)
+    settled(page, folded=99)
     told = accessible(page)
     used = {"button", "link", "checkbox", "slider", "application", "image", "img", "region", "table"}
     nameless = [role for role, name in told if role in used and not name.strip()]
@@ -512,6 +513,8 @@ CONTRAST = """() => {
     while (texts.nextNode()) {
         const one = texts.currentNode.parentElement;
         if (!texts.currentNode.data.trim() || one.closest("script, style, noscript") || !seen(one)) continue;
+        // Behind these is a cell of a picture, of which no style knows the colour.
+        if (one.closest(".heatmap-label")) continue;
         const style = getComputedStyle(one);
         const colour = rgb(one instanceof SVGElement ? style.fill : style.color);
         found.text.push([contrast(colour, behind(one)), texts.currentNode.data.trim().slice(0, 40)]);
@@ -539,6 +542,30 @@ def test_text_and_lines_stand_out_of_what_is_behind_them(page: Page, scheme: Any
     settled(page)
     require_contrast(page.evaluate(CONTRAST))
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == f"rgb{behind}"
+
+
+def lightness(colour: Sequence[int]) -> float:
+    """Relative luminance of red, green and blue in 0 to 255 (WCAG 2.2)."""
+    shares = np.array(colour) / 255.0
+    linear = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_numbers_of_the_heat_map_stand_out_of_every_colour_of_it(page: Page) -> None:
+    page.emulate_media(color_scheme="dark")
+    settled(page)
+    plot = page.locator("#agreement [data-plot]").first
+    (trace,) = json.loads(plot.get_attribute("data-plot") or "")["data"]
+    cells = [
+        lightness([int(colour[at : at + 2], 16) for at in (1, 3, 5)]) for _, colour in trace["colorscale"]
+    ]
+    labels = plot.locator(".heatmap-label text").evaluate_all(
+        "all => all.map((one) => getComputedStyle(one).fill)"
+    )
+    assert len(labels) > 20
+    inks = [lightness([int(part) for part in re.findall(r"\d+", label)[:3]]) for label in labels]
+    ratios = [(max(ink, cell) + 0.05) / (min(ink, cell) + 0.05) for ink in set(inks) for cell in cells]
+    assert min(ratios) > TEXT
 
 
 # Windows, phones and paper.

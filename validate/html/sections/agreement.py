@@ -16,7 +16,11 @@ from validate.output.report import about, heading, used, when
 
 MOST = 1000  # rows of the table: a page stays small
 DRAWN = 60  # rows of the picture
-WORDS = "Share of the tolerance used: the darker the green, the more; red disagrees, amber is not tested"
+WORDS = (
+    "Share of the tolerance used: the darker the green, the more; red disagrees, amber is not tested, "
+    "empty is not asked for"
+)
+INK = "#000"  # stands out of each of the colours, in light and in dark
 # From -1, not tested, over 0 to 1, shares of the tolerance, to 2, beyond it.
 AMBER, PALE, GREEN, RED = "#e0a92e", "#dff2ea", "#2a9d78", "#d9481c"
 COLOURS = ((0.0, AMBER), (0.33, AMBER), (0.33, PALE), (0.67, GREEN), (0.67, RED), (1.0, RED))
@@ -54,11 +58,11 @@ def _picture(drawn: Sequence[Examined]) -> Block:
         "showscale": False,
         "xgap": 1,
         "ygap": 1,
-        "textfont": {"size": 9},
+        "textfont": {"size": 9, "color": INK},
     }
     layout = {
-        "xaxis": {"side": "top", "automargin": True},
-        "yaxis": {"autorange": "reversed", "automargin": True},
+        "xaxis": {"side": "top", "automargin": True, "showgrid": False},
+        "yaxis": {"autorange": "reversed", "automargin": True, "showgrid": False},
         "showlegend": False,
     }
     return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)

@@ -79,6 +79,8 @@
       hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });
     Plotly.react(place, data, layout, { displaylogo: false, displayModeBar: false });
+    // The place itself is the picture, and says in words what is in it.
+    place.querySelector(".plot-container").setAttribute("aria-hidden", "true");
     // A place outside the page in which plotly measures letters.
     document.getElementById("js-plotly-tester")?.setAttribute("aria-hidden", "true");
   }
@@ -91,13 +93,16 @@
   function describe(place) {
     const { data, layout } = JSON.parse(place.dataset.plot);
     const words = data.flatMap((trace) => {
+      // The numbers of a picture of cells stand in a table.
+      if (trace.z) return [`Rows from ${trace.y[0]} to ${trace.y.at(-1)}, columns from ${trace.x[0]} to ${trace.x.at(-1)}`];
       const values = numbers([trace], "y");
       if (!values.length) return [];
       const [low, high] = [Math.min(...values), Math.max(...values)].map(told);
       return [`${trace.name ?? "curve"} from ${low} to ${high}`];
     });
     const axes = ["xaxis", "yaxis"].map((name) => layout[name]?.title?.text).filter(Boolean).join(" and ");
-    place.setAttribute("aria-label", `${place.getAttribute("aria-label")}. Axes: ${axes}. ${words.join("; ")}.`);
+    const parts = [place.getAttribute("aria-label"), axes && `Axes: ${axes}`, words.join("; ")].filter(Boolean);
+    place.setAttribute("aria-label", `${parts.join(". ")}.`);
   }
 
   // A plot is drawn when it is near the window, so that a long page is there at once, and again when it comes
