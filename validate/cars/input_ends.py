@@ -49,7 +49,7 @@ def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> I
     Raises:
         PointcoordError: it is no car, its drawing does not close, or it has other freedoms.
     """
-    return drawing_stands.drawn_inputs(_at(car, dict.fromkeys(inputs, 1.0)))
+    return drawing_stands.drawn_inputs(at(car, dict.fromkeys(inputs, 1.0)))
 
 
 def room(car: Car, name: str, share: tuple[float, float]) -> float:
@@ -67,7 +67,7 @@ def condition(car: Car, inputs: Mapping[str, float]) -> float:
     Raises:
         PointcoordError: there is none.
     """
-    return float(simulate(_at(car, inputs)).proof().condition.max())
+    return float(simulate(at(car, inputs)).proof().condition.max())
 
 
 def redrawn(car: Car, inputs: Mapping[str, float]) -> Car:
@@ -76,7 +76,7 @@ def redrawn(car: Car, inputs: Mapping[str, float]) -> Car:
     Raises:
         PointcoordError: there is none.
     """
-    position = simulate(_at(car, inputs)).position
+    position = simulate(at(car, inputs)).position
     return car.drawn_as({name: position[name][0] for name in car.points})
 
 
@@ -90,7 +90,7 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
         PointcoordError: there is no such pose, or no straight way from the drawing to the end.
     """
     there = redrawn(car, held)
-    ends = drawing_stands.reach_of(_at(there, held), driven)
+    ends = drawing_stands.reach_of(at(there, held), driven)
     other, this = ends if ahead else ends[::-1]
     if not this.limits:
         return None
@@ -108,9 +108,9 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
 
 
 def _speed(car: Car, laws: Mapping[str, Law]) -> float:
-    velocity = simulate(_at(car, laws, ("velocity",))).velocity
+    velocity = simulate(at(car, laws, ("velocity",))).velocity
     return float(np.linalg.norm([velocity[name][0] for name in velocity]))
 
 
-def _at(car: Car, laws: Mapping[str, Law], effects: tuple[str, ...] = ()) -> Scene:
+def at(car: Car, laws: Mapping[str, Law], effects: tuple[str, ...] = ()) -> Scene:
     return Scene.from_mapping(content_of(car, laws, effects=effects))

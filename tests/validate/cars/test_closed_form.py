@@ -11,11 +11,19 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from validate.cars.car import Car
-from validate.hard.cases.oriented import SIDES
 
 EPS = float(np.finfo(float).eps)
 STRUTS = tuple(v for v in VARIANTS if v.suspension == "macpherson")
 REAR_LINK = ("lower_arm_rear", "lower_ball_joint")
+# By mechanism and closure, four points whose place tells one assembly from another: the fourth lies on one
+# side of the plane of the others.
+TIE = ("lower_ball_joint", "upper_ball_joint", "tie_rod_inner", "tie_rod_outer")
+UPPER_ARM = ("upper_arm_front", "upper_arm_rear", "lower_ball_joint", "upper_ball_joint")
+SIDES = {
+    ("macpherson", "drawn"): (("lower_ball_joint", "strut_top", "tie_rod_inner", "tie_rod_outer"),),
+    ("macpherson", "collinear"): (("lower_ball_joint", "strut_lower", "tie_rod_inner", "tie_rod_outer"),),
+    ("double_wishbone", "drawn"): (UPPER_ARM, TIE),
+}
 SHARES = st.floats(-1.0, 1.0)
 
 
@@ -77,7 +85,7 @@ def test_every_side_is_that_of_the_drawing_and_the_knuckle_is_no_mirror_image(
     form = exact(car)
     p = pose_of(form, *near_drawing(car, arm, rack))
     assume(exists(p))
-    for origin, *others in SIDES[car.suspension, car.closure].values():
+    for origin, *others in SIDES[car.suspension, car.closure]:
         drawn, now = (product(*(q[name] - q[origin] for name in others)) for q in (form.p, p))
         assert drawn * now >= 0
     beside = [product(q["lower_arm_rear"], form.up, q["lower_ball_joint"]) for q in (form.p, p)]
