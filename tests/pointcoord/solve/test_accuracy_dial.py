@@ -17,7 +17,7 @@ from mpmath import mpf
 from numpy.typing import NDArray
 from suspensions_in_closed_form import FORMS, ClosedForm, rounded
 
-from pointcoord import AssemblyError, Motion, Scene, built_in_scenes, simulate
+from pointcoord import AssemblyError, Motion, MotionNotMapped, Scene, built_in_scenes, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import METHODS
 from pointcoord.numerics import newton
@@ -45,10 +45,10 @@ def asking(scene: Scene, tolerance: float) -> Scene:
 
 
 def solved(scene: Scene, method: str) -> Motion:
-    """Solved; an example whose car cannot follow its inputs is rejected."""
+    """Solved; a car that cannot follow its inputs, or comes too near a fold for a map, is passed over."""
     try:
         return simulate(scene, method)
-    except AssemblyError:
+    except (AssemblyError, MotionNotMapped):
         assume(False)
         raise
 

@@ -155,7 +155,8 @@ LAWS = ("mirrored", "turned", "moved", "scaled")
 def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
     """The car elsewhere: with the sign and scale of its rack, and the matrix and shift of its points."""
     if law == "mirrored":
-        return other_side(car), -1.0, 1.0, np.diag([1.0, -1.0, 1.0]), np.zeros(3)
+        across = np.eye(3) - 2.0 * np.outer(car.right, car.right)
+        return other_side(car), -1.0, 1.0, across, np.zeros(3)
     if law == "turned":
         turn = any_rotation(5)
         return turned(car, turn), 1.0, 1.0, turn, np.zeros(3)
