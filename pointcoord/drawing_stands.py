@@ -1,7 +1,7 @@
 """Where a drawing stands: the inputs' drawn values, how far each can go from there, and the wheel's angles.
 
-Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`),
-until it meets a pose beyond which there is none.
+Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`,
+and `taylor` for a turn), until it meets a pose beyond which there is none.
 """
 
 from __future__ import annotations
@@ -20,12 +20,15 @@ from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
-from pointcoord.solve.assembly import Path, close_drawing, follow
+from pointcoord.solve.assembly import Path, assemble, close_drawing, follow
+from pointcoord.solve.status import Blocked
+from pointcoord.solve.taylor import Settings, build_chain
+from pointcoord.time_functions import Polynomial
 
 Array = NDArray[np.float64]
 
-# rad: a chord of a turn, and one so short that its end is known as well as those of other inputs.
-CHORD, LEAST = np.pi / 8, 1e-12
+# Of the mechanism's size: how exact the way to the end of a turn is. The end itself is as exact as a pose.
+TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -145,22 +148,11 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
 
 
 def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
-    """The end of a turn to one side, a whole one at most.
-
-    Cosine and sine go along chords, whose ends are true poses; one that stops is drawn to just before there.
-    """
-    inputs, path, step = _drawn(mechanism, closed), closed, CHORD
-    value, farthest = inputs[name], side * 2.0 * np.pi
-    while value != farthest:
-        ahead = value + side * step if abs(farthest - value) > step else farthest
-        values = {one: np.array([own]) for one, own in {**inputs, name: ahead}.items()}
-        tried = follow(mechanism.map, path.y, mechanism.known_series(values)[0], path.factors)
-        if float(tried.done) == 1.0:
-            value, path, step = ahead, tried, min(2.0 * step, CHORD)
-            continue
-        # A chord stops where its turn does but for a share of step^2 / 8, what it lacks of the circle.
-        step *= float(tried.done) * (1.0 - max(0.25 * step * step, 1e-4))
-        if step < LEAST:
-            forces = smallest_left_singular_vector(path.factors.matrix)
-            return End(value, mechanism.topology.strongest(forces))
-    return End(value, ())
+    """The end of a turn to one side, a whole one at most: a motion that turns it at 1 rad/s ends there."""
+    drawn = _drawn(mechanism, closed)
+    laws = {one: Polynomial((value, side) if one == name else (value,)) for one, value in drawn.items()}
+    start = assemble(mechanism, {one: np.array(value) for one, value in drawn.items()}, closed=closed)
+    settings = Settings(tolerance=TOLERANCE, derivative=0)
+    chain = build_chain(mechanism, laws, start, 0.0, 2.0 * np.pi, settings)
+    limits = chain.status.limits if isinstance(chain.status, Blocked) else ()
+    return End(drawn[name] + side * (chain.stop if chain.segments else 0.0), limits)
