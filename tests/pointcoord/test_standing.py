@@ -37,8 +37,8 @@ def test_an_input_reaches_as_far_as_the_closed_form_has_an_assembly(
 
 
 def test_bricard_s_mechanism_turns_as_far_as_its_neighbouring_hinge() -> None:
-    # Of six hinges at right angles two neighbours turn by cos a + cos b + cos a cos b = 0, so that cos a is -1/2
-    # at least: a goes from -120 to 120 degrees. It is 90 in the drawing, from where it is counted the other way.
+    # Of six hinges at right angles two neighbours turn by cos a + cos b + cos a cos b = 0, so that cos a is
+    # -1/2 or more: a goes from -120 to 120 degrees. It is 90 as drawn, from where it is counted backwards.
     low, high = standing(Scene.load("bricard")).reach["turn"]
     assert low.value == pytest.approx(np.deg2rad(-30.0), abs=1e-12)
     assert high.value == pytest.approx(np.deg2rad(210.0), abs=1e-12)
