@@ -92,21 +92,23 @@ def expand_unknowns(
     rows = np.moveaxis(series[..., n:-1] @ -by_known, -2, 0)
     # A table of each factor by exponents, 0 where a power is still to come.
     sides = [slice(low, low + terms.count) for low in range(0, terms.ends.shape[-1], terms.count)]
-    tables = [np.zeros((*[every.order + 1] * inputs, y[..., 0].size * terms.count)) for _ in sides]
+    grid = [every.order + 1] * inputs
+    tables = [np.zeros((*grid, *y.shape[:-1], terms.count)) for _ in sides]
+    flat = [table.reshape(*grid, -1) for table in tables]
 
     def put(low: int, high: int) -> None:
         for k, both in zip(every.tuples[low:high], terms.factors(own[low:high]), strict=True):
             for table, side in zip(tables, sides, strict=True):
-                table[k] = both[..., side].ravel()
+                table[k] = both[..., side]
 
     put(1, edges[first])
     for low, high in pairwise(edges[first:]):
         wanted = rows[low:high]
         if low > inputs:
-            sums = np.empty((high - low, tables[0].shape[-1]))
-            for k, out in zip(every.tuples[low:high], sums, strict=True):
-                _sum_at(k, tables, out)
-            wanted = wanted - terms.gather(sums.reshape(*wanted.shape[:-1], terms.count))
+            sums = np.empty((high - low, *tables[0].shape[inputs:]))
+            for k, out in zip(every.tuples[low:high], sums.reshape(high - low, -1), strict=True):
+                _sum_at(k, flat, out)
+            wanted = wanted - terms.gather(sums)
         own[low:high, ..., :n] = factors.solve_many(wanted)
         if high < count:
             put(low, high)
