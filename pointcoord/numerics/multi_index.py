@@ -90,12 +90,11 @@ def powers_counted(inputs: int, count: int) -> Powers:
 
 
 @lru_cache(maxsize=256)
-def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, once: bool = False) -> Products:
+def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int) -> Products:
     """The pairs among powers up to `order`, each of a degree of at least `lowest`, whose product is wanted.
 
     Args:
         degrees: of the products, the first and the last; up to 2 `order`.
-        once: whether of i, j and j, i there is only the one with i before j.
     """
     of_factors, of_products = powers(inputs, order).exponents, powers(inputs, 2 * order).exponents
     degree = of_factors.sum(axis=-1)
@@ -103,7 +102,6 @@ def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, onc
     first, second = np.indices((len(degree), len(degree))).reshape(2, -1)
     total = degree[first] + degree[second]
     wanted = (total >= low) & (total <= high) & (np.minimum(degree[first], degree[second]) >= lowest)
-    wanted &= (first <= second) | (not once)
     first, second = first[wanted], second[wanted]
     # A number for each exponent, the same for factors and products.
     base = (2 * order + 1) ** np.arange(inputs)
