@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from functools import cached_property, lru_cache
 from itertools import product
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 
 Indices = NDArray[np.intp]
+Places = tuple[slice | int, ...]
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,19 @@ class Powers:
 
     def first_of(self, degree: int) -> int:
         """Place of the first power of a total degree; that of one above the last ends the last."""
-        return self._edges[degree]
+        return self.edges[degree]
 
     @cached_property
-    def _edges(self) -> list[int]:
+    def edges(self) -> list[int]:
+        """The first power of each total degree, and how many powers there are."""
         degrees = self.exponents.sum(axis=-1)
         edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
         return edges
+
+    @cached_property
+    def tuples(self) -> list[tuple[int, ...]]:
+        """The exponents of each, as plain numbers."""
+        return [tuple(each) for each in self.exponents.tolist()]
 
     def power_of(self, variable: int, exponent: int) -> int:
         """Place of a power of one variable alone."""
@@ -67,7 +75,7 @@ class Powers:
         return int(np.flatnonzero((self.exponents == wanted).all(axis=-1))[0])
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=128)
 def powers(inputs: int, order: int) -> Powers:
     """The powers of a number of variables, ordered by total degree."""
     every = [k for k in product(range(order + 1), repeat=inputs) if sum(k) <= order]
@@ -75,13 +83,18 @@ def powers(inputs: int, order: int) -> Powers:
     return Powers(inputs, order, np.array(every, dtype=np.intp).reshape(-1, inputs))
 
 
+@lru_cache(maxsize=128)
+def powers_counted(inputs: int, count: int) -> Powers:
+    """The powers of a number of variables that are so many."""
+    return powers(inputs, next(degree for degree in range(count) if comb(degree + inputs, inputs) == count))
+
+
 @lru_cache(maxsize=256)
-def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, once: bool = False) -> Products:
+def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int) -> Products:
     """The pairs among powers up to `order`, each of a degree of at least `lowest`, whose product is wanted.
 
     Args:
         degrees: of the products, the first and the last; up to 2 `order`.
-        once: whether of i, j and j, i there is only the one with i before j.
     """
     of_factors, of_products = powers(inputs, order).exponents, powers(inputs, 2 * order).exponents
     degree = of_factors.sum(axis=-1)
@@ -89,7 +102,6 @@ def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, onc
     first, second = np.indices((len(degree), len(degree))).reshape(2, -1)
     total = degree[first] + degree[second]
     wanted = (total >= low) & (total <= high) & (np.minimum(degree[first], degree[second]) >= lowest)
-    wanted &= (first <= second) | (not once)
     first, second = first[wanted], second[wanted]
     # A number for each exponent, the same for factors and products.
     base = (2 * order + 1) ** np.arange(inputs)
@@ -100,3 +112,45 @@ def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int, onc
     first, second, target = first[by_target], second[by_target], target[by_target]
     starts = np.flatnonzero(np.diff(target, prepend=-1))
     return Products(first, second, starts.astype(np.intp), target[starts].astype(np.intp))
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """All i and k - i with 0 <= i <= k, as rectangles of a table that has an axis for each exponent.
+
+    Attributes:
+        rectangles: where i and k - i lie, and how their products are summed, as `einsum` is told.
+        middle: where i = k - i, if that is left out of the rectangles.
+    """
+
+    rectangles: tuple[tuple[Places, Places, str], ...]
+    middle: Places | None
+
+
+@lru_cache(maxsize=4096)
+def pairs_at(k: tuple[int, ...], once: bool) -> Pairs:
+    """The pairs that make up one power.
+
+    Args:
+        once: whether of i, k - i and k - i, i there is only one.
+    """
+    found, before = list[tuple[Places, Places, str]](), tuple[int, ...]()
+    for axis, exponent in enumerate(k):
+        # With half of the exponents before it i goes over less than half of this one, or over all of them.
+        count = (exponent + 1) // 2 if once else exponent + 1
+        high = (exponent, *k[axis + 1 :])
+        counts = (count, *(one + 1 for one in k[axis + 1 :]))
+        first: Places = (*before, *map(slice, counts))
+        last: Places = (*before, *map(_backwards, high, counts))
+        if count:
+            letters = "abc"[axis : len(k)]
+            found.append((first, last, f"{letters}n,{letters}n->n"))
+        if not once or exponent % 2:
+            return Pairs(tuple(found), None)
+        before = (*before, exponent // 2)
+    return Pairs(tuple(found), before)
+
+
+def _backwards(high: int, count: int) -> slice:
+    """So many places from the highest down."""
+    return slice(high, high - count if count <= high else None, -1)

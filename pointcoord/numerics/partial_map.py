@@ -50,6 +50,19 @@ class PartialMap:
         found[..., self.order] = y
         return found
 
+    def unknowns_back(self, y: Array, series: Array) -> Array:
+        """Series of the part's unknown coordinates as those of the whole; what stands still is as in y.
+
+        Args:
+            y: of the part, shape (..., size). series: shape (..., powers, unknowns of the part).
+        """
+        if self.is_whole:
+            return series
+        found = np.zeros((*series.shape[:-1], self.whole.unknowns))
+        found[..., 0, :] = self.back(y)[..., : self.whole.unknowns]
+        found[..., self.order[: self.system.unknowns]] = series
+        return found
+
     def known(self, y: Array, known: Array) -> Array:
         """What is known to the part: what stays as it is in y, and series of what is known to the whole.
 

@@ -14,13 +14,13 @@ rows share one (see `QuadraticMap.moving_products`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import comb
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.linear import Factors
-from pointcoord.numerics.multi_index import Products, powers, products
+from pointcoord.numerics.multi_index import Products, pairs_at, powers_counted, products
 from pointcoord.numerics.quadratic import QuadraticMap
 
 Array = NDArray[np.float64]
@@ -37,7 +37,6 @@ def expand(
     known: Array,
     begun: Array | None = None,
     inputs: int = 1,
-    driven: Sequence[int] | None = None,
 ) -> Array:
     """Series of all coordinates about assembled poses.
 
@@ -47,64 +46,88 @@ def expand(
         known: series of the known coordinates, shape (..., powers, size - unknowns).
         begun: the first powers, of whole degrees, if they are at hand, shape (..., some powers, size).
         inputs: p, how many parameters.
-        driven: the coordinates that `known` is of, if only of some of the known ones; the others stand still.
     Returns:
         Coefficients by power, shape (..., powers, size).
     """
+    n = system.unknowns
+    places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
+    first = None if begun is None else begun[..., :n]
+    series = np.empty((*y.shape[:-1], known.shape[-2], y.shape[-1]))
+    series[..., n:] = known
+    moving = (places + n).tolist()
+    series[..., :n] = expand_unknowns(system, factors, y, known[..., places], moving, first, inputs)
+    series[..., 0, :] = y
+    return series
+
+
+def expand_unknowns(
+    system: QuadraticMap,
+    factors: Factors,
+    y: Array,
+    known: Array,
+    driven: Sequence[int],
+    begun: Array | None = None,
+    inputs: int = 1,
+) -> Array:
+    """Series of the unknown coordinates, where only some of the known ones move.
+
+    Args:
+        known: series of those that move, shape (..., powers, moving).
+        driven: which coordinates these are.
+        begun: the first powers of the unknown ones, shape (..., some powers, unknowns).
+    Returns:
+        Coefficients by power, shape (..., powers, unknowns); powers come first in memory.
+    """
     n, count = system.unknowns, known.shape[-2]
-    order = next(degree for degree in range(count) if comb(degree + inputs, inputs) == count)
-    every = powers(inputs, order)
-    if driven is None:
-        places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
-        known, driven = known[..., places], (places + n).tolist()
-    moving = tuple(driven)
-    terms = system.moving_products(moving)
-    # What moves, and a last 0 for all that stands still. Powers come first: a degree is one piece of memory.
+    every, moving = powers_counted(inputs, count), tuple(driven)
+    terms, edges = system.moving_products(moving), every.edges
+    # What moves, and a last 0 for all that stands still; the constant term takes no part in a product.
     own = np.zeros((count, *y.shape[:-1], n + len(moving) + 1))
-    known = np.broadcast_to(known, (*y.shape[:-1], *known.shape[-2:]))
-    own[1:, ..., n:-1] = np.moveaxis(known[..., 1:, :], -2, 0)
-    first = 1
+    series, first = np.moveaxis(own, 0, -2), 1
+    series[..., 1:, n:-1] = known[..., 1:, :]
     if begun is not None:
-        own[: begun.shape[-2], ..., :-1] = np.moveaxis(begun[..., [*range(n), *moving]], -2, 0)
-        first = next(d for d in range(order + 2) if every.first_of(d) == begun.shape[-2])
-    by_known, rows = system.derivative_by(y, moving), np.zeros((count, *y.shape[:-1], n))
-    for i in range(len(moving)):
-        rows -= own[..., n + i, None] * by_known[..., i]
-    left, right = terms.factors(own)
-    for degree in range(first, order + 1):
-        here = slice(every.first_of(degree), every.first_of(degree + 1))
-        wanted = rows[here]
-        if degree > 1:
-            wanted -= terms.gather(_of_degree(left, right, inputs, order, degree))
-        own[here, ..., :n] = factors.solve_many(wanted)
-        left[here], right[here] = terms.factors(own[here])
-    series = np.zeros((count, *y.shape))
-    series[..., :n] = own[..., :n]
-    series[..., moving] = own[..., n:-1]
-    series[0] = y
-    return np.moveaxis(series, 0, -2)
+        series[..., 1 : begun.shape[-2], :n] = begun[..., 1:, :]
+        first = edges.index(begun.shape[-2])
+    by_known = np.swapaxes(system.derivative_by(y, moving), -1, -2)
+    rows = np.moveaxis(series[..., n:-1] @ -by_known, -2, 0)
+    # A table of each factor by exponents, 0 where a power is still to come.
+    sides = [slice(low, low + terms.count) for low in range(0, terms.ends.shape[-1], terms.count)]
+    grid = [every.order + 1] * inputs
+    tables = [np.zeros((*grid, *y.shape[:-1], terms.count)) for _ in sides]
+    flat = [table.reshape(*grid, -1) for table in tables]
+
+    def put(low: int, high: int) -> None:
+        for k, both in zip(every.tuples[low:high], terms.factors(own[low:high]), strict=True):
+            for table, side in zip(tables, sides, strict=True):
+                table[k] = both[..., side]
+
+    put(1, edges[first])
+    for low, high in pairwise(edges[first:]):
+        wanted = rows[low:high]
+        if low > inputs:
+            sums = np.empty((high - low, *tables[0].shape[inputs:]))
+            for k, out in zip(every.tuples[low:high], sums.reshape(high - low, -1), strict=True):
+                _sum_at(k, flat, out)
+            wanted = wanted - terms.gather(sums)
+        own[low:high, ..., :n] = factors.solve_many(wanted)
+        if high < count:
+            put(low, high)
+    own[0, ..., :n] = y[..., :n]
+    return series[..., :n]
 
 
-def _of_degree(left: Array, right: Array, inputs: int, order: int, degree: int) -> Array:
-    """The sums over 0 < i < k of all k of a degree, shape (powers of the degree, ..., products)."""
-    if inputs > 1:
-        pairs = products(inputs, order, (degree, degree), 1, right is left)
-        found = multiplied(left, right, pairs)
-        if right is left:
-            same = np.flatnonzero(pairs.first == pairs.second)
-            found *= 2.0
-            found[np.searchsorted(pairs.starts, same, side="right") - 1] -= left[pairs.first[same]] ** 2
-        return found
-    if right is not left:
-        backwards = right[degree - 1 : 0 : -1]
-        return np.asarray(np.einsum("i...t,i...t->...t", left[1:degree], backwards)[None])
-    # Of squares the second half of the products is the first half again.
-    middle = (degree + 1) // 2
-    found = np.einsum("i...t,i...t->...t", left[1:middle], left[degree - 1 : degree - middle : -1])
-    found *= 2.0
-    if degree % 2 == 0:
-        found += left[middle] ** 2
-    return np.asarray(found[None])
+def _sum_at(k: tuple[int, ...], tables: Sequence[Array], out: Array) -> None:
+    """Sum the products of i in the first table and k - i in the last one over all i, (numbers,)."""
+    left, right = tables[0], tables[-1]
+    pairs = pairs_at(k, left is right)
+    (first, last, subscripts), *others = pairs.rectangles
+    np.einsum(subscripts, left[first], right[last], out=out)
+    for first, last, subscripts in others:
+        out += np.einsum(subscripts, left[first], right[last])
+    if left is right:
+        out *= 2.0
+    if pairs.middle is not None:
+        out += left[pairs.middle] ** 2
 
 
 def multiplied(left: Array, right: Array, pairs: Products) -> Array:
@@ -136,8 +159,7 @@ def cross_series(a: Array, b: Array, inputs: int = 1, doubled: bool = False) -> 
     Args:
         doubled: whether to go on to twice the order, where the product ends.
     """
-    count = a.shape[-2]
-    order = next(degree for degree in range(count) if comb(degree + inputs, inputs) == count)
+    order = powers_counted(inputs, a.shape[-2]).order
     pairs = products(inputs, order, (0, 2 * order if doubled else order), 0)
     left = np.concatenate([a[..., CYCLE], a[..., BACK]], axis=-1)
     right = np.concatenate([b[..., BACK], b[..., CYCLE]], axis=-1)

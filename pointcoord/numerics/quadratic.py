@@ -381,38 +381,25 @@ class MovingProducts:
     """Products of differences of what moves, each once: the unknowns, known coordinates, and a last 0.
 
     Attributes:
-        left, right: ends of both differences of each product. squares: whether they are the same of all.
-        count: of the rows.
-        taken, coefficients, starts, rows: which products a row sums, for the rows that have any.
+        ends: of the left differences of all products and then of the right ones, or of one side alone where
+            both are the same of all, (2, sides * count). The last product is 0.
+        count: of the products.
+        taken, coefficients: which products a row sums, (rows, most that one does); filled up with the last.
     """
 
-    left: tuple[Indices, Indices]
-    right: tuple[Indices, Indices]
-    squares: bool
+    ends: Indices
     count: int
     taken: Indices
     coefficients: Array
-    starts: Indices
-    rows: Indices
 
-    def factors(self, moving: Array) -> tuple[Array, Array]:
-        """Both differences of every product, of coordinates that move and a last 0, (..., products)."""
-        (a, b), (c, d) = self.left, self.right
-        left = moving.take(a, axis=-1) - moving.take(b, axis=-1)
-        return (left, left) if self.squares else (left, moving.take(c, axis=-1) - moving.take(d, axis=-1))
+    def factors(self, moving: Array) -> Array:
+        """The differences of every product, of coordinates that move and a last 0, (..., sides * count)."""
+        plus, minus = self.ends
+        return np.asarray(moving.take(plus, axis=-1) - moving.take(minus, axis=-1))
 
     def gather(self, products: Array) -> Array:
-        """Sum products, shape (..., products), into rows, shape (..., rows)."""
-        if not len(self.rows):
-            return np.zeros((*products.shape[:-1], self.count))
-        each = products.take(self.taken, axis=-1)
-        each *= self.coefficients
-        sums = np.add.reduceat(each, self.starts, axis=-1)
-        if len(self.rows) == self.count:
-            return np.asarray(sums)
-        found = np.zeros((*products.shape[:-1], self.count))
-        found[..., self.rows] = sums
-        return found
+        """Sum products, shape (..., count), into rows, shape (..., rows)."""
+        return np.asarray(np.vecdot(products.take(self.taken, axis=-1), self.coefficients))
 
 
 @lru_cache(maxsize=256)
@@ -420,8 +407,8 @@ def _moving_products(system: QuadraticMap, moving: tuple[int, ...]) -> MovingPro
     place = {number: i for i, number in enumerate((*range(system.unknowns), *moving))}
     zero = len(place)
     numbers: dict[tuple[int, int, int, int], int] = {}
-    found: list[tuple[int, int, float]] = []
-    for number, row in enumerate(system.rows):
+    sums: list[list[tuple[int, float]]] = [[] for _ in system.rows]
+    for own, row in zip(sums, system.rows, strict=True):
         for p in row:
             coefficient, factors = p.coefficient, []
             for ends in (p.left, p.right):
@@ -430,19 +417,16 @@ def _moving_products(system: QuadraticMap, moving: tuple[int, ...]) -> MovingPro
                 factors.append((min(first, second), max(first, second)))
             if all(first != second for first, second in factors):
                 (a, b), (c, d) = sorted(factors)
-                found.append((number, numbers.setdefault((a, b, c, d), len(numbers)), coefficient))
-    places = np.array(list(numbers), dtype=np.intp).reshape(-1, 4)
-    rows = np.array([number for number, _, _ in found], dtype=np.intp)
-    starts = np.flatnonzero(np.diff(rows, prepend=-1)).astype(np.intp)
+                own.append((numbers.setdefault((a, b, c, d), len(numbers)), coefficient))
+    places = np.array([*numbers, (zero,) * 4], dtype=np.intp).T
+    sides = [places[:2]] if (places[:2] == places[2:]).all() else [places[:2], places[2:]]
+    most = max(len(own) for own in sums)
+    filled = [[*own, *[(len(numbers), 0.0)] * (most - len(own))] for own in sums]
     return MovingProducts(
-        (places[:, 0].copy(), places[:, 1].copy()),
-        (places[:, 2].copy(), places[:, 3].copy()),
-        bool((places[:, :2] == places[:, 2:]).all()),
-        len(system.rows),
-        np.array([product for _, product, _ in found], dtype=np.intp),
-        np.array([coefficient for _, _, coefficient in found]),
-        starts,
-        rows[starts],
+        np.concatenate(sides, axis=1),
+        len(numbers) + 1,
+        np.array([[product for product, _ in own] for own in filled], dtype=np.intp),
+        np.array([[coefficient for _, coefficient in own] for own in filled]),
     )
 
 

@@ -19,11 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from pointcoord.numerics.rounding import EPS
 from pointcoord.results.carried_states import CARRIED, carry, summed_and_carried
 from pointcoord.results.states import StatesOfChain
 from pointcoord.results.table import State, vectors
 
 Array = NDArray[np.float64]
+
+# A coefficient up to this, of places whose size is 1, is what rounding leaves of rounding.
+NOTHING = EPS**2
 
 
 @dataclass(frozen=True)
@@ -63,11 +67,15 @@ class StatesOfDesigns(StatesOfChain):
             if part.start == part.stop:
                 continue
             powers = segment.powers(instants[part], len(orders))
-            series: dict[str, Array] = {}
+            series: dict[str, tuple[Array, list[Array]]] = {}
             for (order, name), place in wanted.items():
                 if name not in series:
                     first = mechanism.layout.vector(name)[0]
                     own = segment.coefficients[..., first : first + 3].transpose(1, 2, 0)
+                    # Of two inputs many a point is moved by one alone, to rounding.
+                    kept = np.flatnonzero(np.abs(own).reshape(len(own), -1).max(axis=-1) > NOTHING)
                     # Axis, designs, orders; the designs side by side in memory.
-                    series[name] = np.multiply(own, mechanism.unit, order="C").transpose(1, 2, 0)
-                np.matmul(series[name], powers[order], out=place[..., part].swapaxes(0, 1))
+                    shared = np.multiply(own[kept], mechanism.unit, order="C").transpose(1, 2, 0)
+                    series[name] = shared, [each[kept] for each in powers]
+                shared, own_powers = series[name]
+                np.matmul(shared, own_powers[order], out=place[..., part].swapaxes(0, 1))

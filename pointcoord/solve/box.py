@@ -33,7 +33,7 @@ from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.partial_map import PartialMap
-from pointcoord.numerics.power_series import expand
+from pointcoord.numerics.power_series import expand_unknowns
 from pointcoord.solve.assembly import Pose, follow
 from pointcoord.solve.standing_still import starting_place
 from pointcoord.solve.taylor import (
@@ -80,7 +80,7 @@ BOX, SEGMENTS = 100.0, 2.0
 class Box(Segment):
     """One series in inputs: y(t) = sum_k coefficients[k] s(t)^k, powers ordered by degree (`multi_index`).
 
-    It has no unit of time, `scale`: summed in time it is no number.
+    It has no unit of time, `scale`: summed in time it is no number. Of the known coordinates it has none.
 
     Attributes:
         laws: of the inputs that move. middle, half: of their ranges.
@@ -240,8 +240,9 @@ class _Boxed:
         summed = (signs[:, None] ** every.exponents).prod(axis=-1)[:, None] * (
             np.clip(every.exponents.sum(axis=-1) - order + 2, 0, 2) == np.arange(3)[:, None]
         )
-        rays = (summed.reshape(-1, every.count) @ series).reshape(len(y), len(signs), 3, -1)
-        ends = rays.sum(axis=-2)
+        rays = np.moveaxis(np.tensordot(summed, series, axes=(-1, -2)), 2, 0)
+        ends = np.empty((len(y), len(signs), system.size))
+        ends[..., : system.unknowns] = rays.sum(axis=-2)
         for i, sign in enumerate(signs):
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
@@ -249,8 +250,7 @@ class _Boxed:
         confirmation = confirmed(system, reached, side, rays, 1.0, self.settings.tolerance)
         good &= confirmation.good.all(axis=-1)
         work += reached.work + confirmation.work
-        coefficients = self.part.back(series)
-        ranges = self.ranges
+        coefficients, ranges = self.part.unknowns_back(y, series), self.ranges
         box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
@@ -264,7 +264,7 @@ class _Boxed:
                 return None
             known = self.known_series(order, columns)
             with np.errstate(all="ignore"):
-                series = expand(system, factors, y, known, series, self.inputs, driven)
+                series = expand_unknowns(system, factors, y, known, driven, series, self.inputs)
                 lacking = self.lacking(series, order)
             # The few that need many more degrees than the others are followed in time.
             further = lacking[order + lacking <= STANDS_OUT * (order + np.median(lacking))].max(initial=0.0)
@@ -290,7 +290,7 @@ class _Boxed:
         """
         every, (v, a) = powers(self.inputs, order), self.ranges.rates.T
         edges = [every.first_of(degree) for degree in range(order + 1)]
-        terms = np.abs(series[..., : self.part.system.unknowns])
+        terms = np.abs(series)
         logs = np.log(np.add.reduceat(terms, edges, axis=-2).max(axis=-1))
         logs[:, 0] = 0.0
         turned = (v**every.exponents).prod(axis=-1)[:, None]

@@ -60,7 +60,7 @@ Numbers = NDArray[np.intp]
 Points = Mapping[str, Array]
 
 # Designs that are solved together at most: of 128 to 2048 tried, the quickest or near it.
-TOGETHER = 1024
+TOGETHER = 512
 # Bytes that solving takes on the way: of a design for its matrices and for products of its series, beside
 # these themselves, twice, because they are put together from parts; before they are known, for all of it; and
 # of a number of the results at an instant for what the effects are made of.

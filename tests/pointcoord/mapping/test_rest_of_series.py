@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import perm
+from math import perm, prod
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import power_series
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.multi_index import powers, products
+from pointcoord.numerics.multi_index import pairs_at, powers, products
 from pointcoord.numerics.power_series import multiplied
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.patches.jet import Jet
@@ -37,6 +37,32 @@ def test_products_of_series_do_not_depend_on_how_many_pairs_are_multiplied_at_on
     monkeypatch.setattr(power_series, "PAIRS", pairs_at_once)
     # Whole numbers: no sum is rounded.
     assert np.array_equal(multiplied(left, right, pairs), wanted)
+
+
+@pytest.mark.parametrize("k", [(1,), (6,), (7,), (0, 4), (3, 2), (4, 4), (2, 0, 2), (1, 2, 3), (2, 4, 2)])
+def test_rectangles_hold_each_pair_of_exponents_once(k: tuple[int, ...]) -> None:
+    shape = tuple(most + 1 for most in k)
+    places = np.stack(np.indices(shape), axis=-1)
+
+    def pairs(once: bool) -> list[tuple[tuple[int, ...], tuple[int, ...]]]:
+        found = pairs_at(k, once)
+        sides = [
+            (places[first].reshape(-1, len(k)), places[last].reshape(-1, len(k)))
+            for first, last, _ in found.rectangles
+        ]
+        if found.middle is not None:
+            sides.append((places[found.middle][None], places[found.middle][None]))
+        return [
+            (tuple(i), tuple(j))
+            for one, other in sides
+            for i, j in zip(one.tolist(), other.tolist(), strict=True)
+        ]
+
+    every, half = pairs(once=False), pairs(once=True)
+    assert all(tuple(np.add(i, j)) == k for i, j in every + half)
+    assert len(set(every)) == len(every) == prod(shape)
+    assert sorted({*half, *((j, i) for i, j in half)}) == sorted(every)
+    assert len(half) == (prod(shape) + 1) // 2
 
 
 @pytest.mark.parametrize("inputs", [1, 2, 3])
