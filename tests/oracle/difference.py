@@ -110,9 +110,10 @@ def _of_numbers(part: str, frozen: pd.DataFrame, now: pd.DataFrame) -> Compariso
     neither = both["value"].isna() & both["value_now"].isna() & (both["_merge"] == "both")
     # A number that is not there any more, or has no bound, is not within it.
     both["share"] = (apart / both["allowed"]).fillna(np.inf)
-    no_turn = (both["formulation"] == "printed") & (both["value"].abs() <= both["bound"])
-    quotient = no_turn & both["value_now"].isna() & (both["_merge"] == "both")
-    right = neither | quotient | (apart == 0.0) | (apart <= both["allowed"])
+    no_turn = (both["formulation"] == "printed") & (both["_merge"] == "both")
+    for value, bound in (("value", "bound"), ("value_now", "bound_now")):
+        no_turn &= both[value].isna() | (both[value].abs() <= both[bound])
+    right = neither | no_turn | (apart == 0.0) | (apart <= both["allowed"])
     wrong = both[~right | both["loose"]]
     worst = wrong.sort_values("share", ascending=False, kind="stable").drop_duplicates([*kind, "name"])
     widened = (both["bound_now"] / both["bound"])[both["bound"] > 0.0].median()
