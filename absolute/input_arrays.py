@@ -7,6 +7,10 @@ import numpy as np
 from absolute.errors import InputError
 from absolute.solution import Array
 
+# Angle (beyond, no digit of it is left), rate and acceleration of a turn of the chassis: times lengths up to
+# LARGEST_COORDINATE they are far from the end of the floating-point range.
+FASTEST = np.array([1e16, 1e100, 1e200])
+
 
 def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
     """(N, 3, inputs): value, rate and acceleration of every input of the model, in its order.
@@ -69,6 +73,40 @@ def doubt_series(names: Sequence[str], doubts: Mapping[str, Array], count: int) 
             )
         series[:, :, place] = column
     return series
+
+
+def turn_series(names: Sequence[str], inputs: Mapping[str, Array], count: int) -> dict[str, Array]:
+    """name -> (N, 3): angle, rate and acceleration of those turns of the chassis that are told.
+
+    Raises:
+        InputError: one is of another length, not finite, or faster than products with lengths may be.
+    """
+    told: dict[str, Array] = {}
+    for name in names:
+        if name not in inputs:
+            continue
+        told[name] = column = checked(
+            name, inputs[name], (3,), "angle, rate and acceleration at each instant"
+        )
+        if len(column) != count:
+            raise InputError(
+                f"turn {name!r} has {len(column)} instants, the inputs have {count}; give both the same",
+                name,
+                None,
+                len(column),
+            )
+        fast = np.flatnonzero((np.abs(column) > FASTEST).any(axis=1))
+        if fast.size:
+            instant = int(fast[0])
+            found = column[instant].tolist()
+            raise InputError(
+                f"turn {name!r} is {found} at instant {instant}; products with it overflow: it may be up to "
+                f"{FASTEST.tolist()}",
+                name,
+                instant,
+                found,
+            )
+    return told
 
 
 def chassis_series(chassis: Array | None, count: int) -> Array:
