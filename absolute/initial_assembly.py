@@ -52,20 +52,27 @@ def _require_clear(mechanism: Mechanism, drawn: Pose, gap: Array) -> None:
     the other end in different assemblies.
     """
     stack = mechanism.stack
-    read = stack.jacobian(stack.read_at_foot(drawn.placed, gap))
-    if (mechanism.signs(read) == drawn.signs).all():
+
+    def other_side(gaps: Array) -> bool:
+        read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
+        return bool((mechanism.signs(read) != drawn.signs).any())
+
+    if not other_side(gap):
         return
-    off = np.abs(gap)
-    owner, largest = stack.owners[int(off.argmax())], float(off.max()) * mechanism.drawing.size
+    of = np.array(stack.owners)
+    alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
+    open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
+    largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
     raise AssemblyError(
-        f"the drawing stands for two assemblies: {owner!r} is drawn {largest:.3g} mm from closed, and "
-        "which assembly is meant depends on which of its parts is put right, since a pose where both "
-        "meet lies between; draw the points closer to an assembled pose",
+        f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
+        "mm from closed, and which assembly is meant depends on which of its parts is put right, "
+        "since a pose where both meet lies between; draw the points closer to an assembled pose",
         None,
         mechanism.named(mechanism.drawn_inputs.tolist()),
         {},
         largest,
         inverse(drawn.rcond),
+        open_joints,
     )
 
 
