@@ -217,7 +217,7 @@ def test_what_a_turn_is_off_is_claimed_of_all_that_it_turns(off: tuple[float, ..
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        (np.zeros((2, 3)), "turn 'roll' has 2 instants, the inputs have 3"),
+        (np.zeros((2, 3)), "'roll' has 2 instants, the others have 3"),
         (np.full((3, 3), np.nan), "'roll' is .nan, nan, nan. at instant 0"),
         (np.tile([0.0, 1e101, 0.0], (3, 1)), "turn 'roll' is .0.0, 1e.101, 0.0. at instant 0; products"),
         (np.zeros(3), "'roll' has shape"),
