@@ -132,16 +132,12 @@ def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
 
 
 def _in_absolute_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
-    suspension_of = absolute.suspension_of
+    build = absolute.compile
 
-    def wrong(kind: str) -> Callable[..., absolute.Model]:
-        build = suspension_of(kind)
-        return lambda points, **options: build(change(dict(points)), **(options | axes))
+    def wrong(plain: dict) -> absolute.Model:
+        return build({**plain, "points": change(dict(plain["points"])), **axes})
 
-    def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(absolute, "suspension_of", wrong)
-
-    return plant
+    return lambda patch: patch.setattr(absolute, "compile", wrong)
 
 
 def _moved(names: tuple[str, ...], *shift: float) -> Callable[[dict], dict]:
