@@ -44,8 +44,8 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
         mechanism: plain data, mm and rad:
             bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
             slides: name -> points, body, through, along, turns.
-            inputs: those that are driven, name -> one of angle, travel, height, contact, distance; what moves
-                the chassis is no part of the linkage.
+            inputs: those that are driven, name -> one of angle, travel, height, contact, distance; or
+                turns, which turn the whole car. What displaces it is no part of the linkage.
             roles: wheel_axis and steering_axis, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             wheel_radius: of the disc of `contact`.
@@ -73,6 +73,7 @@ class _Compiler:
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
         self.joints: dict[str, Joint] = {}
         self.inputs: dict[str, Input] = {}
+        self.turns: dict[str, Axis] = {}
         self.aids: set[str] = set()
         self.corner = self._corner()
         right = self.corner.right
@@ -100,12 +101,23 @@ class _Compiler:
             "distance": self._distance,
         }
         for name, given in self.of.get("inputs", {}).items():
-            if not {"moves", "turns"} & set(given):
+            if "turns" in given:
+                _one_of(f"the point of input {name!r}", given["about"], self.points)
+                _one_of(f"`along` of input {name!r}", given["along"], self.directions)
+                self.turns[name] = Axis(given["about"], self.directions[given["along"]])
+            elif "moves" not in given:
                 kind = next((kind for kind in drive if kind in given), "")
                 _one_of(f"the kind of input {name!r}", kind or str(list(given)), drive)
                 drive[kind](name, given)
         return Model(
-            self.points, CHASSIS, self.bodies, self.joints, self.inputs, self.corner, frozenset(self.aids)
+            self.points,
+            CHASSIS,
+            self.bodies,
+            self.joints,
+            self.inputs,
+            self.corner,
+            frozenset(self.aids),
+            self.turns,
         )
 
     def _corner(self) -> Corner:

@@ -1,7 +1,7 @@
 """A linkage as plain data: points, the bodies that hold them, joints and inputs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -152,12 +152,14 @@ class Model:
 
     Attributes:
         points: name -> (x, y, z) of the drawing, mm.
-        chassis: name of the body that does not turn and carries all others.
+        chassis: name of the body that carries all others.
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
         corner: what of it is the wheel, where effects are asked for; none by default.
         aids: bodies, and points, that are there for the equations only and are not reported.
+        turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
+            car, one after the other; these directions do not turn.
     Raises:
         DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
             LARGEST_COORDINATE, an axis has no length, or joints and inputs give fewer than six rows per
@@ -171,12 +173,14 @@ class Model:
     inputs: Mapping[str, Input]
     corner: Corner | None = None
     aids: frozenset[str] = frozenset()
+    turns: Mapping[str, Axis] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = {name: point_of(name, value) for name, value in self.points.items()}
         object.__setattr__(self, "points", ReadOnly(points))
         object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
         object.__setattr__(self, "joints", ReadOnly(self.joints))
+        object.__setattr__(self, "turns", ReadOnly(self.turns))
         # Turns last: rows of lengths and rows of angles stay apart.
         driven = sorted(self.inputs.items(), key=lambda drive: drive[1].law == "turn")
         object.__setattr__(self, "inputs", ReadOnly(dict(driven)))
@@ -197,6 +201,9 @@ class Model:
                     name,
                     drive.factor,
                 )
+        for name, axis in self.turns.items():
+            _check_choice(f"the point of turn {name!r}", name, axis.through, self.points)
+            _check_direction(f"turn {name!r}", name, axis.toward)
         if self.corner is not None:
             _check_corner(self, self.corner)
         self._check_count()

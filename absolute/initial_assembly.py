@@ -1,7 +1,5 @@
 """Putting the drawn bodies together on the branch of the drawing, or saying why not."""
 
-import math
-
 import numpy as np
 
 from absolute.backend import eigenpy
@@ -9,18 +7,9 @@ from absolute.continuation import BlockedError, follow
 from absolute.errors import AssemblyError, BranchError, SingularError
 from absolute.limits import limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
-from absolute.newton import SMALLEST_RCOND, Pose, correct, held_at, inverse, pose_at
-from absolute.precision import EPS
+from absolute.newton import SMALLEST_RCOND, Pose, held_at, inverse, pose_at
 from absolute.solution import Array
 from absolute.stack import Placed, RowStack
-
-# Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
-# to 200 mm off, two closed to another one than their rods are drawn on, and moved by 0.82 and 1.11 of it.
-FURTHEST = 0.8
-# Where the drawing is x from a fold and the closed pose N x, the step that the drawing's own derivatives give
-# is (N + 1) / 2 times as long as the way that is gone: with g = (N^2 - 1) x^2, g / 2 x against (N - 1) x.
-# From 7 times as far on, which rows are chosen tells the side of the fold as much as the drawing does.
-LONGEST_ESTIMATE = 4.0
 
 
 def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
@@ -33,7 +22,7 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
         The pose and the Newton corrections of the way that led to it.
     Raises:
         SingularError: the drawing itself is singular.
-        AssemblyError: closing the drawing locks the mechanism.
+        AssemblyError: the drawing stands for two assemblies; closing it locks the mechanism.
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     drawn = _drawn_pose(mechanism)
@@ -45,66 +34,46 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
     def closing(share: float) -> Array:
         return np.array([drawn.placed.values + share * gap, gap, np.zeros_like(gap)])
 
+    _require_clear(mechanism, drawn, gap)
     try:
         pose, spent = follow(mechanism, drawn, closing)
     except BlockedError as blocked:
         raise _locked(mechanism, blocked, gap) from blocked
-    _require_near(mechanism, pose)
-    _require_clear(mechanism, drawn, pose, target)
     _require_redundant(mechanism, pose)
     return pose, spent
 
 
-def _require_near(mechanism: Mechanism, pose: Pose) -> None:
-    """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
-    drawing, model = mechanism.drawing, mechanism.model
-    furthest, moved = "", 0.0
-    for body, index in drawing.bodies.items():
-        for point in model.bodies[body]:
-            arm = drawing.arm(body, point)
-            there = pose.poses.origin[index] + pose.poses.rotation[index] @ arm
-            distance = float(np.linalg.norm(there - drawing.origins[index] - arm))
-            if distance > moved:
-                furthest, moved = point, distance
-    if moved > FURTHEST:
-        raise AssemblyError(
-            f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
-            f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
-            "meant: draw the points closer to an assembled pose",
-            None,
-            mechanism.named(mechanism.drawn_inputs.tolist()),
-            {},
-            moved * drawing.size,
-        )
+def _require_clear(mechanism: Mechanism, drawn: Pose, gap: Array) -> None:
+    """Refuse a drawing that two readings of the same joints put on different sides of a singular pose.
 
-
-def _require_clear(mechanism: Mechanism, drawn: Pose, pose: Pose, target: Array) -> None:
-    """Refuse a drawing that is so much nearer to a fold than its closed pose that its side is not clear.
-
-    Where Newton's method comes to the same assembly in one go, two ways say which one is drawn.
+    A determinant's sign tells on which of two assemblies a group of bodies is, and the way to the closed pose
+    keeps it. Of a joint that is drawn open the Jacobian can be read in two ways that are the same when it is
+    closed (see `RowStack.read_at_foot`). Where they differ in a sign, ways of closing that keep the one or
+    the other end in different assemblies.
     """
-    gap = mechanism.stack.gap(drawn.placed, target)
-    estimate = float(np.linalg.norm(drawn.factors.solve(gap)))
-    turns = pose.poses.rotation @ drawn.poses.rotation.swapaxes(-1, -2)
-    angles = np.arccos(np.clip(0.5 * (np.trace(turns, axis1=-2, axis2=-1) - 1.0), -1.0, 1.0))
-    gone = math.hypot(np.linalg.norm(pose.poses.origin - drawn.poses.origin), np.linalg.norm(angles))
-    # A cosine tells no angle below the root of eps.
-    if estimate > LONGEST_ESTIMATE * gone and estimate > LONGEST_ESTIMATE * math.sqrt(EPS) * len(angles):
-        direct = correct(mechanism, drawn.q, target, drawn.rcond).pose
-        if direct is not None and np.abs(direct.poses.origin - pose.poses.origin).max() < math.sqrt(EPS):
-            return
-        limits = limits_at(mechanism, mechanism.stack.jacobian(drawn.placed))
-        raise AssemblyError(
-            f"the drawing lies nearer to a pose where two assemblies meet than closing moves it: "
-            f"{limited_by(limits)}"
-            "draw the points closer to an assembled pose",
-            None,
-            mechanism.named(mechanism.drawn_inputs.tolist()),
-            {},
-            float(np.abs(gap).max()) * mechanism.drawing.size,
-            inverse(drawn.rcond),
-            limits,
-        )
+    stack = mechanism.stack
+
+    def other_side(gaps: Array) -> bool:
+        read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
+        return bool((mechanism.signs(read) != drawn.signs).any())
+
+    if not other_side(gap):
+        return
+    of = np.array(stack.owners)
+    alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
+    open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
+    largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
+    raise AssemblyError(
+        f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
+        "mm from closed, and which assembly is meant depends on which of its parts is put right, "
+        "since a pose where both meet lies between; draw the points closer to an assembled pose",
+        None,
+        mechanism.named(mechanism.drawn_inputs.tolist()),
+        {},
+        largest,
+        inverse(drawn.rcond),
+        open_joints,
+    )
 
 
 def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> AssemblyError:

@@ -7,6 +7,10 @@ import numpy as np
 from absolute.errors import InputError
 from absolute.solution import Array
 
+# Angle (beyond, no digit of it is left), rate and acceleration of a turn of the chassis: times lengths up to
+# LARGEST_COORDINATE they are far from the end of the floating-point range.
+FASTEST = np.array([1e16, 1e100, 1e200])
+
 
 def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
     """(N, 3, inputs): value, rate and acceleration of every input of the model, in its order.
@@ -21,17 +25,9 @@ def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
             f"inputs must be exactly {sorted(names)}; unknown: {unknown}, missing: {missing}",
             (unknown or missing)[0],
         )
-    content = "value, rate and acceleration at each instant"
-    columns = [checked(name, inputs[name], (3,), content) for name in names]
-    for name, column in zip(names, columns, strict=True):
-        if len(column) != len(columns[0]):
-            raise InputError(
-                f"input {name!r} has {len(column)} instants, {names[0]!r} has {len(columns[0])}; "
-                "give both the same",
-                name,
-                None,
-                len(column),
-            )
+    content, columns = "value, rate and acceleration at each instant", list[Array]()
+    for name in names:
+        columns.append(checked(name, inputs[name], (3,), content, len(columns[0]) if columns else None))
     return np.stack(columns, axis=-1) if columns else np.zeros((0, 3, 0))
 
 
@@ -49,14 +45,7 @@ def doubt_series(names: Sequence[str], doubts: Mapping[str, Array], count: int) 
     for place, name in enumerate(names):
         if name not in doubts:
             continue
-        column = checked(name, doubts[name], (3,), content)
-        if len(column) != count:
-            raise InputError(
-                f"input_errors of {name!r} have {len(column)} instants, the inputs {count}; give as many",
-                name,
-                None,
-                len(column),
-            )
+        column = checked(name, doubts[name], (3,), content, count)
         negative = np.flatnonzero((column < 0).any(axis=1))
         if negative.size:
             instant = int(negative[0])
@@ -71,6 +60,32 @@ def doubt_series(names: Sequence[str], doubts: Mapping[str, Array], count: int) 
     return series
 
 
+def turn_series(names: Sequence[str], inputs: Mapping[str, Array], count: int) -> dict[str, Array]:
+    """name -> (N, 3): angle, rate and acceleration of those turns of the chassis that are told.
+
+    Raises:
+        InputError: one is of another length, not finite, or faster than products with lengths may be.
+    """
+    told: dict[str, Array] = {}
+    for name in names:
+        if name not in inputs:
+            continue
+        content = "angle, rate and acceleration at each instant"
+        told[name] = column = checked(name, inputs[name], (3,), content, count)
+        fast = np.flatnonzero((np.abs(column) > FASTEST).any(axis=1))
+        if fast.size:
+            instant = int(fast[0])
+            found = column[instant].tolist()
+            raise InputError(
+                f"turn {name!r} is {found} at instant {instant}; products with it overflow: it may be up to "
+                f"{FASTEST.tolist()}",
+                name,
+                instant,
+                found,
+            )
+    return told
+
+
 def chassis_series(chassis: Array | None, count: int) -> Array:
     """(N, 3, 3): translation, velocity, acceleration of the chassis; zeros for None.
 
@@ -79,19 +94,14 @@ def chassis_series(chassis: Array | None, count: int) -> Array:
     """
     if chassis is None:
         return np.zeros((count, 3, 3))
-    series = checked("chassis", chassis, (3, 3), "translation, velocity and acceleration at each instant")
-    if len(series) != count:
-        raise InputError(
-            f"chassis has {len(series)} instants, the inputs have {count}; give both the same",
-            "chassis",
-            None,
-            len(series),
-        )
-    return series
+    content = "translation, velocity and acceleration at each instant"
+    return checked("chassis", chassis, (3, 3), content, count)
 
 
-def checked(name: str, values: object, shape: tuple[int, ...], content: str) -> Array:
-    """A copy of `values` as floats of shape (N, *shape), finite throughout."""
+def checked(
+    name: str, values: object, shape: tuple[int, ...], content: str, count: int | None = None
+) -> Array:
+    """A copy of `values` as floats of shape (N, *shape), finite throughout; N is `count` if that is given."""
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError) as error:
@@ -109,5 +119,12 @@ def checked(name: str, values: object, shape: tuple[int, ...], content: str) -> 
             name,
             instant,
             array[instant].tolist(),
+        )
+    if count is not None and len(array) != count:
+        raise InputError(
+            f"{name!r} has {len(array)} instants, the others have {count}; give all as many",
+            name,
+            None,
+            len(array),
         )
     return array

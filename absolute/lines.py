@@ -1,5 +1,6 @@
 """Lines between points of a solved motion, and how far they may be off."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +11,12 @@ from absolute.mechanism import Mechanism
 from absolute.precision import EPS
 from absolute.rounding import ARM, length
 from absolute.solution import Array
+from absolute.turning import Turning
 
 
 @dataclass(frozen=True)
 class SolvedLines:
-    """Lines at N instants, mm, in the axes of the frame of the points.
+    """Lines at N instants, mm, in the axes of the frame of the points, as they are seen from the ground.
 
     A line between two points of one body turns with it and is nothing but turned: it is as good as the
     body's rotation R, however far the car is from its origin, |d a| <= |turn x a| + rounding of R a. A line
@@ -23,12 +25,14 @@ class SolvedLines:
     Attributes:
         rotation: (N, bodies, 3, 3). origin: (N, bodies, 3), from the middle, in units of size.
         errors: estimates for the same instants.
+        turns: of the chassis, one after the other; the others are in its frame.
     """
 
     mechanism: Mechanism
     rotation: Array
     origin: Array
     errors: Errors
+    turns: Sequence[Turning] = ()
 
     @property
     def corner(self) -> Corner:
@@ -40,19 +44,31 @@ class SolvedLines:
 
     def line(self, ends: tuple[str, str]) -> Array:
         """(N, 3) from one point to another."""
+        line = self._line(ends)
+        for turn in self.turns:
+            line = turn.seen(line[None])[0]
+        return line
+
+    def error(self, ends: tuple[str, str]) -> Array:
+        """(N, 3) how far each component of that line may be off."""
+        line, off = self._line(ends), self._error(ends)
+        for turn in self.turns:
+            line, off = turn.seen(line[None])[0], turn.error(line[None], off[None])[0]
+        return off
+
+    def _line(self, ends: tuple[str, str]) -> Array:
         drawing, body = self.mechanism.drawing, self._body_of(ends)
         if body is None:
             return self._place(ends[1]) - self._place(ends[0])
         turned: Array = self.rotation[:, drawing.bodies[body]] @ drawing.line(*ends) * drawing.size
         return turned
 
-    def error(self, ends: tuple[str, str]) -> Array:
-        """(N, 3) how far each component of that line may be off."""
+    def _error(self, ends: tuple[str, str]) -> Array:
         body = self._body_of(ends)
         of_places = sum((self._place_error(end) for end in ends), np.zeros(3))
         if body is None:
             return of_places
-        along = np.abs(self.line(ends))
+        along = np.abs(self._line(ends))
         if body == self.mechanism.model.chassis:
             return EPS * along
         turn = self.errors.rotation[body]

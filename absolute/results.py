@@ -1,5 +1,6 @@
 """The record of a motion while it is solved, and the points and bodies read from it."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from absolute.mechanism import Mechanism
 from absolute.refine import Refined
 from absolute.sampled_estimate import sampled
 from absolute.solution import Array, Solution
+from absolute.turning import Turning, carried
 from absolute.vectors import cross
 
 # Jacobians at once when condition numbers or errors are asked for: what stays in fast memory.
@@ -38,11 +40,20 @@ class Asked(NamedTuple):
 class Record:
     """Body poses and rates of the instants solved so far, in units of size."""
 
-    def __init__(self, mechanism: Mechanism, series: Array, chassis: Array, asked: Asked) -> None:
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        series: Array,
+        chassis: Array,
+        asked: Asked,
+        turns: Sequence[Turning] = (),
+    ) -> None:
         count, rates = len(series), asked.rates
         bodies = len(mechanism.drawing.bodies)
         self._mechanism = mechanism
-        self._series, self._chassis = series, chassis
+        # A chassis that turns is displaced after that.
+        self._series, self._chassis = series, np.zeros_like(chassis) if turns else chassis
+        self._turns, self._shift = turns, chassis
         self._asked = asked
         self._rates = rates
         self._rotation = np.zeros((count, bodies, 3, 3))
@@ -72,7 +83,7 @@ class Record:
         self.written += count
 
     def solution(self) -> Solution:
-        """The instants solved so far in mm, carried by the chassis motion."""
+        """The instants solved so far in mm, carried by the chassis' motion."""
         count, chassis = self.written, self._chassis
         drawing, model = self._mechanism.drawing, self._mechanism.model
         position: dict[str, Array] = {}
@@ -110,9 +121,10 @@ class Record:
         errors, condition = self._estimates(count)
         effects = self._asked.effects
         told = effects if self._asked.doubts is not None else ()
-        lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors)
+        of_car = [turn.first(count) for turn in self._turns]
+        lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors, of_car)
         in_order = {name: position[name] for name in model.reported}
-        return Solution(
+        solved = Solution(
             position=_fixed(in_order),
             velocity=_fixed({name: velocity[name] for name in model.reported} if self._rates else {}),
             acceleration=_fixed({name: acceleration[name] for name in model.reported} if self._rates else {}),
@@ -130,6 +142,7 @@ class Record:
             effects=_fixed({effect.name: effect.value(lines) for effect in effects}),
             effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
         )
+        return carried(solved, of_car, self._shift[:count]) if of_car else solved
 
     def _estimates(self, count: int) -> tuple[Errors, Array | None]:
         """Errors and condition numbers of the first `count` instants; nothing where none were asked for."""

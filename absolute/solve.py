@@ -16,6 +16,7 @@ from absolute.refine import BATCH, Refined, refine
 from absolute.results import Asked, Record
 from absolute.solution import Array, Solution
 from absolute.tracking import Found, Tracking
+from absolute.turning import turnings
 
 # Instants that are tracked before they are refined: enough for long runs.
 BLOCK = 256
@@ -35,9 +36,10 @@ def solve(
 
     Args:
         model: the linkage.
-        inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s).
+        inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s);
+            and of turns of the chassis, which is not turned where they are not given.
         chassis: (N, 3, 3) translation, velocity, acceleration of the chassis in the frame of the
-            points, mm, mm/s, mm/s^2; None for a chassis at rest as drawn.
+            points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         errors: also an estimate of the error of each quantity at each instant (see `estimate`), of which
@@ -75,14 +77,19 @@ def solve(
     for effect in asked:
         model.require(effect.role)
     rates = rates or any(effect.derivative > 0 for effect in asked)
-    # Inputs that take the same value have a column each.
-    of_input = [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
-    series = input_series(model.values, inputs)[..., of_input]
+    series = driven_series(model, inputs)
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
-    doubts = doubt_series(model.values, input_errors or {}, count)[..., of_input] if errors else None
-    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked))
+    doubts = doubt_series((*model.values, *model.turns), input_errors or {}, count) if errors else None
+    of_turns = (
+        None
+        if doubts is None
+        else {name: doubts[..., place] for place, name in enumerate(model.turns, len(model.values))}
+    )
+    turns = turnings(model, inputs, count, of_turns)
+    doubts = None if doubts is None else doubts[..., _columns(model)]
+    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked), turns)
     try:
         with np.errstate(over="ignore", invalid="ignore"):
             tracking = Tracking(mechanism)
@@ -91,6 +98,21 @@ def solve(
         error.partial = record.solution() if record.written else None
         raise
     return record.solution()
+
+
+def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
+    """(N, 3, inputs) of inputs by the names of their values; turns of the chassis are passed over.
+
+    Raises:
+        InputError: one is missing, unknown, of another length, or not finite.
+    """
+    driving = {name: law for name, law in inputs.items() if name not in model.turns}
+    return input_series(model.values, driving)[..., _columns(model)]
+
+
+def _columns(model: Model) -> list[int]:
+    """Which value each input takes: those that take the same one have a column each."""
+    return [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
 
 
 def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:

@@ -132,6 +132,11 @@ class RowStack:
             self._between[[offset.first, offset.second], row] = 1.0
         self._local, self._is_point = features.tables()
         self._picks = np.array(features.flat(picks)).T.copy()
+        # Rows of one joint that say where the same point, or direction, is.
+        owner = np.array(self.owners)
+        self._mates = ((owner[:, None] == owner) & np.equal.outer(self._picks[1], self._picks[1])).astype(
+            float
+        )
         self._senses = np.array(features.flat(senses), dtype=np.intp).reshape(-1, 2).T.copy()
         self._turned = np.array(features.flat(turned), dtype=np.intp).reshape(-1, 3).T.copy()
         self.turn_rows = slice(count - len(rows.turns), count)
@@ -195,6 +200,19 @@ class RowStack:
         """(...) whether all joints have the sense in which they are drawn."""
         first, second = np.moveaxis(placed.world.take(self._senses, -2), -3, 0)
         return np.asarray((np.vecdot(first, second) > 0.0).all(-1))
+
+    def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
+        """Rows that are not closed, with their joints' forces where they belong on the first body.
+
+        Where a joint is off by m, the sum of its rows' -gap a, each row's rate may be taken with its force at
+        the point of the second body, as in `place`, or at its foot on the axis of the first,
+            a . (o2' + w2 x (r2 - m) - o1' - w1 x (r1 + e - m)),
+        and once it is closed both are the same. Directions of right angles likewise.
+        """
+        missed = self._mates @ (-gap[..., None] * placed.parts[..., 0, :, :])
+        parts = placed.parts.copy()
+        parts[..., 3:, :, :] -= missed[..., None, :, :]
+        return placed._replace(parts=parts)
 
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, 6 * moving bodies), columns [o', w] of each moving body."""

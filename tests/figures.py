@@ -1,6 +1,6 @@
 """Writes measured figures into the pages that show them: what a command printed, when, and of which commit.
 
-    python tests/figures.py NAME [NAME ...]      names: agreement hard random bounds cost growth speed
+    python tests/figures.py NAME [NAME ...]      names: agreement hard random bounds cost growth speed struts
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -132,6 +132,11 @@ FIGURES = {
         "pytest tests/benchmarks/speed.py -n 0 -p benchmark --benchmark-json {folder}/speed.json",
         _speed,
     ),
+    "struts": Figure(
+        "validate/formulations/README.md",
+        "tests.support.badly_drawn_struts",
+        lambda printed, folder: printed.strip(),
+    ),
 }
 
 
@@ -157,6 +162,7 @@ def write(name: str) -> None:
             sys.exit(f"{figure.command}: status {ran.returncode}; the page is as it was\n{ran.stdout}")
         shown = figure.shown(ran.stdout, Path(folder))
     said = figure.command.replace("{folder}/", "")
+    said = f"python -m {said}" if said.startswith("tests.") else said
     when = f"By `{said}` on {datetime.date.today()}, commit {_git('rev-parse', '--short', 'HEAD')}:"
     page = ROOT / figure.page
     text = page.read_text(encoding="utf-8")

@@ -285,7 +285,7 @@ def test_a_long_motion_has_the_errors_of_each_of_its_instants(
     ("doubts", "say"),
     [
         ({"steer": np.zeros((1, 3))}, r"may name \['arm_angle', 'rack'\]; unknown: \['steer'\]"),
-        ({"rack": np.zeros((2, 3))}, "2 instants, the inputs 1"),
+        ({"rack": np.zeros((2, 3))}, "2 instants, the others have 1"),
         ({"rack": np.array([[0.0, -1.0, 0.0]])}, "magnitudes"),
         ({"rack": np.array([[0.0, np.nan, 0.0]])}, "finite"),
         ({"rack": np.zeros(3)}, "shape"),

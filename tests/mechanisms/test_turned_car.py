@@ -16,7 +16,9 @@ from scipy.spatial.transform import Rotation
 
 from pointcoord import InputOutOfRange, Scene, kinematic_map, simulate, solve_poses, sweep
 from pointcoord.mechanism.file import MECHANISMS
+from validate import compare
 from validate.cli import main
+from validate.formulations.registry import formulation
 from validate.reference import solve_reference
 
 Array = NDArray[np.float64]
@@ -87,6 +89,33 @@ def test_every_number_of_a_turned_car_is_the_references_within_its_proven_bound(
                     assert max(off) <= whole[i]
     # The bounds would not do for a car that is turned the other way round or elsewhere.
     assert max(bound.max() for bound in proof.proven["position"].values()) < (1e-9 if far else 1e-11)
+
+
+@pytest.mark.parametrize(("name", "far"), [("double-wishbone", False), ("bounce", True)])
+def test_every_number_of_absolute_is_the_references_within_what_it_claims(name: str, far: bool) -> None:
+    scene = turning(name, far)
+    solved = formulation("absolute").solve(scene)
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    for i in (0, 3, 8):
+        there = solve_reference(plain, told(scene, float(solved.times[i])))
+        exact = {quantity: getattr(there, quantity) for quantity in STATES}
+        exact["wheel"] = {angle: (there.effects[angle],) for angle in solved.numbers["wheel"]}
+        for quantity, numbers in solved.numbers.items():
+            for who, value in numbers.items():
+                claim = np.atleast_1d(solved.accuracy.claims[quantity][who][i])
+                given = np.atleast_1d(value[i]).tolist()
+                with workdps(60):
+                    off = [abs(mpf(x) - e) for x, e in zip(given, exact[quantity][who], strict=True)]
+                assert all(o <= c for o, c in zip(off, claim, strict=True)), (quantity, who)
+                # The claims would not do for a car that is turned the other way round or elsewhere.
+                assert claim.max() < 1e-9
+
+
+@pytest.mark.parametrize("along", ["down", "left", "forward", "rearward"])
+def test_absolute_displaces_the_car_along_any_direction(along: str) -> None:
+    content = turning("double-wishbone").model_dump(exclude_none=True)
+    content["mechanism"]["inputs"]["heave"]["along"] = along
+    assert compare(Scene.from_mapping(content), "pointcoord", "absolute").agreed
 
 
 def turned_by_hand(places: Array, scene: Scene, names: tuple[str, ...], instant: float) -> Array:
@@ -161,7 +190,7 @@ def test_a_car_that_turns_too_fast_is_refused_with_when_and_what() -> None:
         simulate(Scene.from_mapping(content))
 
 
-@pytest.mark.parametrize("other", ["relative", "mujoco", "exudyn"])
+@pytest.mark.parametrize("other", ["absolute", "relative", "mujoco", "exudyn"])
 def test_other_models_turn_the_car_alike(other: str, capsys: pytest.CaptureFixture[str]) -> None:
     if other in ("mujoco", "exudyn"):
         pytest.importorskip(other)

@@ -46,7 +46,7 @@ class AbsoluteCoordinates:
         """
         part, asked = scene.mechanism, asked_numbers(scene)
         inputs = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
-        chassis = _chassis_motion(part, inputs)
+        chassis = chassis_motion(part, inputs)
         inputs = {name: law for name, law in inputs.items() if name not in part.topology.chassis_motion}
         unit = slow_unit(inputs, chassis)
         origin = near_origin(part)
@@ -120,12 +120,21 @@ class _Reading:
             return None
 
 
-def _chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
-    """What the inputs that move the chassis come to, (N, 3, 3), mm and s; None if there are none."""
-    directions = {"up": part.up, "right": part.right}
+def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
+    """What the inputs that displace the chassis come to, (N, 3, 3), mm and s; None if there are none."""
+    up, right = np.array(part.up), np.array(part.right)
+    forward = np.cross(up, right)
+    directions = {
+        "up": up,
+        "right": right,
+        "forward": forward,
+        "down": -up,
+        "left": -right,
+        "rearward": -forward,
+    }
     with np.errstate(invalid="ignore"):  # the model refuses what is not finite
         moves = [
-            inputs[name][:, :, None] * np.array(directions[direction])
+            inputs[name][:, :, None] * directions[direction]
             for name, direction in part.topology.chassis_motion.items()
             if name in inputs
         ]

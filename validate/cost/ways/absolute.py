@@ -23,12 +23,13 @@ Array = NDArray[np.float64]
 def in_bodies(scene: Scene, _: float | None) -> Solve:
     """Poses of rigid bodies in Pinocchio."""
     from absolute.effects import effects_of
-    from absolute.input_arrays import chassis_series, input_series
+    from absolute.input_arrays import chassis_series
     from absolute.mechanism import Mechanism
     from absolute.results import Asked, Record
-    from absolute.solve import solve_instants
+    from absolute.solve import driven_series, solve_instants
     from absolute.tracking import Tracking
-    from validate.formulations.absolute_coordinates import near_model, near_origin
+    from absolute.turning import turnings
+    from validate.formulations.absolute_coordinates import chassis_motion, near_model, near_origin
 
     part, asked = scene.mechanism, asked_numbers(scene)
     origin = near_origin(part)
@@ -37,16 +38,14 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
     rates = plan_effects(scene.effects).derivative > 0
     wanted = [name for quantity in asked if QUANTITIES[quantity].of == "car" for name in asked[quantity]]
     told = Asked(rates, conditions=False, doubts=None, effects=effects_of(wanted))
-    moves, axes = part.topology.chassis_motion, {"up": part.up, "right": part.right}
 
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)
-        shifts = [
-            laws.pop(name)[..., None] * np.array(axes[axis]) for name, axis in moves.items() if name in laws
-        ]
-        chassis = chassis_series(np.sum(shifts, axis=0) if shifts else None, len(instants))
-        series = input_series(tuple(mechanism.model.inputs), laws)
-        record = Record(mechanism, series, chassis, told)
+        chassis = chassis_series(chassis_motion(part, laws), len(instants))
+        turns = turnings(mechanism.model, laws, len(instants))
+        laws = {name: law for name, law in laws.items() if name not in part.topology.chassis_motion}
+        series = driven_series(mechanism.model, laws)
+        record = Record(mechanism, series, chassis, told, turns)
         solve_instants(tracking, series, rates, record)
         solved = record.solution()
         numbers: dict[str, Mapping[str, Array]] = {}
