@@ -20,7 +20,8 @@ from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
-from pointcoord.solve.assembly import Path, close_drawing, follow
+from pointcoord.solve.assembly import close_drawing, follow
+from pointcoord.solve.curved_path import Path
 
 Array = NDArray[np.float64]
 
