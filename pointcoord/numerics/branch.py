@@ -39,7 +39,7 @@ NEAR = 0.25
 DIGITS = 52
 # Degree of an interpolant, places at which it is looked at, by what factor a segment is divided finer where
 # it shows nothing, and into how many parts at most.
-DEGREE, BETWEEN, FINER, MOST_PARTS = 6, 33, 4, 16
+DEGREE, BETWEEN, FINER, MOST_PARTS = 6, 17, 4, 16
 # What must be left of a determinant: of its largest value, so that no zero is missed between the places; and
 # of the last two coefficients, which are larger than the sum of those after them.
 LEAST, BEYOND = 0.03, 4.0
@@ -141,10 +141,8 @@ def regular_between(system: QuadraticMap, y: Array) -> NDArray[np.bool_]:
     with np.errstate(all="ignore"):
         sign, size = _determinants(system, y)
         found = _finer() @ (sign * np.exp(size - size.max(axis=-2, keepdims=True)))
-        values, last = found[..., :-2, :], np.abs(found[..., -2:, :]).sum(axis=-2)
-        least = np.maximum(values.min(axis=-2), -values.max(axis=-2))
         # What is not finite is not above anything.
-        return np.asarray((least > LEAST + BEYOND * last).all(axis=-1))
+        return np.asarray((np.maximum(found.min(axis=-2), -found.max(axis=-2)) > LEAST).all(axis=-1))
 
 
 def _determinants(system: QuadraticMap, y: Array) -> tuple[Array, Array]:
@@ -187,7 +185,8 @@ def _powers(order: int, parts: int) -> Array:
 
 @cache
 def _finer() -> Array:
-    """From values at Chebyshev's places to those of the interpolant between, and to its last coefficients."""
+    """From values at Chebyshev's places to those between, with what may be beyond the degree either way."""
     coefficients = interpolation(DEGREE).coefficients
-    between = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, BETWEEN), DEGREE)
-    return np.concatenate([between @ coefficients, coefficients[-2:]])
+    between = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, BETWEEN), DEGREE) @ coefficients
+    last, before = BEYOND * coefficients[-1], BEYOND * coefficients[-2]
+    return np.concatenate([between + a * last + b * before for a in (-1.0, 1.0) for b in (-1.0, 1.0)])
