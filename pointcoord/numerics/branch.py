@@ -14,7 +14,7 @@ a zero beside the real axis, shorter parts of the segment are looked at.
 With X = C_u^-1 at the end and omega the Lipschitz constant of X C_u, no other assembly lies within 2 / omega
 of the end: what the series left out and Newton's correction together must stay far below that, and so must
 what rounding may move the end by. Near a crossing both are in proportion to 1 / D, so within the root of EPS
-of it no computed pose tells the branches apart.
+of it no computed pose tells the branches apart: a motion may end there, and does not go on from there.
 """
 
 from __future__ import annotations
@@ -84,18 +84,22 @@ def on_branch(
     left_out = (last[..., 0, :] * s ** (order - 1) + last[..., 1, :] * s**order).max(axis=-1)
     omega = reached.lipschitz_with(system, factors)
     alone = omega * (reached.first_step + left_out) <= 2.0 * NEAR
-    return np.asarray(alone & ~hidden(system, reached.y, factors))
+    return np.asarray(alone)
 
 
-def same_side(system: QuadraticMap, y: Array, factors: Factors, side: Array | float) -> NDArray[np.bool_]:
+def same_side(
+    system: QuadraticMap, y: Array, factors: Factors, side: Array | float, last: NDArray[np.bool_] | bool
+) -> NDArray[np.bool_]:
     """Whether the end of a proven step is surely on the branch of its start, shape (...,).
 
     In exact arithmetic no such step crosses a fold or a crossing; what does has run out of digits.
 
     Args:
         y: the end, shape (..., size). factors: of C_u there. side: orientation at the start, shape (...,).
+        last: whether nothing goes on from there: only what lies beyond may be on another branch.
     """
-    return np.asarray((orientation(system, factors) == side) & ~hidden(system, y, factors))
+    same = np.asarray(orientation(system, factors) == side)
+    return same if np.all(last) else same & (last | ~hidden(system, y, factors))
 
 
 def hidden(system: QuadraticMap, y: Array, factors: Factors) -> NDArray[np.bool_]:

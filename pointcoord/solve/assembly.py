@@ -40,7 +40,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.block_inverse import product_of_few_entries
-from pointcoord.numerics.branch import orientation, same_side
+from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.numerics.newton import newton_refine
@@ -227,6 +227,8 @@ def _follow_one(
     if factors is None:
         factors, work = factorise(system.jacobian(y)), work + Work(factorisations=1)
     side = float(orientation(system, factors))
+    if change.any() and bool(hidden(system, y, factors)):
+        steps = 0
     with np.errstate(all="ignore"):
         while remaining > 0.0 and steps > 0 and not factors.singular:
             steps -= 1
@@ -248,7 +250,7 @@ def _follow_one(
             reached = newton_refine(system, guess, offset * left, tolerance if left == 0.0 else np.inf)
             there = factorise(system.jacobian(reached.y))
             work += reached.work + Work(factorisations=1)
-            if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side))):
+            if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, left == 0.0))):
                 break
             y, factors, remaining = reached.y, there, left
             iterations, rest = int(reached.iterations), float(reached.left)
@@ -260,7 +262,7 @@ def _follow_one(
             end = newton_refine(system, y, offset * remaining)
             there = factorise(system.jacobian(end.y))
             work += end.work + Work(factorisations=1)
-            if bool(end.converged) and bool(same_side(system, end.y, there, side)):
+            if bool(end.converged) and bool(same_side(system, end.y, there, side, True)):
                 y, factors, rest = end.y, there, 0.0
     left_over, done = np.asarray(rest), np.asarray(1.0 - remaining)
     return Path(y.copy(), factors, np.asarray(iterations), left_over, done, work)
@@ -289,7 +291,7 @@ def follow_plainly(
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
     side = orientation(system, factors)
-    active = np.flatnonzero(~factors.singular)
+    active = np.flatnonzero(~factors.singular & ~(change.any(axis=-1) & hidden(system, y, factors)))
     for _ in range(steps):
         if not active.size:
             break
@@ -319,7 +321,7 @@ def follow_plainly(
         # factors at hand are of the place before the last step, which may lie on the other side.
         there = factorise(system.jacobian(reached.y))
         work += Work(factorisations=len(active))
-        good = reached.converged & same_side(system, reached.y, there, side[active])
+        good = reached.converged & same_side(system, reached.y, there, side[active], left == 0.0)
         active, left = active[good], left[good]
         y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
         rest[active] = reached.left[good]
@@ -331,7 +333,7 @@ def follow_plainly(
         ends = newton_refine(system, y[stopped], offset[stopped] * remaining[stopped][:, None])
         there = factorise(system.jacobian(ends.y))
         work += ends.work + Work(factorisations=len(stopped))
-        good = ends.converged & same_side(system, ends.y, there, side[stopped])
+        good = ends.converged & same_side(system, ends.y, there, side[stopped], True)
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import PartialMap
@@ -100,7 +101,8 @@ def solve_by_chord(
                 factors = factorise(system.jacobian(here))
                 work += Work(factorisations=1)
                 kept = Kept.of(system, factors)
-                reached = _along_chord(system, kept, here, target, tolerance, beside[i - 1])
+                if not bool(hidden(system, here, factors)):
+                    reached = _along_chord(system, kept, here, target, tolerance, beside[i - 1])
                 if reached is None:
                     path = between.follow(here, target, factors, i, beside[i - 1], tolerance)
                     work += path.work

@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.numerics.branch import orientation, same_side
+from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
@@ -180,7 +180,7 @@ def along(
     side = orientation(system, factors)
     done, step, left = np.zeros(len(y)), np.full(len(y), min(longest, 1.0)), np.zeros(len(y))
     iterations, work = np.zeros(len(y), dtype=np.int64), Work(factorisations=len(y))
-    active = np.flatnonzero(~factors.singular)
+    active = np.flatnonzero(~(factors.singular | hidden(system, y, factors)))
     for _ in range(MOST):
         if not active.size:
             break
@@ -209,7 +209,7 @@ def along(
                 off = np.abs(reached.y - guess).max(axis=-1) + reached.left
                 there = factorise(system.jacobian(reached.y))
                 good = reached.converged & (off * omega[able] <= 1.0 - way.z[able])
-                good &= same_side(system, reached.y, there, side[active[able]])
+                good &= same_side(system, reached.y, there, side[active[able]], end[able] == 1.0)
             work += reached.work + Work(factorisations=len(able))
             kept, chosen = active[able[good]], np.flatnonzero(good)
             y[kept], done[kept] = reached.y[chosen], end[able[chosen]]

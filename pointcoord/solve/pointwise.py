@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
@@ -239,7 +240,7 @@ def _proven_ahead(
         beside: as of `straight_way`.
     """
     n, none = system.unknowns, _Ahead(np.empty((0, len(start))), np.empty(0), Work())
-    if not n * EPS * factors.condition <= ROUNDED:
+    if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
         return none
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import on_branch, regular_along
+from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, newton_refine, rounding_of
@@ -550,6 +550,8 @@ class _Course:
             work += found.work
             if good.any():
                 good = good & regular_along(system, segment.coefficients, s)
+            if end < self.stop and ahead is not None:
+                good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
