@@ -10,9 +10,8 @@ inputs,
 
 and corrected by Newton's method, all at once; then each is proven to continue the one before it, along what
 the laws of the inputs do between them (see `curved_path`). Where that is not so the path is followed in
-shorter proven steps.
-Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved for many instants at
-once either way. This is what the series are measured against.
+shorter proven steps. Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved
+for many instants at once either way. This is what the series are measured against.
 """
 
 from __future__ import annotations

@@ -361,6 +361,9 @@ class _Course:
         def chain(status: Status) -> tuple[Chain, Numbers]:
             return Chain(tuple(segments), work, status), kept
 
+        untold = hidden(self.part.system, joint.y, joint.factors)
+        if start < stop and untold.any():
+            return chain(course.stops_at(joint, untold, coarsest=False))
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
                 return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
