@@ -8,8 +8,8 @@ inputs,
 
     u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
 
-and corrected by Newton's method, all at once; then each is proven to continue the one before it, along what
-the laws of the inputs do between them (see `curved_path`). Where that is not so the path is followed in
+and corrected by Newton's method, all at once; then each is proven to continue the one before it, straight
+or, of a turn by more than a radian, round (see `curved_path`). Where that is not so the path is followed in
 shorter proven steps. Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved
 for many instants at once either way. This is what the series are measured against.
 """
@@ -34,7 +34,7 @@ from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked, close_drawing, driven_to, follow
-from pointcoord.solve.curved_path import LONGEST, SHARES, Path, along, beside_the_way, straight_way
+from pointcoord.solve.curved_path import LONGEST, SHARES, Path, along, straight_way
 from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
@@ -183,14 +183,12 @@ class Between:
         return self.known(np.where(shares == 1.0, last, first + (last - first) * shares))
 
     def beside(self, goals: Array) -> Array:
-        """How far they go beside the straight ways between instants, (N - 1, known coordinates).
+        """How far they go beside the ways between instants, (N - 1, known coordinates), as far as is known.
 
-        Infinitely far where something turns by more than LONGEST.
+        What is solved at instants goes straight from one to the next; something that turns by more than
+        LONGEST goes infinitely far beside that.
         """
-        shape = len(self.times) - 1, len(SHARES)
-        places = self.times[:-1, None] + np.diff(self.times)[:, None] * SHARES
-        between = self.known(places.ravel()).reshape(*shape, goals.shape[-1])
-        off = beside_the_way(goals[:-1], between, goals[1:])
+        off = np.zeros((len(self.times) - 1, goals.shape[-1]))
         off[self.turned > LONGEST] = np.inf
         return off
 

@@ -192,17 +192,3 @@ def test_loops_of_one_block_that_pass_the_line_together_are_refused_there(
         assert motion.times[-1] <= (np.pi - drawn) / there
         # mm: what the polynomial of degree 16 is off, some times amplified.
         assert off(motion, count, ground, drawn + there * motion.times) < 1e-2
-
-
-@pytest.mark.parametrize("method", ["newton", "chord"])
-@pytest.mark.parametrize("angle", [[1.6], [1.6, 0.05]], ids=["alone", "together"])
-def test_a_motion_to_its_instant_is_refused_where_its_inputs_go_beyond_a_fold_on_the_way(
-    make_scene: Callable[..., Scene], method: str, angle: list[float]
-) -> None:
-    # The rack goes out and back from one instant to the next; at 1.6 rad it reaches 130 mm.
-    def scene(far: float) -> Scene:
-        return make_scene(angle, [0.0, 4.0 * far, -4.0 * far], stop=1.0, samples=2, effects=())
-
-    assert simulate(scene(100.0), method).times[-1] == 1.0
-    with pytest.raises(AssemblyError, match="cannot be assembled"):
-        simulate(scene(140.0), method)
