@@ -296,15 +296,28 @@ class QuadraticMap:
         """The derivative of C by some coordinates, shape (..., rows, coordinates)."""
         return self._derivative(y, _pattern(self, coordinates), len(coordinates))
 
-    def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
-        factors, coefficients, first, flat = pattern
+    @property
+    def filled(self) -> Indices:
+        """Where C_u has entries, row after row, among all of its places."""
+        return self._jacobian_pattern[3]
+
+    def entries(self, y: Array) -> Array:
+        """These entries of C_u(y), shape (..., entries)."""
+        return self._entries(y, self._jacobian_pattern)
+
+    def _entries(self, y: Array, pattern: Pattern) -> Array:
+        factors, coefficients, first, _ = pattern
         if y.ndim == 1 and self.dense is not None:
             both = self.dense[0].dot(y)
         else:
             both = np.concatenate(self.factors(y), axis=-1)
+        return np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
+
+    def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
+        flat = pattern[3]
         matrix = np.zeros((*y.shape[:-1], len(self.rows) * columns))
         if len(flat):
-            matrix[..., flat] = np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
+            matrix[..., flat] = self._entries(y, pattern)
         return matrix.reshape(*y.shape[:-1], len(self.rows), columns)
 
     def jacobian_uncertainty(self, data: Array) -> Array:

@@ -40,11 +40,12 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.block_inverse import product_of_few_entries
-from pointcoord.numerics.branch import orientation
+from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.curved_path import LONGEST, Path, along
 from pointcoord.solve.proven_path import proven_end
 from pointcoord.solve.status import Blocked
 
@@ -58,8 +59,6 @@ SAFETY = 0.8
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
 STEPS = 2000
-# Of a turn of thousands of radians each stop is a solved pose; beyond, the way is refused as too long.
-MOST_STOPS = 10_000
 # How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
 # proportion to the step: an end so near the tangent is far from where the step would double back.
 BESIDE = 0.25
@@ -117,22 +116,6 @@ class Pose:
         from pointcoord.bounds.proof import pose_bound
 
         return pose_bound(self.mechanism, self.y, self.factors)
-
-
-@dataclass(frozen=True)
-class Path:
-    """How far a batch of poses followed their paths: `done` is 1 where the end was reached.
-
-    Attributes:
-        left: as of `Pose`, where the end was reached.
-    """
-
-    y: Array
-    factors: Factors
-    iterations: NDArray[np.int64]
-    left: Array
-    done: Array
-    work: Work
 
 
 def proven_step(
@@ -244,6 +227,8 @@ def _follow_one(
     if factors is None:
         factors, work = factorise(system.jacobian(y)), work + Work(factorisations=1)
     side = float(orientation(system, factors))
+    if change.any() and bool(hidden(system, y, factors)):
+        steps = 0
     with np.errstate(all="ignore"):
         while remaining > 0.0 and steps > 0 and not factors.singular:
             steps -= 1
@@ -265,7 +250,7 @@ def _follow_one(
             reached = newton_refine(system, guess, offset * left, tolerance if left == 0.0 else np.inf)
             there = factorise(system.jacobian(reached.y))
             work += reached.work + Work(factorisations=1)
-            if not (bool(reached.converged) and float(orientation(system, there)) == side):
+            if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, left == 0.0))):
                 break
             y, factors, remaining = reached.y, there, left
             iterations, rest = int(reached.iterations), float(reached.left)
@@ -277,7 +262,7 @@ def _follow_one(
             end = newton_refine(system, y, offset * remaining)
             there = factorise(system.jacobian(end.y))
             work += end.work + Work(factorisations=1)
-            if bool(end.converged) and float(orientation(system, there)) == side:
+            if bool(end.converged) and bool(same_side(system, end.y, there, side, True)):
                 y, factors, rest = end.y, there, 0.0
     left_over, done = np.asarray(rest), np.asarray(1.0 - remaining)
     return Path(y.copy(), factors, np.asarray(iterations), left_over, done, work)
@@ -306,7 +291,7 @@ def follow_plainly(
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
     side = orientation(system, factors)
-    active = np.flatnonzero(~factors.singular)
+    active = np.flatnonzero(~factors.singular & ~(change.any(axis=-1) & hidden(system, y, factors)))
     for _ in range(steps):
         if not active.size:
             break
@@ -336,7 +321,7 @@ def follow_plainly(
         # factors at hand are of the place before the last step, which may lie on the other side.
         there = factorise(system.jacobian(reached.y))
         work += Work(factorisations=len(active))
-        good = reached.converged & (orientation(system, there) == side[active])
+        good = reached.converged & same_side(system, reached.y, there, side[active], left == 0.0)
         active, left = active[good], left[good]
         y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
         rest[active] = reached.left[good]
@@ -348,7 +333,7 @@ def follow_plainly(
         ends = newton_refine(system, y[stopped], offset[stopped] * remaining[stopped][:, None])
         there = factorise(system.jacobian(ends.y))
         work += ends.work + Work(factorisations=len(stopped))
-        good = ends.converged & (orientation(system, there) == side[stopped])
+        good = ends.converged & same_side(system, ends.y, there, side[stopped], True)
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
@@ -484,45 +469,47 @@ def assembled(
     mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, instant: float | None, tolerance: float
 ) -> tuple[Pose, dict[int, Blocked]]:
     """The poses of a batch for given inputs, and what stops those that have none, by number."""
-    path, work = drawing, drawing.work
-    stopped: dict[int, Blocked] = {}
-    for stop, allowed in _stops(mechanism, drawing, inputs, tolerance):
-        target = mechanism.known_series({name: value[..., None] for name, value in stop.items()})[..., 0, :]
-        path = led(mechanism.map, path.y, target, path.factors, allowed)
-        work += path.work
-        problem = "the mechanism cannot be assembled"
-        stopped = _stopped(mechanism, path, target, path.done < 1.0, problem, instant) | stopped
-        if np.ndim(path.done) == 0 and stopped:
-            break
-    pose = Pose(mechanism, path.y, path.factors, path.iterations, path.left, work)
-    return pose, dict(sorted(stopped.items()))
+    target, path = driven_to(mechanism, inputs, drawing, tolerance)
+    stopped = _stopped(mechanism, path, target, path.done < 1.0, "the mechanism cannot be assembled", instant)
+    work = drawing.work + path.work
+    return Pose(mechanism, path.y, path.factors, path.iterations, path.left, work), stopped
 
 
-def _stops(
-    mechanism: Mechanism, drawing: Path, inputs: Mapping[str, Array], tolerance: float
-) -> list[tuple[dict[str, Array], float]]:
-    """Inputs on the way from the drawing to the wanted ones, and how far each pose may be off.
+def driven_to(
+    mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, tolerance: float
+) -> tuple[Array, Path]:
+    """Known coordinates of given inputs, (..., known coordinates), and the paths there from the drawing.
 
-    A turn is driven by its cosine and its sine, and a straight line between two of these takes the shorter
-    way round: so a turn by more than one radian goes by stops.
+    The driven coordinates go straight there; but a turn, which is driven by its cosine and its sine, goes
+    round, and with it every input in proportion.
     """
     wanted = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
-    turns = [wanted[name] for name in mechanism.topology.turning]
-    largest = max((float(np.abs(turn).max()) for turn in turns), default=0.0)
-    if not largest > 1.0 or not np.isfinite(largest):
-        return [(wanted, tolerance)]
-    begun = mechanism.input_values(drawing.y[..., mechanism.map.unknowns :])
-    count = min(int(np.ceil(largest)), MOST_STOPS)
-    return [
-        (
-            {
-                n: begun[n] + (value - begun[n]) * (k / count) if k < count else value
-                for n, value in wanted.items()
-            },
-            tolerance if k == count else 0.0,
-        )
-        for k in range(1, count + 1)
-    ]
+    target = mechanism.known_series({name: value[..., None] for name, value in wanted.items()})[..., 0, :]
+    n = mechanism.map.unknowns
+    begun = mechanism.input_values(drawing.y[..., n:])
+    turn = sum((np.abs(wanted[name] - begun[name]) for name in mechanism.topology.turning), np.zeros(()))
+    if not turn.any():
+        return target, led(mechanism.map, drawing.y, target, drawing.factors, tolerance)
+    batch = np.broadcast_shapes(drawing.y.shape[:-1], target.shape[:-1])
+    cars = mechanism.drawn.ndim > 1
+
+    def flat(values: Array) -> Array:
+        return np.broadcast_to(values, batch).ravel()
+
+    ends = {name: (flat(begun[name]), flat(value)) for name, value in wanted.items()}
+    y = np.broadcast_to(drawing.y, (*batch, drawing.y.shape[-1])).reshape(-1, drawing.y.shape[-1])
+    goals = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
+
+    def law(members: NDArray[np.intp], shares: Array) -> Array:
+        values = {
+            name: (first[members] + (last[members] - first[members]) * shares)[:, None]
+            for name, (first, last) in ends.items()
+        }
+        known = (mechanism.taken(members) if cars else mechanism).known_series(values)[..., 0, :]
+        return np.where((shares == 1.0)[:, None], goals[members], known)
+
+    path = along(mechanism.map, y, law, LONGEST / max(float(turn.max()), LONGEST), tolerance)
+    return target, path.reshaped(batch)
 
 
 def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:

@@ -9,8 +9,9 @@ back,
 and the powers s(t)^k are the same for all designs. It is held to what a segment of a chain is (see `taylor`):
 its last two degrees, summed over their powers, are to it what the last two terms are to a segment of length
 1. And at every corner of the ranges Newton's method finds the assembly, from a first step of no more than the
-tolerance and rounding, on the branch of the middle, which is reached from the start by proven steps. Designs
-of which that is not so are followed in time.
+tolerance and rounding; and no other branch is met on the lines of a grid over the ranges, from the middle,
+which is reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
+in time.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import orientation
+from pointcoord.numerics.branch import DEGREE, regular_between
+from pointcoord.numerics.chebyshev import interpolation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
@@ -246,14 +248,27 @@ class _Boxed:
         for i, sign in enumerate(signs):
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
-        side = orientation(system, factors)[:, None]
-        confirmation = confirmed(system, reached, side, rays, 1.0, self.settings.tolerance)
-        good &= confirmation.good.all(axis=-1)
+        confirmation = confirmed(system, reached, rays, 1.0, self.settings.tolerance)
+        good &= confirmation.good.all(axis=-1) & self.regular(y, series, every.exponents)
         work += reached.work + confirmation.work
         coefficients, ranges = self.part.unknowns_back(y, series), self.ranges
         box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
+
+    def regular(self, start: Array, series: Array, exponents: NDArray[np.int64]) -> Flags:
+        """Whether designs meet no other branch on any line of a grid over the ranges, (designs,)."""
+        system, shape = self.part.system, (DEGREE + 1,) * self.inputs
+        grid = np.meshgrid(*[interpolation(DEGREE).points] * self.inputs, indexing="ij")
+        places = np.stack(grid, axis=-1).reshape(-1, self.inputs)
+        y = np.empty((len(start), len(places), system.size))
+        y[..., : system.unknowns] = (places[:, None] ** exponents).prod(axis=-1) @ series
+        for i, s in enumerate(places):
+            y[:, i, system.unknowns :] = self.part.known(start, self.known(s)[..., None, :])[..., 0, :]
+        y = y.reshape(len(y), *shape, -1)
+        lines = [np.moveaxis(y, 1 + i, -2).reshape(len(y), -1, *y.shape[-2:]) for i in range(self.inputs)]
+        good = [regular_between(system, line).all(axis=-1) for line in lines]
+        return np.asarray(np.logical_and.reduce(good))
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
         """Series of all designs, their degree, and of which of them it is enough; None where a chain is."""

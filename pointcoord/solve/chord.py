@@ -4,7 +4,7 @@ r"""Chord Newton at instants: one factorisation kept for as long as it is good e
 
 which converges by a constant factor instead of squaring its error. Each instant starts from the pose y0
 before, along the tangent T that X gives to the new known coordinates, where the theorem of Newton and
-Kantorovich holds on all of that straight way (see `pointwise`, whose eta, z and omega these are).
+Kantorovich holds on all of that straight way (see `curved_path`, whose eta, z and omega these are).
 
 Then there is one assembly near each y0 + s T, they are one branch, and X contracts towards the last by
 k = z + omega r, r the radius of the theorem: after a step d, |u* - u| <= k |d| / (1 - k). Where that is not
@@ -21,15 +21,18 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
+from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.assembly import Pose, blocked, follow
+from pointcoord.solve.assembly import Pose, blocked
+from pointcoord.solve.curved_path import straight_way
 from pointcoord.solve.pointwise import (
+    Between,
     Solved,
     SquareVelocityTerm,
     square_velocity_term,
-    straight_way,
     with_rates,
 )
 from pointcoord.solve.status import COMPLETE, Status
@@ -86,18 +89,22 @@ def solve_by_chord(
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
     here, rest, work = pose.y, float(pose.left), Work()
     kept = Kept.of(system, pose.factors)
+    part = PartialMap(system, system, np.arange(system.size))
+    between = Between(mechanism, functions, times, part, here)
+    beside = between.beside(known[:, 0])
     status: Status = COMPLETE
     for i in range(len(times)):
         if i > 0:
             target = known[i, 0]
-            reached = _along_chord(system, kept, here, target, tolerance)
+            reached = _along_chord(system, kept, here, target, tolerance, beside[i - 1])
             if reached is None:
                 factors = factorise(system.jacobian(here))
                 work += Work(factorisations=1)
                 kept = Kept.of(system, factors)
-                reached = _along_chord(system, kept, here, target, tolerance)
+                if not bool(hidden(system, here, factors)):
+                    reached = _along_chord(system, kept, here, target, tolerance, beside[i - 1])
                 if reached is None:
-                    path = follow(system, here, target, factors, tolerance)
+                    path = between.follow(here, target, factors, i, beside[i - 1], tolerance)
                     work += path.work
                     if path.done < 1.0:
                         problem = "the mechanism cannot be assembled"
@@ -115,12 +122,16 @@ def solve_by_chord(
 
 
 def _along_chord(
-    system: QuadraticMap, kept: Kept, y: Array, target: Array, tolerance: float
+    system: QuadraticMap, kept: Kept, y: Array, target: Array, tolerance: float, beside: Array | None = None
 ) -> Reached | None:
-    """The pose with other known coordinates, on the branch of y; None where X is too old for it, or slow."""
+    """The pose with other known coordinates, on the branch of y; None where X is too old for it, or slow.
+
+    Args:
+        beside: as of `straight_way`.
+    """
     n = system.unknowns
     with np.errstate(all="ignore"):
-        way = straight_way(system, kept.inverse, y, target)
+        way = straight_way(system, kept.inverse, y, target, beside)
         eta, z = float(way.eta), float(way.z)
         constant = 2.0 * kept.omega * eta / (1.0 - z) ** 2
         if not (z < 1.0 and constant < 1.0):

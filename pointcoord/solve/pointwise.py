@@ -8,27 +8,17 @@ inputs,
 
     u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
 
-and corrected by Newton's method, all at once; then each is proven to continue the one before it. With T the
-tangent that X gives from one instant's pose y to the known coordinates of the next, C is quadratic, so
-
-    C(y + s T) = C(y) + s 2 B(y, T) + s^2 B(T, T)      exactly,
-
-and with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every s
-from 0 to 1 if it does with
-
-    eta = |X C(y)| + |X 2 B(y, T)| + |X B(T, T)|,    z = |I - X C_u(y)| + |X C_u(T)|,
-    2 omega eta < (1 - z)^2.
-
-Then one branch leads from y to the next instant, and no other assembly lies within (1 - z) / omega of y + T:
-a pose that does is the next one. Where that is not so the path is followed in proven steps (see `assembly`).
-Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved for many instants at
-once either way. This is what the series are measured against.
+and corrected by Newton's method, all at once; then each is proven to continue the one before it, straight
+or, of a turn by more than a radian, round (see `curved_path`). Where that is not so the path is followed in
+shorter proven steps. Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved
+for many instants at once either way. This is what the series are measured against.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -36,12 +26,15 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-from pointcoord.solve.assembly import Pose, blocked, close_drawing, follow
+from pointcoord.solve.assembly import Pose, blocked, close_drawing, driven_to, follow
+from pointcoord.solve.curved_path import LONGEST, SHARES, Path, along, straight_way
 from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
@@ -54,8 +47,6 @@ SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 BLOCK = 512
 # Instants ahead that are tried first; twice as many after all of them were proven.
 FIRST_AHEAD = 8
-# What |I - X C_u| may be: C_u then has an inverse on all of the way, far beyond any rounding of that bound.
-FARTHEST = 0.9
 # Where n eps cond(C_u) is larger, rounding may be more than that.
 ROUNDED = 1e-2
 
@@ -134,10 +125,13 @@ def solve_instants(
     begun = starting_place(part, pose)
     here, factors, work, done, ahead = begun.y, begun.factors, begun.work, 1, FIRST_AHEAD
     goals = part.known(here, known[:, :1])[:, 0]
+    between = Between(mechanism, functions, times, part, here)
+    beside = between.beside(goals)
     status: Status = COMPLETE
     while done < len(times):
         targets = goals[done : done + ahead]
-        found = _proven_ahead(part.system, here, factors, targets, tolerance)
+        strip = beside[done - 1 : done - 1 + ahead]
+        found = _proven_ahead(part.system, here, factors, targets, tolerance, strip)
         work += found.work
         count = len(found.left)
         y[done : done + count], left[done : done + count] = part.back(found.y), found.left
@@ -148,7 +142,7 @@ def solve_instants(
             factors = factorise(part.system.jacobian(here))
             work += Work(factorisations=1)
             continue
-        path = follow(part.system, here, goals[done], factors, tolerance)
+        path = between.follow(here, goals[done], factors, done, beside[done - 1], tolerance)
         work += path.work
         if path.done < 1.0:
             problem = "the mechanism cannot be assembled"
@@ -165,34 +159,58 @@ def solve_instants(
 
 
 @dataclass(frozen=True)
-class StraightWay:
-    """The straight ways from poses to other known coordinates; see the formulas above.
+class Between:
+    """What the known coordinates do between instants.
 
     Attributes:
-        tangent: T, shape (..., size). eta, z: shape (...,).
+        part: whose coordinates they are; here: a pose of it.
     """
 
-    tangent: Array
-    eta: Array
-    z: Array
+    mechanism: Mechanism
+    functions: Mapping[str, TimeFunction]
+    times: Array
+    part: PartialMap
+    here: Array
 
+    def known(self, instants: Array) -> Array:
+        """At instants, (N, known coordinates)."""
+        known = self.mechanism.known_series({n: f.series(instants, 0) for n, f in self.functions.items()})
+        return self.part.known(self.here, known)[:, 0]
 
-def straight_way(system: QuadraticMap, inverse: Array, y: Array, targets: Array) -> StraightWay:
-    """What the theorem of Newton and Kantorovich asks of the ways; floating point warnings are the caller's.
+    def at_shares(self, number: int, shares: Array) -> Array:
+        """On the way to an instant, by its number."""
+        first, last = self.times[number - 1 : number + 1]
+        return self.known(np.where(shares == 1.0, last, first + (last - first) * shares))
 
-    Args:
-        inverse: X, of C_u near all of the poses, (n, n). y: the poses, shape (..., size).
-        targets: known coordinates at the ends, shape (..., size - n).
-    """
-    n = system.unknowns
-    tangent = np.zeros_like(y)
-    tangent[..., n:] = targets - y[..., n:]
-    tangent[..., :n] = -2.0 * system.polar(y, tangent) @ inverse.T
-    parts = (system.residual(y), 2.0 * system.polar(y, tangent), system.residual(tangent))
-    eta = np.sum([np.abs(rows @ inverse.T).max(axis=-1) for rows in parts], axis=0)
-    turned = np.abs(np.eye(n) - inverse @ system.jacobian(y))
-    z = (turned + np.abs(inverse @ system.jacobian(tangent))).sum(axis=-1).max(axis=-1)
-    return StraightWay(tangent, eta, np.asarray(z))
+    def beside(self, goals: Array) -> Array:
+        """How far they go beside the ways between instants, (N - 1, known coordinates), as far as is known.
+
+        What is solved at instants goes straight from one to the next; something that turns by more than
+        LONGEST goes infinitely far beside that.
+        """
+        off = np.zeros((len(self.times) - 1, goals.shape[-1]))
+        off[self.turned > LONGEST] = np.inf
+        return off
+
+    @cached_property
+    def turned(self) -> Array:
+        """By how much inputs turn between instants, rad, (N - 1,)."""
+        places = self.times[:-1, None] + np.diff(self.times)[:, None] * np.concatenate([[0.0], SHARES, [1.0]])
+        turned = np.zeros(len(places))
+        for name in self.mechanism.topology.turning:
+            values = self.functions[name].series(places.ravel(), 0).reshape(places.shape)
+            turned += np.abs(np.diff(values)).sum(axis=-1)
+        return turned
+
+    def follow(
+        self, y: Array, goal: Array, factors: Factors, number: int, beside: Array, tolerance: float
+    ) -> Path:
+        """The proven path to an instant, by its number, from the pose at the one before it."""
+        if not beside.any():
+            return follow(self.part.system, y, goal, factors, tolerance)
+        longest = LONGEST / max(float(self.turned[number - 1]), LONGEST)
+        path = along(self.part.system, y[None], lambda _, s: self.at_shares(number, s), longest, tolerance)
+        return path.reshaped(())
 
 
 @dataclass(frozen=True)
@@ -205,15 +223,21 @@ class _Ahead:
 
 
 def _proven_ahead(
-    system: QuadraticMap, start: Array, factors: Factors, targets: Array, tolerance: float
+    system: QuadraticMap,
+    start: Array,
+    factors: Factors,
+    targets: Array,
+    tolerance: float,
+    beside: Array | None = None,
 ) -> _Ahead:
     """Poses with known coordinates one after the other, as many as are proven to continue a pose.
 
     Args:
         start: the pose, (size,). factors: of C_u there. targets: (N, known coordinates).
+        beside: as of `straight_way`.
     """
     n, none = system.unknowns, _Ahead(np.empty((0, len(start))), np.empty(0), Work())
-    if not n * EPS * factors.condition <= ROUNDED:
+    if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
         return none
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
@@ -224,10 +248,11 @@ def _proven_ahead(
     poses = np.concatenate([start[None], reached.y])
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
-        way = straight_way(system, inverse, here, following[:, n:])
+        beside = None if beside is None else beside[: len(here)]
+        way = straight_way(system, inverse, here, following[:, n:], beside)
         omega = float(system.lipschitz(inverse, np.ones(n)))
         off = np.abs(following - here - way.tangent)[:, :n].max(axis=-1) + reached.left
-        good = reached.converged & (way.z <= FARTHEST) & (2.0 * omega * way.eta < (1.0 - way.z) ** 2)
+        good = reached.converged & way.holds(omega)
         good &= off * omega <= 1.0 - way.z
     count = _first_false(np.asarray(good))
     return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
@@ -273,7 +298,8 @@ def solve_from_drawing(
     status: Status = COMPLETE
     for low in range(0, len(times), BLOCK):
         target = known[low : low + BLOCK, 0]
-        path = follow(system, drawing.y, target, tolerance=tolerance)
+        inputs = {name: f.series(times[low : low + BLOCK], 0)[:, 0] for name, f in functions.items()}
+        _, path = driven_to(mechanism, inputs, drawing, tolerance)
         work += path.work
         unfinished = path.done < 1.0
         first = int(np.argmax(unfinished)) if unfinished.any() else len(target)

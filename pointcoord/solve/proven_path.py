@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.numerics.branch import orientation
+from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
@@ -80,7 +80,7 @@ def proven_end(
         factors: of C_u at the start.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
     """
-    if factors.singular or system.dense is None:
+    if factors.singular or system.dense is None or bool(hidden(system, y, factors)):
         return None
     n, left, side = system.unknowns, 1.0, float(orientation(system, factors))
     here, local, work = y, factors, Work()
@@ -119,7 +119,7 @@ def _end(
     reached = newton_refine(system, guess, offset, tolerance)
     there = factorise(system.jacobian(reached.y))
     # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
-    if not (bool(reached.converged) and float(orientation(system, there)) == side):
+    if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, tolerance < np.inf))):
         return None
     work += reached.work + Work(factorisations=1)
     return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)

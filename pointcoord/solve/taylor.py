@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import on_branch, orientation
+from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged, newton_refine, rounding_of
@@ -354,13 +354,16 @@ class _Course:
         course, start, stop, settings = self, self.start, self.stop, self.settings
         here = starting_place(self.part, pose)
         joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
-        side, work = orientation(self.part.system, joint.factors), here.work
         segments: list[Segment] = []
+        work = here.work
         kept = np.arange(joint.members)
 
         def chain(status: Status) -> tuple[Chain, Numbers]:
             return Chain(tuple(segments), work, status), kept
 
+        untold = hidden(self.part.system, joint.y, joint.factors)
+        if start < stop and untold.any():
+            return chain(course.stops_at(joint, untold, coarsest=False))
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
                 return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
@@ -387,7 +390,7 @@ class _Course:
                 segments.append(course.whole(segment))
                 break
             if staying.all():
-                step = course.step_along(segment, joint, side, leaving)
+                step = course.step_along(segment, joint, leaving)
                 work += step.work
                 staying = step.good
             if step is not None and step.end is not None:
@@ -395,7 +398,7 @@ class _Course:
                 joint = step.end
             elif leaving and staying.any():
                 numbers = np.flatnonzero(staying)
-                kept, side, joint = kept[numbers], side[numbers], joint.taken(numbers)
+                kept, joint = kept[numbers], joint.taken(numbers)
                 segments = [each.taken(numbers) for each in segments]
                 course = replace(course, mechanism=course.mechanism.taken(numbers), measured=[])
             else:
@@ -522,11 +525,11 @@ class _Course:
             self.measured[:] = [(segment, lengths * segment.scale, decay)]
         return self.measured[0][1:]
 
-    def step_along(self, segment: Segment, joint: _Joint, side: Array, leaving: bool) -> _Step:
-        """Cut a segment where its last terms say, or shorter: until Newton's method confirms its end.
+    def step_along(self, segment: Segment, joint: _Joint, leaving: bool) -> _Step:
+        """Cut a segment where its last terms say, or shorter: until it meets no other branch on its way, and
+        Newton's method confirms its end.
 
         Args:
-            side: orientation of the branch, which the end must have.
             leaving: whether it is enough that some members are confirmed.
         """
         system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
@@ -540,7 +543,6 @@ class _Course:
             found = confirmed(
                 system,
                 reached,
-                side,
                 segment.coefficients,
                 s,
                 tolerance,
@@ -549,6 +551,10 @@ class _Course:
             )
             good, ahead = found.good, found.factors
             work += found.work
+            if good.any():
+                good = good & regular_along(system, segment.coefficients, s)
+            if end < self.stop and ahead is not None:
+                good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
                 return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
@@ -609,17 +615,16 @@ class Confirmed:
 def confirmed(
     system: QuadraticMap,
     reached: Converged,
-    side: Array,
     series: Array,
     s: float,
     tolerance: float,
     law_noise: Callable[[], Array] | None = None,
     leaving: bool = True,
 ) -> Confirmed:
-    """Whether solved ends are what a series leads to, up to a tolerance, and on its branch.
+    """Whether solved ends are what a series leads to, up to a tolerance, and no other assembly.
 
     Args:
-        side, series, s: as of `on_branch`.
+        series, s: as of `on_branch`.
         law_noise: what the rounding of the inputs' laws may move any coordinate by, shape (...,).
         leaving: whether it is enough that some members are confirmed.
     """
@@ -631,7 +636,7 @@ def confirmed(
     if not good.any():
         return Confirmed(good, None, Work())
     ahead, work = _factors_at(system, reached, tolerance)
-    return Confirmed(good & on_branch(system, side, series, s, reached, ahead), ahead, work)
+    return Confirmed(good & on_branch(system, series, s, reached, ahead), ahead, work)
 
 
 def _factors_at(system: QuadraticMap, reached: Converged, tolerance: float) -> tuple[Factors, Work]:

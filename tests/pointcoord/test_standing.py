@@ -40,8 +40,10 @@ def test_bricard_s_mechanism_turns_as_far_as_its_neighbouring_hinge() -> None:
     # Of six hinges at right angles two neighbours turn by cos a + cos b + cos a cos b = 0, so that cos a is
     # -1/2 or more: a goes from -120 to 120 degrees. It is 90 as drawn, from where it is counted backwards.
     low, high = standing(Scene.load("bricard")).reach["turn"]
-    assert low.value == pytest.approx(np.deg2rad(-30.0), abs=1e-12)
-    assert high.value == pytest.approx(np.deg2rad(210.0), abs=1e-12)
+    # A motion stops where rounding could hide the fold: where the determinant, in proportion to the root of
+    # the distance from it, is some hundred times the root of EPS.
+    assert low.value == pytest.approx(np.deg2rad(-30.0), abs=1e-11)
+    assert high.value == pytest.approx(np.deg2rad(210.0), abs=1e-11)
 
 
 @by_drawn_car

@@ -2,7 +2,8 @@ r"""Other people's programs as formulations: outside witnesses, which share no m
 
 What they claim of their accuracy is an estimate. A program's roundings are taken as those of a car whose
 hardpoints are off by a little: a place at the end of three joints is a chain of three turns and sums, some
-60 roundings of numbers up to 1 in sizes of the car, of which 4 standard deviations are about 10 u. A scene
+60 roundings of numbers up to 1 in sizes of the car, or as large as its coordinates from the linkage's origin
+if that is farther away, of which 4 standard deviations are about 10 u. A scene
 has thousands of numbers, of which one in 16,000 goes beyond four deviations and none beyond eight, and near a
 singular pose all that is measured of a number is a few random ones: 32 u are taken, and with them the square
 of Newton's last correction.
@@ -146,7 +147,9 @@ class OutsideProgram:
     ) -> Accuracy:
         """How far each number may be off: see the top of this file."""
         rng = np.random.default_rng(SEED)
-        size = 2.0 * linkage_in(scene).unit  # in units the car is between one and two
+        linkage = linkage_in(scene)
+        far = max(float(np.abs(place).max()) for place in linkage.tree.drawn.values())
+        size = max(2.0, far) * linkage.unit  # in units the car is between one and two
         changes = {q: {n: np.zeros(len(last_step)) for n in arrays} for q, arrays in numbers.items()}
         for _ in range(PROBES):
             shift = {name: SHIFT * size * rng.standard_normal(3) for name in scene.mechanism.points}

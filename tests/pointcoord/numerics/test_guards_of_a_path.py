@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.numerics.branch import NEAR, on_branch, orientation, sides
+from pointcoord.numerics.branch import MOST_PARTS, NEAR, hidden, on_branch, orientation, regular_along, sides
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
@@ -21,7 +21,6 @@ PARABOLA: QuadraticMap = quadratic_map(
     [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4
 )
 S = 0.5
-ABOVE = orientation(PARABOLA, factorise(PARABOLA.jacobian(np.array([1.0, 1.0, 0.0, 1.0]))))
 
 
 def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float = 1.0) -> bool:
@@ -41,7 +40,7 @@ def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float
         last_step=np.array(first_step),
         work=Work(),
     )
-    return bool(on_branch(PARABOLA, ABOVE, series, S, reached, factors))
+    return bool(on_branch(PARABOLA, series, S, reached, factors))
 
 
 # The other branch is 2 u = 2 / omega away; of that distance NEAR may lie between the series and its end.
@@ -70,9 +69,57 @@ def test_a_series_as_near_to_the_other_assembly_is_not_on_the_branch(u: float) -
     assert not ends_on_branch(0.0, 0.0, u, u=u)
 
 
+def regular(*u: float, length: float = 1.0) -> bool:
+    """Whether no branch is met where u is a polynomial of s, from its coefficients, up to a length."""
+    series = np.zeros((len(u), 4))
+    series[:, 0], series[0, 3] = u, 1.0
+    return bool(regular_along(PARABOLA, series, length))
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+@pytest.mark.parametrize("place", [0.0, 0.01, 0.37, 0.5, 0.99, 1.0])
+def test_a_zero_of_the_determinant_is_met_whatever_its_order(degree: int, place: float) -> None:
+    # det C_u = 2 u = 2 (s - place)^degree; an even one leaves its sign as it was.
+    u = np.polynomial.Polynomial([-place, 1.0]) ** degree
+    assert not regular(*u.coef)
+    # Well before it there is none.
+    assert regular(*u.coef, length=0.5 * place) == (place > 0.0)
+
+
+@pytest.mark.parametrize("apart", [1e-9, 1e-3, 0.1, 0.3])
+def test_a_motion_beyond_a_crossing_and_back_meets_it(apart: float) -> None:
+    assert not regular(*(np.polynomial.Polynomial([-0.5, 1.0]) ** 2 - apart**2).coef)
+
+
+@pytest.mark.parametrize("waves", [1, 3, 6])
+def test_a_determinant_that_swings_is_seen_to_change_its_sign(waves: int) -> None:
+    swing = np.polynomial.Chebyshev.basis(waves, domain=[0.0, 1.0]).convert(kind=np.polynomial.Polynomial)
+    assert not regular(*(0.5 + swing).coef)
+    assert regular(*(1.5 + swing).coef)
+
+
+def test_a_motion_that_turns_back_just_before_a_crossing_meets_none() -> None:
+    # det C_u = 2 ((s - 1/2)^2 + beside^2) has its zeros beside the real axis: as near as that shows in parts
+    # of the segment no such motion is refused, and nearer ones in shorter segments.
+    beside = 1.0 / MOST_PARTS
+    assert regular(0.25 + beside**2, -1.0, 1.0)
+    assert not regular(0.25, -1.0, 1.0)
+
+
+def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
+    # Of u^2 = w a pose is off by a rounding of u, some 1e-16 u, and alone up to 2 u: nothing hides it.
+    # With w = (w + 1) - 1 it is off by that of w, 1e-16 / u.
+    rows = [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)), Product(1.0, (4, 2), (3, 2)))]
+    shifted = quadratic_map(rows, unknowns=1, size=5)
+    for u, plain, moved in ((1e-3, False, False), (1e-6, False, False), (1e-9, False, True)):
+        y = np.array([u, u * u, 0.0, 1.0])
+        assert bool(hidden(PARABOLA, y, factorise(np.array([[2.0 * u]])))) is plain
+        y = np.array([u, 1.0 + u * u, 0.0, 1.0, 1.0])
+        assert bool(hidden(shifted, y, factorise(np.array([[2.0 * u]])))) is moved
+
+
 def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
-    assert ends_on_branch(0.0, 0.0, 0.0, u=1.0)
-    assert not ends_on_branch(0.0, 0.0, 0.0, u=-1.0)
+    assert not regular(1.0, -2.0)
     before, beyond = (factorise(PARABOLA.jacobian(np.array([u, 1.0, 0.0, 1.0]))) for u in (1.0, -1.0))
     assert orientation(PARABOLA, before) != orientation(PARABOLA, beyond)
 

@@ -20,6 +20,7 @@ from pointcoord import (
     simulate,
 )
 from pointcoord.linkage.constraints.on_line import FARTHEST
+from pointcoord.numerics import branch
 
 Points = dict[str, tuple[float, float, float]]
 Make = Callable[..., Scene]
@@ -129,7 +130,11 @@ def test_a_law_is_not_named_where_nothing_hangs_on_its_doubt(make_scene: Make) -
     assert 1e-4 < motion.proof().bound.max() < 1e-2
 
 
-def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(make_scene: Make) -> None:
+def test_a_law_is_not_named_where_the_pose_would_be_unproven_anyway(
+    make_scene: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A path does not end at a pose that is not proven to be alone: here it may.
+    monkeypatch.setattr(branch, "hidden", lambda system, y, factors: np.zeros(y.shape[:-1], bool))
     with pytest.raises(AssemblyError) as caught:
         simulate(make_scene([1.6], [0.0, 200.0]))
     # Up to the fold, where two assemblies meet, the last digits of the rack leave some pose unproven; which

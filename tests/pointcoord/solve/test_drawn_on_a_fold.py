@@ -85,7 +85,7 @@ def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> N
 
 def test_without_the_sign_of_the_determinant_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        pointcoord.solve.assembly, "orientation", lambda system, factors: np.ones(factors.matrix.shape[:-2])
+        pointcoord.solve.assembly, "same_side", lambda system, y, *_: np.ones(y.shape[:-1], bool)
     )
     assert not all(
         side for car in CLOSING for power in (-9, -8) for side in sides(car, 5.0 * 10.0**power, 40)

@@ -12,7 +12,7 @@ from pointcoord.numerics import newton
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.solve import assembly, chord, pointwise, standing_still
+from pointcoord.solve import assembly, chord, curved_path, pointwise, standing_still
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.chord import solve_by_chord
 from pointcoord.solve.pointwise import InstantSolver, Solved, solve_from_drawing, solve_instants
@@ -96,7 +96,7 @@ def test_factorisations_and_rates_are_counted_as_they_are_made(
         seen.append(int(np.prod(matrix.shape[:-2])))
         return factorise(matrix)
 
-    for module in (newton, assembly, chord, pointwise, standing_still):
+    for module in (newton, assembly, chord, curved_path, pointwise, standing_still):
         monkeypatch.setattr(module, "factorise", counted)
     if way is solve_from_drawing:
         # It closes the drawing as well, which has factors of its own.

@@ -1,0 +1,194 @@
+"""Parallelograms whose cranks pass the pose where all of them lie in one line, in closed form.
+
+There the assembly of parallel cranks crosses those of crossed ones. A motion that passes it is refused there,
+and so is one that ends on it or touches it; one that comes near and turns back is answered.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pointcoord import AssemblyError, MotionNotMapped, Scene, simulate
+from pointcoord.results.motion import Motion
+
+Array = NDArray[np.float64]
+Law = Callable[[Array], Array]
+CRANK = 1000.0
+DENSE, AT_INSTANTS = ("series", "map"), ("newton", "newton-cold", "chord")
+by_method = pytest.mark.parametrize("method", [*DENSE, *AT_INSTANTS])
+by_solver = pytest.mark.parametrize("method", ["series", *AT_INSTANTS])
+few = settings(deadline=None, max_examples=max(3, settings.default.max_examples // 20))
+loops, grounds = st.integers(1, 3), st.sampled_from([700.0, 1000.0, 1400.0])
+
+
+def linkage(count: int, ground: float, drawn: float, law: dict[str, Any], across: bool = False) -> Scene:
+    """Cranks in a row, each pair joined by a rod as long as they stand apart.
+
+    Args:
+        count: of parallelograms. drawn: angle of the cranks, rad.
+        across: whether the distance of the first crank's pin to a point beside the last crank drives them,
+            which makes all loops one block; or the first crank's turn, and each loop is a block.
+    """
+    reach = CRANK * np.array([np.cos(drawn), np.sin(drawn), 0.0])
+    places, bodies = {}, {"chassis": list[str]()}
+    for k in range(count + 1):
+        foot = np.array([ground * k, 0.0, 0.0])
+        places |= {f"A{k}": foot, f"A{k}_pin": foot + np.array([0.0, 0.0, 1000.0]), f"B{k}": foot + reach}
+        bodies["chassis"] += [f"A{k}", f"A{k}_pin"]
+        bodies[f"crank_{k}"] = [f"A{k}", f"A{k}_pin", f"B{k}"]
+    driven: dict[str, Any] = {"angle": "crank_0", "from": "drawing"}
+    if across:
+        places["E"] = np.array([ground * count - 0.6 * reach[1], 0.6 * reach[0], 0.0])
+        bodies[f"crank_{count}"].append("E")
+        driven = {"distance": ["B0", "E"]}
+    mechanism = {
+        "bodies": bodies,
+        "rods": {f"coupler_{k}": [f"B{k - 1}", f"B{k}"] for k in range(1, count + 1)},
+        "inputs": {"crank": driven},
+        "points": {name: place.tolist() for name, place in places.items()},
+    }
+    content = {
+        "title": "parallelograms",
+        "effects": ["velocity"],
+        "tolerance": 1e-6,
+        "mechanism": mechanism,
+        "inputs": {"crank": law},
+        "time": {"start": 0.0, "stop": 1.0, "samples": 9},
+    }
+    return Scene.from_mapping(content, "parallelograms")
+
+
+def tried(scene: Scene, method: str) -> tuple[Motion | None, str]:
+    """As much of the motion as there is, and why not more."""
+    try:
+        return simulate(scene, method), ""
+    except (AssemblyError, MotionNotMapped) as error:
+        return error.partial, str(error)
+
+
+def off(motion: Motion, count: int, ground: float, angles: Array) -> float:
+    """How far any pin is from where parallel cranks have it, mm."""
+    return max(
+        float(np.abs(motion.position[f"B{k}"][:, :2] - np.stack([x, y], axis=-1)).max())
+        for k in range(count + 1)
+        for x, y in [(ground * k + CRANK * np.cos(angles), CRANK * np.sin(angles))]
+    )
+
+
+def refused_at_the_line(
+    scene: Scene, method: str, count: int, ground: float, angle: Law, when: float
+) -> None:
+    """What lies before the line is right, and nothing beyond it is answered."""
+    motion, reason = tried(scene, method)
+    assert reason
+    if method in ("series", *AT_INSTANTS):
+        assert "singular" in reason or "cannot be assembled" in reason
+    if motion is not None:
+        assert motion.times[-1] <= when
+        # Within 1e-8 of a crossing rounding of 1e-13 mm moves a pin by 1e-5 mm.
+        assert off(motion, count, ground, angle(motion.times)) < 1e-4
+    elif method in ("series", "newton", "chord"):
+        raise AssertionError("not even the start is answered")
+
+
+@by_method
+@few
+@given(count=loops, ground=grounds, drawn=st.floats(0.3, 2.8), beyond=st.floats(0.02, 2.5))
+def test_cranks_that_pass_the_line_are_refused_there(
+    method: str, count: int, ground: float, drawn: float, beyond: float
+) -> None:
+    rate = np.pi - drawn + beyond
+    scene = linkage(count, ground, drawn, {"polynomial": [0.0, rate]})
+    refused_at_the_line(scene, method, count, ground, lambda t: drawn + rate * t, (np.pi - drawn) / rate)
+
+
+@by_method
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("ground", [1000.0, 1400.0])
+@pytest.mark.parametrize("turns", [1.0, 4.0, 16.0])
+def test_cranks_in_line_at_an_instant_are_refused(
+    method: str, count: int, ground: float, turns: float
+) -> None:
+    # 90 degrees to the line; with 16 quarter turns in nine instants every one after the first is drawn as it
+    # was, half a turn further, and two lines are passed from one to the next.
+    scene = linkage(count, ground, np.pi / 2, {"polynomial": [0.0, 0.5 * np.pi * turns]})
+    angle: Law = lambda t: np.pi / 2 * (1.0 + turns * t)  # noqa: E731
+    refused_at_the_line(scene, method, count, ground, angle, 1.0 / turns)
+
+
+@by_method
+@few
+@given(count=loops, ground=grounds, drawn=st.floats(0.5, 2.5), beyond=st.sampled_from([0.0, 1e-3, 0.05, 0.5]))
+def test_cranks_that_pass_the_line_or_touch_it_and_turn_back_are_refused(
+    method: str, count: int, ground: float, drawn: float, beyond: float
+) -> None:
+    far = 4.0 * (np.pi - drawn + beyond)
+    scene = linkage(count, ground, drawn, {"polynomial": [0.0, far, -far]})
+    when = 0.5 - np.sqrt(0.25 - (np.pi - drawn) / far) if beyond else 0.5
+    if method == "newton-cold":
+        # It knows instants only: it is refused where one of them is beyond the line.
+        instants = scene.instants
+        there = drawn + far * (instants - instants**2) >= np.pi
+        if not there.any():
+            return
+        when = float(instants[np.argmax(there)])
+    refused_at_the_line(scene, method, count, ground, lambda t: drawn + far * (t - t * t), when)
+
+
+@by_solver
+@pytest.mark.parametrize("ends", [True, False])
+@few
+@given(count=loops, ground=grounds, drawn=st.floats(0.5, 2.5), short=st.sampled_from([1e-6, 1e-5, 1e-3]))
+def test_cranks_that_come_near_the_line_are_answered(
+    method: str, ends: bool, count: int, ground: float, drawn: float, short: float
+) -> None:
+    way = np.pi - drawn - short
+    law = [0.0, way] if ends else [0.0, 4.0 * way, -4.0 * way]
+    motion, reason = tried(linkage(count, ground, drawn, {"polynomial": law}), method)
+    assert motion is not None
+    assert not reason
+    angles = drawn + np.polynomial.Polynomial(law)(motion.times)
+    # mm: 1e-13 of a metre, amplified by the inverse of the distance from the crossing; and the tolerance.
+    assert off(motion, count, ground, angles) < 1e-6 + 1e-12 / short
+
+
+@by_solver
+@pytest.mark.parametrize("beyond", [0.0, 0.1, 0.7, 1.5])
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_start_beyond_the_line_is_refused(method: str, count: int, beyond: float) -> None:
+    scene = linkage(count, 1400.0, np.pi / 2, {"polynomial": [np.pi / 2 + beyond, 0.1]})
+    motion, reason = tried(scene, method)
+    assert motion is None
+    assert "cannot be assembled" in reason
+
+
+@by_method
+@few
+@given(count=loops, ground=grounds, drawn=st.floats(0.9, 2.5), beyond=st.sampled_from([0.03, 0.2]))
+def test_loops_of_one_block_that_pass_the_line_together_are_refused_there(
+    method: str, count: int, ground: float, drawn: float, beyond: float
+) -> None:
+    # Each loop changes the sign of the block's determinant: two of them leave it as it was.
+    t = np.linspace(0.0, 1.0, 2001)
+
+    def distance(angle: Array) -> Array:
+        first = CRANK * np.stack([np.cos(angle), np.sin(angle)])
+        last = np.stack([ground * count - 0.6 * first[1], 0.6 * first[0]])
+        return np.asarray(np.hypot(*(last - first)))
+
+    there = np.pi - drawn + beyond
+    law = np.polynomial.Polynomial.fit(
+        t, distance(drawn + there * t), 16, domain=[0.0, 1.0], window=[0.0, 1.0]
+    )
+    scene = linkage(count, ground, drawn, {"polynomial": law.coef.tolist()}, across=True)
+    motion, reason = tried(scene, method)
+    assert reason
+    if motion is not None:
+        assert motion.times[-1] <= (np.pi - drawn) / there
+        # mm: what the polynomial of degree 16 is off, some times amplified.
+        assert off(motion, count, ground, drawn + there * motion.times) < 1e-2
