@@ -73,6 +73,14 @@ def test_a_drawing_much_nearer_to_a_fold_than_to_its_closed_pose_is_refused() ->
         absolute.close_drawing(built_in("macpherson", NEAR_A_FOLD, closure="collinear", side="right"))
 
 
+def test_a_strut_that_closing_moves_as_far_as_the_car_is_large_is_refused() -> None:
+    # The certified way of closing turns back at a fold after 0.056 of it; another assembly lies far away.
+    car = {name: tuple(place) for name, place in KINDS["collinear strut"].car.items()}
+    car["strut_lower"] = car["lower_arm_front"]
+    with pytest.raises(absolute.AssemblyError, match=r"moves 'strut_lower' by 437 mm; .* may be meant"):
+        absolute.close_drawing(built_in("macpherson", car, closure="collinear"))
+
+
 def side_of(pole: Array, car: Car) -> float:
     """On which side of the plane through a steering axis and the rack the steering arm is, 1 or -1."""
     ball = car["lower_ball_joint"]
