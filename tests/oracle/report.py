@@ -37,11 +37,15 @@ def record(folder: Path) -> Record:
 
 
 def _worst(row: dict[str, Any]) -> dict[str, Fact]:
-    """By how much a printed formula is wrong, to what was tolerated there."""
+    """By how much a printed formula is wrong, to what was tolerated there.
+
+    Where a quotient of zeros is no number, which instant that is hangs on the last digit of a cosine.
+    """
+    none = row["difference"] is None
     return {
         "verdict": row["verdict"],
         "name": row["name"],
-        "difference": [row["difference"], row["tolerance"] or SOLVED],
+        "difference": "no number" if none else [row["difference"], row["tolerance"] or SOLVED],
     }
 
 
