@@ -81,9 +81,9 @@ def _speed(printed: str, folder: Path) -> str:
     found = json.loads((folder / "speed.json").read_text(encoding="utf-8"))["benchmarks"]
     lines = ["| what | takes, s | ratio | of what | aimed at |", "|---|---|---|---|---|"]
     for one in found:
-        extra = one["extra_info"]
+        extra, name = one["extra_info"], re.sub(r".*\[(.*)\]", r"\1", one["name"])
         lines.append(
-            f"| {one['name']} | {one['stats']['median']:.2g} | {extra['ratio']:.2g} "
+            f"| {name} | {one['stats']['median']:.2g} | {extra['ratio']:.2g} "
             f"| {extra['of']} | {extra['goal']:g} |"
         )
     return "\n".join(lines)

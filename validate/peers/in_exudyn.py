@@ -68,7 +68,7 @@ class InExudyn(Program):
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
         self.driven = np.array([self.links.last[driven.body] for driven in linkage.driven])
-        self.unknown = np.array([i for i in range(self.size) if i not in self.driven])
+        self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
 
     @property
     def coordinates(self) -> Array:
@@ -113,7 +113,9 @@ class InExudyn(Program):
     def apart(self, accelerations: Array) -> Array:
         """How the sides of the loops accelerate apart."""
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
-        return np.concatenate([self._read([two])[0] - self._read([one])[0] for one, two in self.ends])
+        parts = [self._read([two])[0] - self._read([one])[0] for one, two in self.ends]
+        # There is no loop where each joint is driven.
+        return np.concatenate([np.zeros(0), *parts])
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
         """Rates and accelerations of the points and of the reported bodies' turns."""

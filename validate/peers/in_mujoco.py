@@ -47,7 +47,7 @@ class InMujoco(Program):
         self.driven = np.array([joint.dofadr[0] for joint in driven])
         # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
         idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.rods]
-        self.unknown = np.array([dof for dof in range(model.nv) if dof not in (*self.driven, *idle)])
+        self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
 
     @property
     def coordinates(self) -> Array:
@@ -92,7 +92,8 @@ class InMujoco(Program):
         """How the sides of the loops accelerate apart."""
         self._accelerate(accelerations)
         parts = [self._acceleration(one)[3:] - self._acceleration(two)[3:] for one, two in self.ends]
-        return np.concatenate(parts)
+        # There is no loop where each joint is driven.
+        return np.concatenate([np.zeros(0), *parts])
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
         """Rates and accelerations of the points and of the reported bodies' turns."""

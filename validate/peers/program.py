@@ -209,6 +209,8 @@ class Program(ABC):
         """
         self.drive(driven)
         unknown, previous = self.unknown, np.inf
+        if not len(unknown):
+            return 0.0  # as of an arm on one hinge, which is driven
         step: Array | None = None
         for number in range(LIMIT):
             missed, jacobian = self.misses()

@@ -64,6 +64,16 @@ def test_a_mechanism_that_is_redundant_everywhere_is_refused_by_a_program(who: s
 
 
 @pytest.mark.parametrize("who", OUTSIDE)
+def test_an_arm_on_one_hinge_that_is_driven_has_no_loop_and_is_answered(who: str) -> None:
+    content = Scene.load("semi-trailing-arm").model_dump(exclude_none=True)
+    content["inputs"] = {"arm_turn": {"sine": {"amplitude": 0.1, "angular_frequency": 6.0}}}
+    outcome = compare(Scene.from_mapping(content), "pointcoord", who)
+    assert not outcome.disagreements
+    agreed = {row.name for row in outcome.rows if row.verdict == "agrees" and row.quantity == "acceleration"}
+    assert "wheel_centre" in agreed
+
+
+@pytest.mark.parametrize("who", OUTSIDE)
 @searched
 @given(scene=scenes(samples=3))
 def test_a_program_agrees_on_random_cars_and_motions(scene: Scene, who: str) -> None:
