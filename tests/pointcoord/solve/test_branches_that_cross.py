@@ -117,7 +117,10 @@ def test_cranks_in_line_at_an_instant_are_refused(
     # 90 degrees to the line; with 16 quarter turns in nine instants every one after the first is drawn as it
     # was, half a turn further, and two lines are passed from one to the next.
     scene = linkage(count, ground, np.pi / 2, {"polynomial": [0.0, 0.5 * np.pi * turns]})
-    angle: Law = lambda t: np.pi / 2 * (1.0 + turns * t)  # noqa: E731
+
+    def angle(t: Array) -> Array:
+        return np.pi / 2 * (1.0 + turns * t)
+
     refused_at_the_line(scene, method, count, ground, angle, 1.0 / turns)
 
 
