@@ -66,13 +66,12 @@ class Factors:
 
     def solve_many(self, rights: Array) -> Array:
         """The same of several right-hand sides for each matrix, (m, ..., n)."""
-        if len(rights) == 1:
-            return self.solve(rights[0])[None]
-        inverse, matrix = (np.swapaxes(part, -1, -2) for part in (self.inverse, self.matrix))
-        rows = np.moveaxis(rights * self.row_scale, 0, -2)
-        found = rows @ inverse
-        found += (rows - found @ matrix) @ inverse
-        return np.moveaxis(found, -2, 0)
+        if self.substitution is not None:
+            return self.solve(rights)
+        rows = rights * self.row_scale
+        found = _times(rows, self.inverse)
+        found += _times(rows - _times(found, self.matrix), self.inverse)
+        return found
 
     def moved(self, matrix: Array) -> Factors:
         """The same inverse for a matrix of shape (..., n, n) nearby, |I - inverse matrix| = z well below 1.
@@ -119,6 +118,15 @@ class Factors:
             None if self.substitution is None else self.substitution.taken(members),
         )
 
+    def part(self, rows: Indices, unknowns: Indices) -> Factors:
+        """Of some diagonal blocks of a block triangular matrix; its inverse has theirs in the same places.
+
+        The condition number is that of the whole.
+        """
+        matrix = self.matrix[..., rows[:, None], unknowns]
+        inverse = self.inverse[..., unknowns[:, None], rows]
+        return Factors(matrix, inverse, self.row_scale[..., rows], self.condition)
+
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
         """These factors with some members, by number, taken from others; one batch dimension."""
         if len(members) == len(self.condition):
@@ -147,6 +155,11 @@ class Factors:
     def singular(self) -> NDArray[np.bool_]:
         """Where no digit of a solution is left: n eps condition >= 1 (or a NaN), shape (...,)."""
         return np.asarray(~(self.matrix.shape[-1] * EPS * self.condition < 1.0))
+
+
+def _times(rows: Array, matrix: Array) -> Array:
+    """The product of each matrix, (..., n, n), with several vectors for it, (m, ..., n)."""
+    return np.asarray(np.matmul(rows, matrix, axes=[(0, -1), (-1, -2), (0, -1)]))
 
 
 def factorise(matrix: Array) -> Factors:

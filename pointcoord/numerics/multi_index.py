@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 
 Indices = NDArray[np.intp]
-Places = tuple[slice | int, ...]
+Places = tuple[slice, ...]
 
 
 @dataclass(frozen=True)
@@ -63,10 +63,33 @@ class Powers:
         edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
         return edges
 
+    def pairs(self, low: int, high: int) -> list[tuple[Places, Places]]:
+        """For powers k, where all i and k - i, 0 <= i <= k, lie in a table with an axis for each exponent."""
+        return self._pairs[low:high]
+
     @cached_property
-    def tuples(self) -> list[tuple[int, ...]]:
-        """The exponents of each, as plain numbers."""
-        return [tuple(each) for each in self.exponents.tolist()]
+    def _pairs(self) -> list[tuple[Places, Places]]:
+        return [
+            (tuple(slice(one + 1) for one in k), tuple(slice(one, None, -1) for one in k))
+            for k in self.exponents.tolist()
+        ]
+
+    def places(self, low: int, high: int) -> Indices | slice:
+        """Where powers lie in a table of all exponents up to `order`, laid out flat."""
+        return slice(low, high) if self.inputs == 1 else self._places[low:high]
+
+    @cached_property
+    def _places(self) -> Indices:
+        return self.exponents @ (self.order + 1) ** np.arange(self.inputs)[::-1]
+
+    def within(self, variables: tuple[int, ...]) -> Indices:
+        """Places of the powers of some variables alone, which are in the order of powers of so many."""
+        others = [i for i in range(self.inputs) if i not in variables]
+        return np.flatnonzero(~self.exponents[:, others].any(axis=-1))
+
+    def variables_of(self, there: NDArray[np.bool_]) -> frozenset[int]:
+        """Which variables a series hangs on, whose coefficients are there or not, (powers,)."""
+        return frozenset(np.flatnonzero((self.exponents[there] > 0).any(axis=0)).tolist())
 
     def power_of(self, variable: int, exponent: int) -> int:
         """Place of a power of one variable alone."""
@@ -112,45 +135,3 @@ def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int) -> 
     first, second, target = first[by_target], second[by_target], target[by_target]
     starts = np.flatnonzero(np.diff(target, prepend=-1))
     return Products(first, second, starts.astype(np.intp), target[starts].astype(np.intp))
-
-
-@dataclass(frozen=True)
-class Pairs:
-    """All i and k - i with 0 <= i <= k, as rectangles of a table that has an axis for each exponent.
-
-    Attributes:
-        rectangles: where i and k - i lie, and how their products are summed, as `einsum` is told.
-        middle: where i = k - i, if that is left out of the rectangles.
-    """
-
-    rectangles: tuple[tuple[Places, Places, str], ...]
-    middle: Places | None
-
-
-@lru_cache(maxsize=4096)
-def pairs_at(k: tuple[int, ...], once: bool) -> Pairs:
-    """The pairs that make up one power.
-
-    Args:
-        once: whether of i, k - i and k - i, i there is only one.
-    """
-    found, before = list[tuple[Places, Places, str]](), tuple[int, ...]()
-    for axis, exponent in enumerate(k):
-        # With half of the exponents before it i goes over less than half of this one, or over all of them.
-        count = (exponent + 1) // 2 if once else exponent + 1
-        high = (exponent, *k[axis + 1 :])
-        counts = (count, *(one + 1 for one in k[axis + 1 :]))
-        first: Places = (*before, *map(slice, counts))
-        last: Places = (*before, *map(_backwards, high, counts))
-        if count:
-            letters = "abc"[axis : len(k)]
-            found.append((first, last, f"{letters}n,{letters}n->n"))
-        if not once or exponent % 2:
-            return Pairs(tuple(found), None)
-        before = (*before, exponent // 2)
-    return Pairs(tuple(found), before)
-
-
-def _backwards(high: int, count: int) -> slice:
-    """So many places from the highest down."""
-    return slice(high, high - count if count <= high else None, -1)

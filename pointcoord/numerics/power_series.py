@@ -6,22 +6,25 @@ reads at each k
 
     C_u u_k = -( C_w w_k + sum_{0 < i < k} B(y_i, y_{k-i}) ),
 
-all k of one total degree at once. In time k = 1 is the paper's velocity equation (19), k = 2 half its
-acceleration equation (22). Only products of two differences that both move take part in the sum, and many
-rows share one (see `QuadraticMap.moving_products`).
+all k of one total degree at once. Of several parameters each moves some blocks of the map only, and few
+blocks hang on all: those that hang on the same ones are expanded in these alone (see `partial_map`).
+
+In time k = 1 is the paper's velocity equation (19), k = 2 half its acceleration equation (22). Only products
+of two differences that both move take part in the sum, and many rows share one (see
+`QuadraticMap.moving_products`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.linear import Factors
-from pointcoord.numerics.multi_index import Products, pairs_at, powers_counted, products
-from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.multi_index import Products, powers_counted, products
+from pointcoord.numerics.partial_map import stages
+from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
 
 Array = NDArray[np.float64]
 
@@ -78,11 +81,50 @@ def expand_unknowns(
     Returns:
         Coefficients by power, shape (..., powers, unknowns); powers come first in memory.
     """
-    n, count = system.unknowns, known.shape[-2]
-    every, moving = powers_counted(inputs, count), tuple(driven)
-    terms, edges = system.moving_products(moving), every.edges
+    if inputs == 1:
+        return _recursion(system, factors, y, known, driven, begun, inputs)
+    n, every = system.unknowns, powers_counted(inputs, known.shape[-2])
+    there: NDArray[np.bool_] = np.any(known.reshape(-1, *known.shape[-2:]), axis=0)
+    moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
+    # What moves: the unknowns, and of the known coordinates these.
+    series = np.moveaxis(np.zeros((every.count, *y.shape[:-1], n + len(driven))), 0, -2)
+    series[..., n:] = known
+    series[..., 0, :n] = y[..., :n]
+    place = {number: n + i for i, number in enumerate(driven)}
+    for stage in stages(system, moved):
+        part, powers = stage.part, every.within(stage.inputs)
+        reads = [place.get(number, number) for number in stage.reads]
+        numbers = part.order.argsort()[list(stage.reads)].tolist()
+        first = None
+        if begun is not None:
+            first = begun[..., powers[powers < begun.shape[-2], None], part.unknowns]
+        series[..., powers[:, None], part.unknowns] = _recursion(
+            part.system,
+            factors.part(part.rows, part.unknowns),
+            part.taken(y),
+            series[..., powers[:, None], reads],
+            numbers,
+            first,
+            len(stage.inputs),
+        )
+    return series[..., :n]
+
+
+def _recursion(
+    system: QuadraticMap,
+    factors: Factors,
+    y: Array,
+    known: Array,
+    driven: Sequence[int],
+    begun: Array | None,
+    inputs: int,
+) -> Array:
+    """The same of one stage, all of whose blocks hang on all inputs (see `partial_map`)."""
+    n, every = system.unknowns, powers_counted(inputs, known.shape[-2])
+    moving, edges = tuple(driven), every.edges
+    terms = system.moving_products(moving)
     # What moves, and a last 0 for all that stands still; the constant term takes no part in a product.
-    own = np.zeros((count, *y.shape[:-1], n + len(moving) + 1))
+    own = np.zeros((every.count, *y.shape[:-1], n + len(moving) + 1))
     series, first = np.moveaxis(own, 0, -2), 1
     series[..., 1:, n:-1] = known[..., 1:, :]
     if begun is not None:
@@ -90,44 +132,37 @@ def expand_unknowns(
         first = edges.index(begun.shape[-2])
     by_known = np.swapaxes(system.derivative_by(y, moving), -1, -2)
     rows = np.moveaxis(series[..., n:-1] @ -by_known, -2, 0)
-    # A table of each factor by exponents, 0 where a power is still to come.
-    sides = [slice(low, low + terms.count) for low in range(0, terms.ends.shape[-1], terms.count)]
-    grid = [every.order + 1] * inputs
-    tables = [np.zeros((*grid, *y.shape[:-1], terms.count)) for _ in sides]
-    flat = [table.reshape(*grid, -1) for table in tables]
-
-    def put(low: int, high: int) -> None:
-        for k, both in zip(every.tuples[low:high], terms.factors(own[low:high]), strict=True):
-            for table, side in zip(tables, sides, strict=True):
-                table[k] = both[..., side]
-
-    put(1, edges[first])
-    for low, high in pairwise(edges[first:]):
-        wanted = rows[low:high]
-        if low > inputs:
-            sums = np.empty((high - low, *tables[0].shape[inputs:]))
-            for k, out in zip(every.tuples[low:high], sums.reshape(high - low, -1), strict=True):
-                _sum_at(k, flat, out)
-            wanted = wanted - terms.gather(sums)
-        own[low:high, ..., :n] = factors.solve_many(wanted)
-        if high < count:
-            put(low, high)
+    # What the known ones alone make of each power; sums of products are subtracted degree after degree.
+    own[edges[first] :, ..., :n] = factors.solve_many(rows[edges[first] :])
+    solved = _solved_sums(factors, terms)
+    # The factors of each power by its exponents, 0 where it is still to come.
+    table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
+    left, right = table[..., : terms.count], table[..., -terms.count :]
+    table = table.reshape(-1, *table.shape[inputs:])
+    table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
+    subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
+    for degree in range(first, every.order + 1):
+        low, high = edges[degree], edges[degree + 1]
+        if degree > 1:
+            sums = np.empty((high - low, *left.shape[inputs:]))
+            for (up, down), out in zip(every.pairs(low, high), sums, strict=True):
+                np.einsum(subscripts, left[up], right[down], out=out)
+            own[low:high, ..., :n] -= solved(sums)
+        table[every.places(low, high)] = terms.factors(own[low:high])
     own[0, ..., :n] = y[..., :n]
     return series[..., :n]
 
 
-def _sum_at(k: tuple[int, ...], tables: Sequence[Array], out: Array) -> None:
-    """Sum the products of i in the first table and k - i in the last one over all i, (numbers,)."""
-    left, right = tables[0], tables[-1]
-    pairs = pairs_at(k, left is right)
-    (first, last, subscripts), *others = pairs.rectangles
-    np.einsum(subscripts, left[first], right[last], out=out)
-    for first, last, subscripts in others:
-        out += np.einsum(subscripts, left[first], right[last])
-    if left is right:
-        out *= 2.0
-    if pairs.middle is not None:
-        out += left[pairs.middle] ** 2
+def _solved_sums(factors: Factors, terms: MovingProducts) -> Callable[[Array], Array]:
+    """From sums of products, (powers, ..., count), to C_u^-1 times the rows that they make, (powers, ..., n).
+
+    Of a matrix that is not inverted by blocks C_u^-1 is multiplied into the rows' coefficients beforehand.
+    """
+    if factors.substitution is not None:
+        return lambda sums: factors.solve_many(terms.gather(sums))
+    members = [1] * (factors.row_scale.ndim - 1)
+    each = factors.solve_many(terms.rows_of_each.reshape(terms.count, *members, -1))
+    return lambda sums: np.matmul(sums, each, axes=[(0, -1), (0, -1), (0, -1)])
 
 
 def multiplied(left: Array, right: Array, pairs: Products) -> Array:

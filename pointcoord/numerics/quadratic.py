@@ -414,6 +414,11 @@ class MovingProducts:
         """Sum products, shape (..., count), into rows, shape (..., rows)."""
         return np.asarray(np.vecdot(products.take(self.taken, axis=-1), self.coefficients))
 
+    @cached_property
+    def rows_of_each(self) -> Array:
+        """What each product alone makes of all rows, (count, rows)."""
+        return self.gather(np.eye(self.count))
+
 
 @lru_cache(maxsize=256)
 def _moving_products(system: QuadraticMap, moving: tuple[int, ...]) -> MovingProducts:

@@ -13,7 +13,7 @@ pass over the entries; so does the matching of a linkage, where few rows have to
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import Protocol
 
@@ -93,13 +93,13 @@ class Structure:
                 wanted.update(block.reads)
         return tuple(reversed(found))
 
-    def moving(self, known: Collection[int]) -> tuple[int, ...]:
-        """Numbers of the blocks that move when these known coordinates do, in order."""
-        moved, found = set(known), []
-        for number, block in enumerate(self.blocks):
-            if not moved.isdisjoint(block.reads):
-                found.append(number)
-                moved.update(block.unknowns)
+    def moved_by(self, known: Mapping[int, frozenset[int]]) -> tuple[frozenset[int], ...]:
+        """Which causes move each block, where these known coordinates are moved by some each."""
+        moved, found = dict(known), list[frozenset[int]]()
+        for block in self.blocks:
+            causes = frozenset[int]().union(*(moved[i] for i in block.reads if i in moved))
+            found.append(causes)
+            moved.update(dict.fromkeys(block.unknowns, causes))
         return tuple(found)
 
 

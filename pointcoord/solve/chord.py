@@ -24,7 +24,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.partial_map import PartialMap
+from pointcoord.numerics.partial_map import moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.assembly import Pose, blocked
 from pointcoord.solve.curved_path import straight_way
@@ -89,7 +89,7 @@ def solve_by_chord(
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
     here, rest, work = pose.y, float(pose.left), Work()
     kept = Kept.of(system, pose.factors)
-    part = PartialMap(system, system, np.arange(system.size))
+    part = moving_part(system, frozenset())
     between = Between(mechanism, functions, times, part, here)
     beside = between.beside(known[:, 0])
     status: Status = COMPLETE

@@ -15,7 +15,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import power_series
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.multi_index import pairs_at, powers, products
+from pointcoord.numerics.multi_index import powers, products
 from pointcoord.numerics.power_series import multiplied
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.patches.jet import Jet
@@ -40,29 +40,17 @@ def test_products_of_series_do_not_depend_on_how_many_pairs_are_multiplied_at_on
 
 
 @pytest.mark.parametrize("k", [(1,), (6,), (7,), (0, 4), (3, 2), (4, 4), (2, 0, 2), (1, 2, 3), (2, 4, 2)])
-def test_rectangles_hold_each_pair_of_exponents_once(k: tuple[int, ...]) -> None:
-    shape = tuple(most + 1 for most in k)
-    places = np.stack(np.indices(shape), axis=-1)
-
-    def pairs(once: bool) -> list[tuple[tuple[int, ...], tuple[int, ...]]]:
-        found = pairs_at(k, once)
-        sides = [
-            (places[first].reshape(-1, len(k)), places[last].reshape(-1, len(k)))
-            for first, last, _ in found.rectangles
-        ]
-        if found.middle is not None:
-            sides.append((places[found.middle][None], places[found.middle][None]))
-        return [
-            (tuple(i), tuple(j))
-            for one, other in sides
-            for i, j in zip(one.tolist(), other.tolist(), strict=True)
-        ]
-
-    every, half = pairs(once=False), pairs(once=True)
-    assert all(tuple(np.add(i, j)) == k for i, j in every + half)
-    assert len(set(every)) == len(every) == prod(shape)
-    assert sorted({*half, *((j, i) for i, j in half)}) == sorted(every)
-    assert len(half) == (prod(shape) + 1) // 2
+def test_the_pairs_of_a_power_are_each_once_in_a_table_of_exponents(k: tuple[int, ...]) -> None:
+    every = powers(len(k), 8)
+    number = every.exponents.tolist().index(list(k))
+    places = np.stack(np.indices([9] * len(k)), axis=-1)
+    [(up, down)] = every.pairs(number, number + 1)
+    first, second = (places[side].reshape(-1, len(k)) for side in (up, down))
+    assert (first + second == k).all()
+    assert len({tuple(i) for i in first.tolist()}) == len(first) == prod(one + 1 for one in k)
+    # Laid out flat a power is where its exponents say.
+    flat = np.arange(9 ** len(k)).reshape([9] * len(k))
+    assert np.arange(9 ** len(k))[every.places(number, number + 1)].tolist() == [flat[k]]
 
 
 @pytest.mark.parametrize("inputs", [1, 2, 3])

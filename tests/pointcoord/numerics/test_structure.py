@@ -109,8 +109,10 @@ def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
         wanted |= reached[home[i]]
     assert structure.needed(asked) == tuple(np.flatnonzero(wanted).tolist())
     known = data.draw(st.sets(st.integers(n, n + 2)))
-    driven = [not known.isdisjoint(block.reads) for block in blocks]
-    assert structure.moving(known) == tuple(np.flatnonzero(reached @ np.array(driven)).tolist())
+    moved = structure.moved_by({i: frozenset({i - n}) for i in known})
+    for cause in (0, 1, 2):
+        driven = [cause + n in known and cause + n in block.reads for block in blocks]
+        assert [cause in causes for causes in moved] == (reached @ np.array(driven)).tolist()
 
 
 @by_car
