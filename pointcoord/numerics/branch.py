@@ -46,6 +46,8 @@ LEAST, BEYOND = 0.03, 4.0
 # Where EPS |X|^2 is smaller, rounding hides nothing: of coordinates near 1 omega |X| d is at most some
 # thousand times that.
 CLEAR = 1e-6
+# Below 1 by more than what rounding makes of a few sums of C_u's entries.
+SURE = 1.0 - 1e-9
 
 
 def orientation(system: QuadraticMap, factors: Factors) -> Array:
@@ -120,33 +122,56 @@ def hidden(system: QuadraticMap, y: Array, factors: Factors) -> NDArray[np.bool_
         return np.asarray(doubtful & ~(system.lipschitz(inverse) * noise <= 1.0))
 
 
-def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.bool_]:
+def surely_regular(system: QuadraticMap, factors: Factors, change: Array) -> NDArray[np.bool_]:
+    """Whether C_u is regular at every pose whose coordinates are at most `change` off those of one, (...,).
+
+    C_u is linear in y, so that |I - X C_u| is at most |X| |C_u|(change), with the magnitudes of all terms;
+    where this is below 1 in the maximum norm no such C_u has a null vector.
+
+    Args:
+        factors: of C_u at that one, X its inverse. change: shape (..., size).
+    """
+    with np.errstate(all="ignore"):
+        moved = np.abs(factors.preconditioner) @ system.jacobian_uncertainty(change)
+        return np.asarray(moved.sum(axis=-1).max(axis=-1) < SURE)
+
+
+def regular_along(system: QuadraticMap, factors: Factors, series: Array, s: float) -> NDArray[np.bool_]:
     """Whether no block of C_u is singular on a segment of a series, from 0 to s, shape (...,).
 
     Args:
-        series: coefficients, shape (..., order + 1, size).
+        factors: of C_u at 0. series: coefficients, shape (..., order + 1, size).
     """
     order, parts = series.shape[-2] - 1, 1
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
-    while True:
+    good: NDArray[np.bool_] = surely_regular(system, factors, np.abs(scaled[..., 1:, :]).sum(axis=-2))
+    while not good.all():
         y = _powers(order, parts) @ scaled
-        good = regular_between(system, y.reshape(*y.shape[:-2], parts, DEGREE + 1, -1)).all(axis=-1)
-        if parts >= MOST_PARTS or good.all():
-            return np.asarray(good)
+        each = regular_between(system, y.reshape(*y.shape[:-2], parts, DEGREE + 1, -1))
+        good = np.logical_and.reduce(each, axis=-1, keepdims=True)[..., 0]
+        if parts >= MOST_PARTS:
+            break
         parts *= FINER
+    return good
 
 
-def regular_between(system: QuadraticMap, y: Array) -> NDArray[np.bool_]:
+def regular_between(system: QuadraticMap, y: Array, variables: int = 1) -> NDArray[np.bool_]:
     """Whether no block of C_u is singular on lines of poses, shape (...,), as far as their interpolants show.
 
     Args:
-        y: at Chebyshev's places on each line, shape (..., DEGREE + 1, size).
+        y: at Chebyshev's places on a line, shape (..., DEGREE + 1, size), or on a grid of as many lines of
+            each of several variables, one axis for each.
     """
     with np.errstate(all="ignore"):
         sign, size = _determinants(system, y)
-        found = _finer() @ (sign * np.exp(size - size.max(axis=-2, keepdims=True)))
-        # What is not finite is not above anything.
-        return np.asarray((np.maximum(found.min(axis=-2), -found.max(axis=-2)) > LEAST).all(axis=-1))
+        good = np.ones(y.shape[: -1 - variables], dtype=bool)
+        for axis in range(-1 - variables, -1):
+            along = np.moveaxis(sign * np.exp(size - size.max(axis=axis, keepdims=True)), axis, -2)
+            found = _finer() @ along
+            # What is not finite is not above anything.
+            clear = np.maximum(found.min(axis=-2), -found.max(axis=-2)) > LEAST
+            good &= clear.all(axis=tuple(range(-variables, 0)))
+        return good
 
 
 def _determinants(system: QuadraticMap, y: Array) -> tuple[Array, Array]:

@@ -119,6 +119,11 @@ class Stage:
     part: PartialMap
     reads: tuple[int, ...]
 
+    @property
+    def moving(self) -> NDArray[np.intp]:
+        """All that moves of what its rows read, as numbers of the whole."""
+        return np.array([*self.part.unknowns, *self.reads], dtype=np.intp)
+
 
 @lru_cache(maxsize=64)
 def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...]) -> tuple[Stage, ...]:

@@ -130,23 +130,27 @@ def _recursion(
     if begun is not None:
         series[..., 1 : begun.shape[-2], :n] = begun[..., 1:, :]
         first = edges.index(begun.shape[-2])
-    by_known = np.swapaxes(system.derivative_by(y, moving), -1, -2)
-    rows = np.moveaxis(series[..., n:-1] @ -by_known, -2, 0)
-    # What the known ones alone make of each power; sums of products are subtracted degree after degree.
-    own[edges[first] :, ..., :n] = factors.solve_many(rows[edges[first] :])
+    # What the known ones alone make of each power; sums of products follow degree after degree.
+    by_known = factors.solve_many(np.moveaxis(system.derivative_by(y, moving), -1, 0))
+    still = own[edges[first] :]
+    still[..., :n] = -_combined(still[..., n:-1], by_known)
     solved = _solved_sums(factors, terms)
     # The factors of each power by its exponents, 0 where it is still to come.
     table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
     left, right = table[..., : terms.count], table[..., -terms.count :]
     table = table.reshape(-1, *table.shape[inputs:])
+    squares = terms.ends.shape[-1] == terms.count
+    times = every.times.reshape(-1, *[1] * (left.ndim - inputs))
     table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
     for degree in range(first, every.order + 1):
         low, high = edges[degree], edges[degree + 1]
         if degree > 1:
             sums = np.empty((high - low, *left.shape[inputs:]))
-            for (up, down), out in zip(every.pairs(low, high), sums, strict=True):
+            for (up, down), out in zip(every.pairs(low, high, squares), sums, strict=True):
                 np.einsum(subscripts, left[up], right[down], out=out)
+            if squares:
+                sums *= times[low:high]
             own[low:high, ..., :n] -= solved(sums)
         table[every.places(low, high)] = terms.factors(own[low:high])
     own[0, ..., :n] = y[..., :n]
@@ -162,7 +166,12 @@ def _solved_sums(factors: Factors, terms: MovingProducts) -> Callable[[Array], A
         return lambda sums: factors.solve_many(terms.gather(sums))
     members = [1] * (factors.row_scale.ndim - 1)
     each = factors.solve_many(terms.rows_of_each.reshape(terms.count, *members, -1))
-    return lambda sums: np.matmul(sums, each, axes=[(0, -1), (0, -1), (0, -1)])
+    return lambda sums: _combined(sums, each)
+
+
+def _combined(shares: Array, vectors: Array) -> Array:
+    """Sums of vectors by shares, (powers, ..., n) from shapes (powers, ..., count) and (count, ..., n)."""
+    return np.asarray(np.matmul(shares, vectors, axes=[(0, -1), (0, -1), (0, -1)]))
 
 
 def multiplied(left: Array, right: Array, pairs: Products) -> Array:

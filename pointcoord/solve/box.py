@@ -27,14 +27,14 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import DEGREE, regular_between
+from pointcoord.numerics.branch import DEGREE, regular_between, surely_regular
 from pointcoord.numerics.chebyshev import interpolation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
-from pointcoord.numerics.partial_map import PartialMap
+from pointcoord.numerics.partial_map import PartialMap, stages
 from pointcoord.numerics.power_series import expand_unknowns
 from pointcoord.solve.assembly import Pose, follow
 from pointcoord.solve.standing_still import starting_place
@@ -200,6 +200,12 @@ class _Boxed:
         places = self.part.order.argsort()
         return [number - system.unknowns for number in numbers], places[numbers].tolist()
 
+    @property
+    def causes(self) -> list[frozenset[int]]:
+        """By these coordinates, which input moves each."""
+        inputs = [drive.input for drive in self.mechanism.topology.drives]
+        return [frozenset({self.names.index(name)}) for name in inputs if name in self.names]
+
     def known_series(self, order: int, columns: list[int]) -> Array:
         """The series in s of some of them, shape (designs, powers, columns)."""
         every, middle = powers(self.inputs, order), self.known(np.zeros(self.inputs))[:, columns]
@@ -249,26 +255,42 @@ class _Boxed:
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
         confirmation = confirmed(system, reached, rays, 1.0, self.settings.tolerance)
-        good &= confirmation.good.all(axis=-1) & self.regular(y, series, every.exponents)
+        good &= confirmation.good.all(axis=-1) & self.regular(y, factors, series, order)
         work += reached.work + confirmation.work
         coefficients, ranges = self.part.unknowns_back(y, series), self.ranges
         box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
 
-    def regular(self, start: Array, series: Array, exponents: NDArray[np.int64]) -> Flags:
-        """Whether designs meet no other branch on any line of a grid over the ranges, (designs,)."""
-        system, shape = self.part.system, (DEGREE + 1,) * self.inputs
-        grid = np.meshgrid(*[interpolation(DEGREE).points] * self.inputs, indexing="ij")
-        places = np.stack(grid, axis=-1).reshape(-1, self.inputs)
-        y = np.empty((len(start), len(places), system.size))
-        y[..., : system.unknowns] = (places[:, None] ** exponents).prod(axis=-1) @ series
-        for i, s in enumerate(places):
-            y[:, i, system.unknowns :] = self.part.known(start, self.known(s)[..., None, :])[..., 0, :]
-        y = y.reshape(len(y), *shape, -1)
-        lines = [np.moveaxis(y, 1 + i, -2).reshape(len(y), -1, *y.shape[-2:]) for i in range(self.inputs)]
-        good = [regular_between(system, line).all(axis=-1) for line in lines]
-        return np.asarray(np.logical_and.reduce(good))
+    def regular(self, start: Array, factors: Factors, series: Array, order: int) -> Flags:
+        """Whether designs meet no other branch on any line of a grid over the ranges, (designs,).
+
+        The blocks of a stage are looked at over the ranges of its own inputs.
+
+        Args:
+            start: the middle of the ranges. factors: of C_u there.
+        """
+        points, (columns, driven) = interpolation(DEGREE).points, self.driven()
+        every, moving = powers(self.inputs, order), np.array([*range(self.part.system.unknowns), *driven])
+        coefficients, change = (series, self.known_series(order, columns)), np.zeros_like(start)
+        change[:, moving] = np.concatenate([np.abs(c[:, 1:]).sum(axis=1) for c in coefficients], axis=-1)
+        good = np.ones(len(start), dtype=bool)
+        for stage in stages(self.part.system, tuple(zip(driven, self.causes, strict=True))):
+            part, within, read = stage.part, every.within(stage.inputs), np.isin(moving, stage.moving)
+            own = factors.part(part.rows, part.unknowns)
+            left = np.flatnonzero(~surely_regular(part.system, own, part.taken(change)))
+            if not left.size:
+                continue
+            count = len(stage.inputs)
+            grid = np.meshgrid(*[points] * count, indexing="ij")
+            places = np.stack(grid, axis=-1).reshape(-1, 1, count)
+            sums = (places ** every.exponents[within][:, stage.inputs]).prod(axis=-1)
+            y = np.repeat(start[left, None], len(places), axis=1)
+            terms = np.concatenate([c[np.ix_(left, within)] for c in coefficients], axis=-1)
+            y[..., moving[read]] = sums @ terms[..., read]
+            poses = part.taken(y.reshape(len(y), *[len(points)] * count, -1))
+            good[left] &= regular_between(part.system, poses, count)
+        return good
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
         """Series of all designs, their degree, and of which of them it is enough; None where a chain is."""

@@ -44,10 +44,19 @@ def test_the_pairs_of_a_power_are_each_once_in_a_table_of_exponents(k: tuple[int
     every = powers(len(k), 8)
     number = every.exponents.tolist().index(list(k))
     places = np.stack(np.indices([9] * len(k)), axis=-1)
-    [(up, down)] = every.pairs(number, number + 1)
-    first, second = (places[side].reshape(-1, len(k)) for side in (up, down))
-    assert (first + second == k).all()
-    assert len({tuple(i) for i in first.tolist()}) == len(first) == prod(one + 1 for one in k)
+    found = {}
+    for alike in (False, True):
+        [(up, down)] = every.pairs(number, number + 1, alike)
+        first, second = (places[side].reshape(-1, len(k)) for side in (up, down))
+        assert (first + second == k).all()
+        found[alike] = sorted(map(tuple, first.tolist()))
+        assert len(set(found[alike])) == len(first)
+    assert len(found[False]) == prod(one + 1 for one in k)
+    # Of half of them the others are what is left of k.
+    others = [tuple(np.subtract(k, i).tolist()) for i in found[True]]
+    twice = any(one % 2 for one in k)
+    assert every.times[number] == 1.0 + twice
+    assert sorted(found[True] + others if twice else found[True]) == found[False]
     # Laid out flat a power is where its exponents say.
     flat = np.arange(9 ** len(k)).reshape([9] * len(k))
     assert np.arange(9 ** len(k))[every.places(number, number + 1)].tolist() == [flat[k]]

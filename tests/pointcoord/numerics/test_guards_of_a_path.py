@@ -5,9 +5,20 @@ There C_u = 2 u, X = 1 / (2 u) and the Lipschitz constant of X C_u is 1 / u, so 
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.numerics.branch import MOST_PARTS, NEAR, hidden, on_branch, orientation, regular_along, sides
+from pointcoord.numerics.branch import (
+    MOST_PARTS,
+    NEAR,
+    hidden,
+    on_branch,
+    orientation,
+    regular_along,
+    sides,
+    surely_regular,
+)
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
@@ -73,7 +84,17 @@ def regular(*u: float, length: float = 1.0) -> bool:
     """Whether no branch is met where u is a polynomial of s, from its coefficients, up to a length."""
     series = np.zeros((len(u), 4))
     series[:, 0], series[0, 3] = u, 1.0
-    return bool(regular_along(PARABOLA, series, length))
+    factors = factorise(PARABOLA.jacobian(series[0]))
+    return bool(regular_along(PARABOLA, factors, series, length))
+
+
+@given(u=st.floats(1e-3, 1e3), share=st.floats(0.0, 2.0))
+def test_a_pose_is_surely_regular_up_to_where_the_next_singular_one_lies(u: float, share: float) -> None:
+    """C_u = 2 u is singular at u = 0 only, so that the estimate loses nothing."""
+    assume(abs(share - 1.0) > 1e-6)
+    y = np.array([u, 0.0, 0.0, 1.0])
+    change = np.array([share * u, 1.0, 0.0, 0.0])
+    assert bool(surely_regular(PARABOLA, factorise(PARABOLA.jacobian(y)), change)) == (share < 1.0)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])
