@@ -136,23 +136,20 @@ def surely_regular(system: QuadraticMap, factors: Factors, change: Array) -> NDA
         return np.asarray(moved.sum(axis=-1).max(axis=-1) < SURE)
 
 
-def regular_along(system: QuadraticMap, factors: Factors, series: Array, s: float) -> NDArray[np.bool_]:
+def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.bool_]:
     """Whether no block of C_u is singular on a segment of a series, from 0 to s, shape (...,).
 
     Args:
-        factors: of C_u at 0. series: coefficients, shape (..., order + 1, size).
+        series: coefficients, shape (..., order + 1, size).
     """
     order, parts = series.shape[-2] - 1, 1
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
-    good: NDArray[np.bool_] = surely_regular(system, factors, np.abs(scaled[..., 1:, :]).sum(axis=-2))
-    while not good.all():
+    while True:
         y = _powers(order, parts) @ scaled
-        each = regular_between(system, y.reshape(*y.shape[:-2], parts, DEGREE + 1, -1))
-        good = np.logical_and.reduce(each, axis=-1, keepdims=True)[..., 0]
-        if parts >= MOST_PARTS:
-            break
+        good = regular_between(system, y.reshape(*y.shape[:-2], parts, DEGREE + 1, -1)).all(axis=-1)
+        if parts >= MOST_PARTS or good.all():
+            return np.asarray(good)
         parts *= FINER
-    return good
 
 
 def regular_between(system: QuadraticMap, y: Array, variables: int = 1) -> NDArray[np.bool_]:

@@ -63,14 +63,14 @@ class Powers:
         edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
         return edges
 
-    def pairs(self, low: int, high: int, alike: bool) -> list[tuple[Places, Places]]:
-        """For powers k, where all i and k - i, 0 <= i <= k, lie in a table with an axis for each exponent.
+    def pairs(self, alike: bool) -> list[tuple[Places, Places]]:
+        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table with an axis an exponent.
 
         Args:
             alike: of a square, where an exponent of k is odd, half of them, so that i, k - i is there and
                 k - i, i is not (see `times`).
         """
-        return self._pairs[alike][low:high]
+        return self._pairs[alike]
 
     @cached_property
     def _pairs(self) -> tuple[list[tuple[Places, Places]], list[tuple[Places, Places]]]:

@@ -139,7 +139,9 @@ def _recursion(
     table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
     left, right = table[..., : terms.count], table[..., -terms.count :]
     table = table.reshape(-1, *table.shape[inputs:])
-    squares = terms.ends.shape[-1] == terms.count
+    # Of one input there are few pairs of each.
+    squares = inputs > 1 and terms.ends.shape[-1] == terms.count
+    pairs = every.pairs(squares)
     times = every.times.reshape(-1, *[1] * (left.ndim - inputs))
     table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
@@ -147,7 +149,7 @@ def _recursion(
         low, high = edges[degree], edges[degree + 1]
         if degree > 1:
             sums = np.empty((high - low, *left.shape[inputs:]))
-            for (up, down), out in zip(every.pairs(low, high, squares), sums, strict=True):
+            for (up, down), out in zip(pairs[low:high], sums, strict=True):
                 np.einsum(subscripts, left[up], right[down], out=out)
             if squares:
                 sums *= times[low:high]

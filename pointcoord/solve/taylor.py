@@ -552,7 +552,7 @@ class _Course:
             good, ahead = found.good, found.factors
             work += found.work
             if good.any():
-                good = good & regular_along(system, joint.factors, segment.coefficients, s)
+                good = good & regular_along(system, segment.coefficients, s)
             if end < self.stop and ahead is not None:
                 good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:

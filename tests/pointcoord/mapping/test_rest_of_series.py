@@ -46,7 +46,7 @@ def test_the_pairs_of_a_power_are_each_once_in_a_table_of_exponents(k: tuple[int
     places = np.stack(np.indices([9] * len(k)), axis=-1)
     found = {}
     for alike in (False, True):
-        [(up, down)] = every.pairs(number, number + 1, alike)
+        up, down = every.pairs(alike)[number]
         first, second = (places[side].reshape(-1, len(k)) for side in (up, down))
         assert (first + second == k).all()
         found[alike] = sorted(map(tuple, first.tolist()))

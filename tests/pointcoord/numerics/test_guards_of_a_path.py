@@ -84,8 +84,7 @@ def regular(*u: float, length: float = 1.0) -> bool:
     """Whether no branch is met where u is a polynomial of s, from its coefficients, up to a length."""
     series = np.zeros((len(u), 4))
     series[:, 0], series[0, 3] = u, 1.0
-    factors = factorise(PARABOLA.jacobian(series[0]))
-    return bool(regular_along(PARABOLA, factors, series, length))
+    return bool(regular_along(PARABOLA, series, length))
 
 
 @given(u=st.floats(1e-3, 1e3), share=st.floats(0.0, 2.0))
