@@ -54,16 +54,19 @@ def expand(
     """
     n = system.unknowns
     places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
-    first = None if begun is None else begun[..., :n]
+    first = None if begun is None else np.moveaxis(begun[..., :n], -2, 0)
+    moving = np.broadcast_to(known[..., places], (*y.shape[:-1], known.shape[-2], len(places)))
+    found = expand_moving(
+        system, factors, y, np.moveaxis(moving, -2, 0), (places + n).tolist(), first, inputs
+    )
     series = np.empty((*y.shape[:-1], known.shape[-2], y.shape[-1]))
     series[..., n:] = known
-    moving = (places + n).tolist()
-    series[..., :n] = expand_unknowns(system, factors, y, known[..., places], moving, first, inputs)
+    series[..., :n] = np.moveaxis(found[..., :n], 0, -2)
     series[..., 0, :] = y
     return series
 
 
-def expand_unknowns(
+def expand_moving(
     system: QuadraticMap,
     factors: Factors,
     y: Array,
@@ -72,42 +75,42 @@ def expand_unknowns(
     begun: Array | None = None,
     inputs: int = 1,
 ) -> Array:
-    """Series of the unknown coordinates, where only some of the known ones move.
+    """Series of all that moves, powers first: what is done to all of a power lies side by side in memory.
 
     Args:
-        known: series of those that move, shape (..., powers, moving).
+        known: series of the known coordinates that move, shape (powers, ..., moving).
         driven: which coordinates these are.
-        begun: the first powers of the unknown ones, shape (..., some powers, unknowns).
+        begun: the first powers of the unknown ones, shape (some powers, ..., unknowns).
     Returns:
-        Coefficients by power, shape (..., powers, unknowns); powers come first in memory.
+        Coefficients of the unknown ones and then of these, shape (powers, ..., unknowns + moving).
     """
     if inputs == 1:
         return _recursion(system, factors, y, known, driven, begun, inputs)
-    n, every = system.unknowns, powers_counted(inputs, known.shape[-2])
-    there: NDArray[np.bool_] = np.any(known.reshape(-1, *known.shape[-2:]), axis=0)
+    n, every = system.unknowns, powers_counted(inputs, len(known))
+    there = np.abs(known).max(axis=tuple(range(1, known.ndim - 1)), initial=0.0) > 0.0
     moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
-    # What moves: the unknowns, and of the known coordinates these.
-    series = np.moveaxis(np.zeros((every.count, *y.shape[:-1], n + len(driven))), 0, -2)
+    series = np.zeros((every.count, *y.shape[:-1], n + len(driven)))
+    series[0, ..., :n] = y[..., :n]
     series[..., n:] = known
-    series[..., 0, :n] = y[..., :n]
     place = {number: n + i for i, number in enumerate(driven)}
     for stage in stages(system, moved):
         part, powers = stage.part, every.within(stage.inputs)
-        reads = [place.get(number, number) for number in stage.reads]
-        numbers = part.order.argsort()[list(stage.reads)].tolist()
+        own = series if len(powers) == len(series) else series[powers]
         first = None
         if begun is not None:
-            first = begun[..., powers[powers < begun.shape[-2], None], part.unknowns]
-        series[..., powers[:, None], part.unknowns] = _recursion(
+            first = begun[powers[powers < len(begun)]].take(part.unknowns, axis=-1)
+        found = _recursion(
             part.system,
             factors.part(part.rows, part.unknowns),
             part.taken(y),
-            series[..., powers[:, None], reads],
-            numbers,
+            own.take([place.get(number, number) for number in stage.reads], axis=-1),
+            part.order.argsort()[list(stage.reads)].tolist(),
             first,
             len(stage.inputs),
         )
-    return series[..., :n]
+        for i, unknown in enumerate(part.unknowns.tolist()):
+            series[powers, ..., unknown] = found[..., i]
+    return series
 
 
 def _recursion(
@@ -120,16 +123,16 @@ def _recursion(
     inputs: int,
 ) -> Array:
     """The same of one stage, all of whose blocks hang on all inputs (see `partial_map`)."""
-    n, every = system.unknowns, powers_counted(inputs, known.shape[-2])
+    n, every = system.unknowns, powers_counted(inputs, len(known))
     moving, edges = tuple(driven), every.edges
     terms = system.moving_products(moving)
     # What moves, and a last 0 for all that stands still; the constant term takes no part in a product.
     own = np.zeros((every.count, *y.shape[:-1], n + len(moving) + 1))
-    series, first = np.moveaxis(own, 0, -2), 1
-    series[..., 1:, n:-1] = known[..., 1:, :]
+    own[1:, ..., n:-1] = known[1:]
+    first = 1
     if begun is not None:
-        series[..., 1 : begun.shape[-2], :n] = begun[..., 1:, :]
-        first = edges.index(begun.shape[-2])
+        own[1 : len(begun), ..., :n] = begun[1:]
+        first = edges.index(len(begun))
     # What the known ones alone make of each power; sums of products follow degree after degree.
     by_known = factors.solve_many(np.moveaxis(system.derivative_by(y, moving), -1, 0))
     still = own[edges[first] :]
@@ -141,8 +144,7 @@ def _recursion(
     table = table.reshape(-1, *table.shape[inputs:])
     # Of one input there are few pairs of each.
     squares = inputs > 1 and terms.ends.shape[-1] == terms.count
-    pairs = every.pairs(squares)
-    times = every.times.reshape(-1, *[1] * (left.ndim - inputs))
+    pairs, times = every.pairs(squares), every.times.reshape(-1, *[1] * (left.ndim - inputs))
     table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
     for degree in range(first, every.order + 1):
@@ -156,7 +158,8 @@ def _recursion(
             own[low:high, ..., :n] -= solved(sums)
         table[every.places(low, high)] = terms.factors(own[low:high])
     own[0, ..., :n] = y[..., :n]
-    return series[..., :n]
+    own[0, ..., n:-1] = known[0]
+    return own[..., :-1]
 
 
 def _solved_sums(factors: Factors, terms: MovingProducts) -> Callable[[Array], Array]:

@@ -35,7 +35,7 @@ from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.partial_map import PartialMap, stages
-from pointcoord.numerics.power_series import expand_unknowns
+from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose, follow
 from pointcoord.solve.standing_still import starting_place
 from pointcoord.solve.taylor import (
@@ -207,10 +207,10 @@ class _Boxed:
         return [frozenset({self.names.index(name)}) for name in inputs if name in self.names]
 
     def known_series(self, order: int, columns: list[int]) -> Array:
-        """The series in s of some of them, shape (designs, powers, columns)."""
+        """The series in s of some of them, powers first, shape (powers, designs, columns)."""
         every, middle = powers(self.inputs, order), self.known(np.zeros(self.inputs))[:, columns]
-        found = np.zeros((len(middle), every.count, len(columns)))
-        found[:, 0] = middle
+        found = np.zeros((every.count, len(middle), len(columns)))
+        found[0] = middle
         still = np.zeros(order)
         fixed = {name: np.append(series, still) for name, series in self.held.items()}
         fixed |= {name: np.append(at, still) for name, at in zip(self.names, self.ranges.middle, strict=True)}
@@ -219,7 +219,7 @@ class _Boxed:
             moved[1] = self.ranges.half[i]
             series = self.mechanism.known_series({**fixed, name: moved})
             places = [every.power_of(i, k) for k in range(1, order + 1)]
-            found[:, places] += series[:, 1:, columns]
+            found[places] += series[:, 1:, columns].swapaxes(0, 1)
         return found
 
     def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, Box | None, Work]:
@@ -237,8 +237,9 @@ class _Boxed:
         found = self.series(y, factors)
         if found is None:
             return nobody
-        series, order, good = found
-        solves = series.shape[-2] * len(y)
+        moving, order, good = found
+        series = moving[..., : system.unknowns]
+        solves = len(series) * len(y)
         work += Work(
             segments=1, series_orders=order, rate_solves=solves, unknowns_solved=solves * system.unknowns
         )
@@ -248,52 +249,57 @@ class _Boxed:
         summed = (signs[:, None] ** every.exponents).prod(axis=-1)[:, None] * (
             np.clip(every.exponents.sum(axis=-1) - order + 2, 0, 2) == np.arange(3)[:, None]
         )
-        rays = np.moveaxis(np.tensordot(summed, series, axes=(-1, -2)), 2, 0)
+        rays = np.moveaxis(np.tensordot(summed, series, axes=1), 2, 0)
         ends = np.empty((len(y), len(signs), system.size))
         ends[..., : system.unknowns] = rays.sum(axis=-2)
         for i, sign in enumerate(signs):
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
         confirmation = confirmed(system, reached, rays, 1.0, self.settings.tolerance)
-        good &= confirmation.good.all(axis=-1) & self.regular(y, factors, series, order)
+        good &= confirmation.good.all(axis=-1) & self.regular(y, factors, moving, order)
         work += reached.work + confirmation.work
-        coefficients, ranges = self.part.unknowns_back(y, series), self.ranges
+        coefficients, ranges = self.part.unknowns_back(y, np.moveaxis(series, 0, -2)), self.ranges
         box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
 
-    def regular(self, start: Array, factors: Factors, series: Array, order: int) -> Flags:
+    def regular(self, start: Array, factors: Factors, moving: Array, order: int) -> Flags:
         """Whether designs meet no other branch on any line of a grid over the ranges, (designs,).
 
         The blocks of a stage are looked at over the ranges of its own inputs.
 
         Args:
             start: the middle of the ranges. factors: of C_u there.
+            moving: series of all that moves, powers first.
         """
-        points, (columns, driven) = interpolation(DEGREE).points, self.driven()
-        every, moving = powers(self.inputs, order), np.array([*range(self.part.system.unknowns), *driven])
-        coefficients, change = (series, self.known_series(order, columns)), np.zeros_like(start)
-        change[:, moving] = np.concatenate([np.abs(c[:, 1:]).sum(axis=1) for c in coefficients], axis=-1)
+        points, (_, driven) = interpolation(DEGREE).points, self.driven()
+        every, places = powers(self.inputs, order), np.array([*range(self.part.system.unknowns), *driven])
+        change = np.zeros_like(start)
+        change[:, places] = np.abs(moving[1:]).sum(axis=0)
         good = np.ones(len(start), dtype=bool)
         for stage in stages(self.part.system, tuple(zip(driven, self.causes, strict=True))):
-            part, within, read = stage.part, every.within(stage.inputs), np.isin(moving, stage.moving)
+            part, within, read = stage.part, every.within(stage.inputs), np.isin(places, stage.moving)
             own = factors.part(part.rows, part.unknowns)
             left = np.flatnonzero(~surely_regular(part.system, own, part.taken(change)))
             if not left.size:
                 continue
             count = len(stage.inputs)
             grid = np.meshgrid(*[points] * count, indexing="ij")
-            places = np.stack(grid, axis=-1).reshape(-1, 1, count)
-            sums = (places ** every.exponents[within][:, stage.inputs]).prod(axis=-1)
-            y = np.repeat(start[left, None], len(places), axis=1)
-            terms = np.concatenate([c[np.ix_(left, within)] for c in coefficients], axis=-1)
-            y[..., moving[read]] = sums @ terms[..., read]
+            s = np.stack(grid, axis=-1).reshape(-1, 1, count)
+            sums = (s ** every.exponents[within][:, stage.inputs]).prod(axis=-1)
+            y = np.repeat(start[left, None], len(s), axis=1)
+            y[..., places[read]] = np.tensordot(sums, moving[np.ix_(within, left, read)], axes=1).swapaxes(
+                0, 1
+            )
             poses = part.taken(y.reshape(len(y), *[len(points)] * count, -1))
             good[left] &= regular_between(part.system, poses, count)
         return good
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
-        """Series of all designs, their degree, and of which of them it is enough; None where a chain is."""
+        """Series of all that moves, powers first, their degree, and of which designs it is enough.
+
+        None where a chain is less work.
+        """
         most = min(self.ranges.passes * SEGMENTS * (MOST + SEGMENT) - BOX, POWERS)
         system, series, order, (columns, driven) = self.part.system, None, FEWEST, self.driven()
         for _ in range(CARRIED_ON):
@@ -301,8 +307,9 @@ class _Boxed:
                 return None
             known = self.known_series(order, columns)
             with np.errstate(all="ignore"):
-                series = expand_unknowns(system, factors, y, known, driven, series, self.inputs)
-                lacking = self.lacking(series, order)
+                begun = None if series is None else series[..., : system.unknowns]
+                series = expand_moving(system, factors, y, known, driven, begun, self.inputs)
+                lacking = self.lacking(series[..., : system.unknowns], order)
             # The few that need many more degrees than the others are followed in time.
             further = lacking[order + lacking <= STANDS_OUT * (order + np.median(lacking))].max(initial=0.0)
             if not further > 0.0:
@@ -321,19 +328,21 @@ class _Boxed:
             sum_{j > 0} (p + j)^d f^j e <= (p + 1)^d f (1 + f) / (1 - f)^(d + 1) e.
 
         With v and a the largest rates of s it is e for d = 0, v times that for d = 1 and v^2 times that for
-        d = 2 and a times that for d = 1. With 1 + f at most 2, it is held to half
-        the tolerance of the size of each: of the
-        mechanism, v c_1, and a c_1 or 2 v^2 c_2.
+        d = 2 and a times that for d = 1. With 1 + f at most 2, it is held to half the tolerance of the size
+        of each: of the mechanism, v c_1, and a c_1 or 2 v^2 c_2.
+
+        Args:
+            series: of the unknown coordinates, powers first, shape (powers, designs, unknowns).
         """
         every, (v, a) = powers(self.inputs, order), self.ranges.rates.T
         edges = [every.first_of(degree) for degree in range(order + 1)]
         terms = np.abs(series)
-        logs = np.log(np.add.reduceat(terms, edges, axis=-2).max(axis=-1))
+        logs = np.log(np.add.reduceat(terms, edges, axis=0).max(axis=-1)).T
         logs[:, 0] = 0.0
-        turned = (v**every.exponents).prod(axis=-1)[:, None]
+        turned = (v**every.exponents).prod(axis=-1)
         first, again, second = (
-            (terms[:, edges[k] : edges[k + 1]] * by).max(axis=(-2, -1))
-            for k, by in ((1, v[:, None]), (1, a[:, None]), (2, 2.0 * turned[edges[2] : edges[3]]))
+            (terms[edges[k] : edges[k + 1]].max(axis=-1) * by[:, None]).max(axis=0)
+            for k, by in ((1, v), (1, a), (2, 2.0 * turned[edges[2] : edges[3]]))
         )
         fall = 0.5 * np.maximum(logs[:, -4:-2].max(axis=-1) - logs[:, -2:].max(axis=-1), 0.0)
         gap, fastest, bent = -np.expm1(-fall), v.max() * (order + 1), a.max() * (order + 1)
