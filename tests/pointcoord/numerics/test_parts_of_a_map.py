@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.partial_map import moving_part
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
@@ -70,3 +71,34 @@ def test_the_series_of_a_part_is_that_of_the_whole(batch: tuple[int, ...], alike
     size = np.abs(whole).max(axis=-1, keepdims=True)
     # Some operations an order, of condition numbers below 1e3.
     assert (np.abs(found - whole) <= 1e-12 * size).all()
+
+
+@pytest.mark.parametrize("batch", [(), (3,)])
+@pytest.mark.parametrize("driven", [((0,), (1,)), ((1,), (0,)), ((0, 1), (1,)), ((0, 1), (0, 1))])
+def test_series_in_two_inputs_are_those_in_one_along_every_line(
+    batch: tuple[int, ...], driven: tuple[tuple[int, ...], ...]
+) -> None:
+    """Along s = (a t, b t) the powers of degree d sum to the d-th coefficient in t, by whatever stages."""
+    order, y, rng = 5, poses(batch), np.random.default_rng(5)
+    every = powers(2, order)
+    known = np.zeros((*batch, every.count, 4))
+    known[..., 0, :] = y[..., 3:]
+    for column, inputs in zip((FIRST - 3, SECOND - 3), driven, strict=True):
+        others = [i for i in (0, 1) if i not in inputs]
+        own = np.flatnonzero(~every.exponents[:, others].any(axis=-1))[1:]
+        known[..., own, column] = rng.integers(-3, 4, (*batch, len(own)))
+    factors = factorise(SYSTEM.jacobian(y))
+    found = expand(SYSTEM, factors, y, known, inputs=2)
+    # Carried on from any whole degree, to the same.
+    begun = found[..., : every.first_of(3), :]
+    again = expand(SYSTEM, factors, y, known, begun, inputs=2)
+    assert (np.abs(again - found) <= 1e-12 * np.abs(found).max(axis=-1, keepdims=True)).all()
+    for a, b in ((1.0, 0.0), (0.0, 1.0), (1.0, -2.0), (0.5, 1.5)):
+        weights = (np.array([a, b]) ** every.exponents).prod(axis=-1)
+        degree = every.exponents.sum(axis=-1) == np.arange(order + 1)[:, None]
+        line = (weights * degree) @ known
+        whole = expand(SYSTEM, factors, y, line)
+        summed = (weights * degree) @ found
+        # Some operations a power, of condition numbers below 1e3; what is summed may cancel.
+        size = (np.abs(weights) * degree) @ np.abs(found)
+        assert (np.abs(summed - whole) <= 1e-11 * size.max(axis=-1, keepdims=True)).all()
