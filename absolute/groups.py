@@ -21,8 +21,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from absolute.solution import Array
 
@@ -58,39 +56,52 @@ class Groups(NamedTuple):
 def groups_of(first: Places, second: Places, bodies: int) -> Groups:
     """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
 
-    Rows are matched with freedoms of their bodies. A body then waits for all others in its own rows, and
+    Six rows are matched with each body. A body then waits for all others in its own rows, and
     bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched,
     all are one group: some body can still move.
 
     Args:
         first, second: the two bodies of each row.
     """
+    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
+    own: list[list[int]] = [[] for _ in range(bodies)]
+
+    def matched(row: int, tried: set[int]) -> bool:
+        """Whether a body of the row has a place for it, or one of its rows can go to another body."""
+        for body in pairs[row]:
+            if body and body not in tried:
+                tried.add(body)
+                if len(own[body]) < 6:
+                    own[body].append(row)
+                    return True
+                for place, other in enumerate(own[body]):
+                    if matched(other, tried):
+                        own[body][place] = row
+                        return True
+        return False
+
     freedoms = 6 * (bodies - 1)
-    pairs = np.array([first, second]).T
-    touched = np.zeros((len(pairs), bodies), dtype=np.bool_)
-    touched[np.arange(len(pairs))[:, None], pairs] = True
-    pattern = csr_array(np.repeat(touched[:, 1:], 6, axis=1))
-    of_row = maximum_bipartite_matching(pattern, perm_type="column") // 6
-    if len(pairs) != freedoms or (of_row < 0).any():
+    if len(pairs) != freedoms or not all(matched(row, set()) for row in range(len(pairs))):
         whole = np.arange(freedoms)
         return Groups(np.arange(len(pairs)), whole, whole, (freedoms,))
-    waits = np.zeros((bodies - 1, bodies - 1), dtype=np.bool_)
-    for row, body in enumerate(of_row):
-        waits[body] |= touched[row, 1:]
-    count, label = connected_components(csr_array(waits), connection="strong")
-    ahead = [set(label[waits[label == group].any(axis=0)].tolist()) - {group} for group in range(count)]
-    rows, columns, ends, done = list[int](), list[int](), list[int](), set[int]()
-    while len(done) < count:
-        group = min(
-            (group for group in range(count) if group not in done and ahead[group] <= done),
-            key=lambda group: int(np.argmax(label == group)),
-        )
-        done.add(group)
-        rows += np.flatnonzero(label[of_row] == group).tolist()
-        columns += np.flatnonzero(np.repeat(label == group, 6)).tolist()
-        ends.append(len(columns))
-    orders = np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp)
-    return Groups(*orders, np.argsort(orders[1]), tuple(ends))
+    waits = np.eye(bodies, dtype=np.bool_)
+    for body, rows in enumerate(own):
+        waits[body, [each for row in rows for each in pairs[row]]] = True
+    waits[:, 0] = False
+    for _ in range(bodies.bit_length()):  # also for those that these wait for
+        waits = waits @ waits
+    group = (waits & waits.T).argmax(axis=1)
+    # Who waits for another waits for more bodies than that one.
+    order = sorted(range(1, bodies), key=lambda body: (waits[body].sum(), group[body]))
+    ends = [
+        6 * place
+        for place in range(1, bodies)
+        if place == bodies - 1 or group[order[place]] != group[order[place - 1]]
+    ]
+    columns = np.add.outer(6 * (np.array(order) - 1), np.arange(6)).ravel()
+    return Groups(
+        np.array([row for body in order for row in own[body]]), columns, np.argsort(columns), tuple(ends)
+    )
 
 
 def signs_of(groups: Groups, jacobian: Array) -> Array:
