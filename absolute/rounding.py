@@ -85,7 +85,7 @@ def second_doubt(
     # The direction of a distance turns by itself.
     w1, w2 = np.maximum(length(motion.w1), length(motion.a1)), length(motion.w2)
     e, r1, r2 = length(motion.e), length(motion.r1), length(motion.r2)
-    speeds = length(motion.s1) + length(motion.s2) + w1 * r1 + w2 * r2
+    speeds = length(motion.s1) + length(motion.s2) + w1 * (r1 + e) + w2 * r2
     terms = w1 * w1 * (e + r1) + w2 * w2 * r2 + 2.0 * w1 * speeds
     return Doubt(np.abs(left), RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target))
 

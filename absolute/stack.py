@@ -14,10 +14,10 @@ The turn t of axes x, y of the first and x2, y2 of the second body about a commo
 cos t = x . x2 and sin t = y . x2, has the rate of the right angle  -(x cos t + y sin t) . y2  which is 0
 there, t held. Its value is known up to whole turns: `gap` takes the nearest.
 
-First and second rate of any row, with the rates a1 and a2 of a and e1, e2 of e:
-    a1.e + a.e1,    a2.e + 2 a1.e1 + a.e2
-    e1 = s2 + w2 x r2 - s1 - w1 x r1,  s the velocity of an origin;   a1 = w1 x a, a2 = w1 x a1, or of a
-    distance  a1 = (e1 - (a.e1) a) / |e|,  a2 = (e2 - (a.e2) a - 2 (a.e1) a1 - (a1.e1) a) / |e|.
+With the turning a1 = w1 x a and the velocity v of e as it is seen from the first body, a row's rate is a . v
+and its second rate, when no body accelerates,
+    a1 . (2 v + t1) - (w2 x a) . t2,    v = s2 + t2 - s1 - t1,    t1 = w1 x (r1 + e),    t2 = w2 x r2,
+s the velocity of an origin, and of a distance (v . v - (a . v)^2) / |e| more.
 """
 
 from typing import NamedTuple
@@ -149,7 +149,8 @@ class RowStack:
         )
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
         angles = len(rows.angles)
-        self.first, self.second = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
+        self._bodies = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
+        self.first, self.second = self._bodies
         source = np.zeros((count, bodies, 2, 3), dtype=int)
         axis = np.arange(3)
         pushes = 3 * len(rows.offsets)
@@ -269,8 +270,16 @@ class RowStack:
 
     def drift(self, placed: Placed, rates: Array) -> Array:
         """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""
-        m = self.motion(placed, rates)
-        drift: Array = np.vecdot(m.a2, m.e)
-        drift += 2.0 * np.vecdot(m.a1, m.e1)
-        drift += np.vecdot(m.a, m.e2)
+        both = rates.take(self._bodies, -3)
+        a1, a2, t1, t2 = np.moveaxis(
+            cross(both[..., 1, :].take([0, 1, 0, 1], -3), placed.parts.take([0, 0, 3, 4], -3)), -3, 0
+        )
+        v = (both[..., 1, :, 0, :] - both[..., 0, :, 0, :]) * self._is_offset + t2 - t1
+        drift: Array = np.vecdot(a1, 2.0 * v + t1) - np.vecdot(a2, t2)
+        if self.distances.size:
+            a, v = placed.parts[..., 0, self.distances, :], v[..., self.distances, :]
+            along = np.vecdot(a, v)
+            drift[..., self.distances] += (np.vecdot(v, v) - along * along) / placed.values[
+                ..., self.distances
+            ]
         return drift

@@ -99,9 +99,9 @@ def test_rates_are_rounded_from_the_magnitudes_of_their_terms() -> None:
     assert doubt.known[0] == pytest.approx(np.abs(target[0] - jacobian[0] @ velocities[0]), rel=1e-12)
     # The direction of a distance turns by itself, and any by no less than its body.
     w1 = np.maximum(w1, turned)
-    # a''.e, 2 a'.e', a.e'', with a'' = w1 x (w1 x a) and e'' of both arms turned twice; and the rate of the
-    # accelerations, which are the same here.
-    bend = w1 * w1 * e + 2.0 * w1 * (s2 + w2 * r2 + s1 + w1 * r1) + w2 * w2 * r2 + w1 * w1 * r1
+    # (w1 x a).(2 v + w1 x (r1 + e)) and (w2 x a).(w2 x r2), with v = s2 + w2 x r2 - s1 - w1 x (r1 + e); and
+    # the rate of the accelerations, which are the same here.
+    bend = w1 * (2.0 * (s2 + w2 * r2 + s1 + w1 * (r1 + e)) + w1 * (r1 + e)) + w2 * w2 * r2
     doubt = second_doubt(motion, motion, jacobian, velocities, drift, target)
     expected = RATE * terms + DRIFT * bend + TARGET * np.abs(target[0])
     assert doubt.rounded[0] == pytest.approx(expected, rel=1e-9, abs=0.0)
