@@ -32,8 +32,8 @@ SMALL = 1e-6
 
 # A run ends where the second order of its expansion is this share of the first, so that with orders that
 # fall like a geometric series the sixth, of 64 of which Hermite's interpolation is off by one, is some
-# 1e-8 of the first: then one correction is enough.
-LARGEST_BEND = 0.08
+# 1e-7 of the first: then one correction is enough.
+LARGEST_BEND = 0.1
 # Nor may it be longer than this, in units of size and quaternions, which turn by half of an angle.
 LONGEST_RUN = 0.5 * LONGEST_STEP
 # A third order below this needs no second expansion: one correction is enough then.
