@@ -15,7 +15,7 @@ import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose
 from absolute.solution import Array
 from absolute.stack import Placed
@@ -69,16 +69,12 @@ class Answers(NamedTuple):
             K, pose to p, velocity to t, acceleration to s;
             -K H K, velocity to p; the same of acceleration to p; and that of acceleration to t.
         known, squared: (N, 3, rows) the doubts p, t, s: what is left, and the squares of what is rounded.
-        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs;
-            None where inputs are exact.
         grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
     """
 
     every: Array
     known: Array
     squared: Array
-    slopes: Array
-    inputs: Array | None
     grown: tuple[Array, Array, Array]
 
 
@@ -105,30 +101,15 @@ class Sensitivity(NamedTuple):
     grown: Array
 
 
-def estimate(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, chassis: Array
-) -> Errors:
-    """Errors of points and bodies at N solved instants.
-
-    Args:
-        motion: poses and rates of the bodies.
-        series: inputs (N, 3, inputs). doubts: how far each number of them may be off.
-        chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
-    """
-    return named(mechanism, motion, chassis, totals(mechanism, motion, series, doubts)[0])
-
-
-def totals(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None = None
-) -> tuple[Array, Sensitivity]:
+def totals(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array) -> tuple[Array, Sensitivity]:
     """(3, N, 3 * of these) errors of all turns and points, without what sums of these round, in units of
     size, and what they are made of.
 
     Args:
-        mechanism, motion, series, doubts: as of `estimate`.
-        left: (N, 3, rows) what is left of the equations as computed, where that is known.
+        motion: poses and rates of the bodies at N solved instants.
+        series: inputs (N, 3, inputs). left: (N, 3, rows) what is left of the equations as computed.
     """
-    answers = _answers(mechanism, motion, series, doubts, left)
+    answers = _answers(mechanism, motion, series, left)
     every = [
         _lengths(answers, motion, index, arms)
         for index, (_, arms) in enumerate(places_of(mechanism, motion.rotation), 1)
@@ -138,15 +119,6 @@ def totals(
         lengths, by_row(np.sqrt, answers.squared, Lengths(*(a * a for a in lengths))), np.array(answers.grown)
     )
     found = known_part(answers.known, Lengths(*map(np.abs, lengths))) + sensitivity.rounded
-    if answers.inputs is not None:
-        # An input's row answers to all three equations at once where its value is off.
-        driven = slice(lengths.direct.shape[1] - answers.inputs.shape[-1], None)
-        d, v, a, b = (answer[:, driven] for answer in lengths)
-        for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
-            to_pose, to_rate, to_rest = slopes[..., None]
-            changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
-            for total, change in zip(found, changes, strict=True):
-                total += np.einsum("nic,ni->nc", np.abs(change), off)
     return further(found, sensitivity.grown), sensitivity
 
 
@@ -215,9 +187,7 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
     return 2.0 / (1.0 + root), speed, second
 
 
-def _answers(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None
-) -> Answers:
+def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array) -> Answers:
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
     targets = mechanism.target_series(series)
@@ -227,21 +197,17 @@ def _answers(
     # Of the accelerations only the first rates count: their squares may be beyond any number.
     with np.errstate(over="ignore", invalid="ignore"):
         bending = stack.motion(placed, motion.acceleration)
-    speeds, seconds = (
-        rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
+    speeds = motion.velocity[:, 1:].reshape(len(inverse), -1)
+    known: Array = np.abs(left)
+    rounded = np.stack(
+        (
+            pose_doubt(mechanism, placed, targets[0]),
+            rate_doubt(moving, targets[1]),
+            second_doubt(moving, bending, targets[2]),
+        ),
+        axis=1,
     )
-    drift = stack.drift(placed, motion.velocity)
-    three = [
-        pose_doubt(mechanism, placed, targets[0]),
-        rate_doubt(moving, jacobian, speeds, targets[1]),
-        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
-    ]
-    if left is not None:
-        three = [Doubt(np.abs(left[:, order]), doubt.rounded) for order, doubt in enumerate(three)]
-    pose, rate, _ = three
-    slopes = mechanism.target_slopes(series)
-    everything = pose.known + pose.rounded
-    everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
+    pose, rate, _ = (known + rounded).swapaxes(0, 1)
     by_velocity = drift_by_velocity(stack, moving)
     changes = (rate_by_pose(stack, moving), rate_by_pose(stack, bending) + drift_by_pose(stack, moving))
     count = stack.count
@@ -250,18 +216,15 @@ def _answers(
     speed = -inverse @ turned[:, :count]
     turned[:, count : 2 * count] += by_velocity @ speed
     second, bent = -inverse @ turned[:, count : 2 * count], -inverse @ turned[:, 2 * count :]
-    grown = fold(mechanism, placed, inverse, everything)
+    grown = fold(mechanism, placed, inverse, pose)
     # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
-    off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
+    off = np.einsum("nij,nj->ni", np.abs(inverse), rate)
     fastest = np.abs(speeds).max(axis=1)
     share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
-    rounded = np.stack([doubt.rounded for doubt in three], axis=1)
     return Answers(
         np.stack((inverse, speed, second, bent)).swapaxes(-1, -2),
-        np.stack([doubt.known for doubt in three], axis=1),
+        known,
         rounded * rounded,
-        slopes,
-        doubts if doubts.any() else None,
         (grown[0], grown[1], grown[2] * (1.0 + share)),
     )
 

@@ -139,16 +139,12 @@ class Mechanism:
             named.setdefault(drive.value or name, value)
         return named
 
-    def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> Array:
-        """(3, rows): what the rows shall equal, and its first and second rate, for inputs and their rates."""
-        driven = []
-        for (law, factor), value, speed, second in zip(self._laws, values, rates, seconds, strict=True):
-            f, f1, f2 = law(value)
-            driven.append((factor * f, factor * f1 * speed, factor * (f2 * speed * speed + f1 * second)))
-        targets = np.zeros((3, self.stack.count))
-        targets[0] = self.stack.drawn
-        targets[:, self.joint_rows :] = np.array(driven).T
-        return targets
+    def targets(self, values: Sequence[float], rates: Sequence[float] | None = None) -> Array:
+        """(3, rows): what the rows shall equal, and its first and second rate, for inputs at steady rates."""
+        series = np.zeros((1, 3, len(self._laws)))
+        series[0, 0] = values
+        series[0, 1] = 0.0 if rates is None else rates
+        return np.asarray(self.target_series(series)[:, 0])
 
     def target_series(self, series: Array) -> Array:
         """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
@@ -161,23 +157,6 @@ class Mechanism:
             f, f1, f2 = factor * np.array([law(value) for value in column[0].tolist()]).reshape(-1, 3).T
             targets[:, :, row] = f, f1 * speed, f2 * speed * speed + f1 * second
         return targets
-
-    def target_slopes(self, series: Array) -> Array:
-        """(3, 3, N, inputs): how the targets of the inputs' rows, and their first and second rates, change
-        with value, rate and acceleration of the input, (N, 3, inputs): slopes[of the input, of the target].
-        """
-        slopes = np.zeros((3, 3, len(series), series.shape[-1]))
-        for place, (drive, (law, factor), column) in enumerate(
-            zip(self.model.inputs.values(), self._laws, series.transpose(2, 1, 0), strict=True)
-        ):
-            third = LAWS[drive.law].third
-            terms = [(*law(value)[1:], third(value)) for value in column[0].tolist()]
-            f1, f2, f3 = factor * np.array(terms).reshape(-1, 3).T
-            _, speed, second = column
-            slopes[0, :, :, place] = f1, f2 * speed, f3 * speed * speed + f2 * second
-            slopes[1, 1:, :, place] = f1, 2.0 * f2 * speed
-            slopes[2, 2, :, place] = f1
-        return slopes
 
 
 def _left_out(stack: RowStack, inputs: int, rotation: Array, origin: Array) -> set[int]:

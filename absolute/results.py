@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from absolute.effects.effect import Effect
-from absolute.estimate import BodyMotion, Errors, estimate, named
+from absolute.estimate import BodyMotion, Errors, named
 from absolute.lines import SolvedLines
 from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
@@ -26,14 +26,13 @@ class Asked(NamedTuple):
     """What shall be told of each instant beside the poses.
 
     Attributes:
-        rates: velocities and accelerations. conditions: condition numbers.
-        doubts: (N, 3, inputs) how far the inputs may be off, or None: no errors.
+        rates: velocities and accelerations. conditions: condition numbers. errors: how far these may be off.
         effects: those whose values are told.
     """
 
     rates: bool
     conditions: bool
-    doubts: Array | None
+    errors: bool
     effects: tuple[Effect, ...]
 
 
@@ -63,7 +62,7 @@ class Record:
         self._acceleration = np.zeros((count if rates else 0, bodies, 2, 3))
         self._iterations = np.zeros(count, dtype=np.int64)
         self._residual = np.zeros(count)
-        self._left = np.zeros((0 if asked.doubts is None else count, 3, mechanism.stack.count))
+        self._left = np.zeros((count if asked.errors else 0, 3, mechanism.stack.count))
         self.written = 0
 
     def store(self, refined: Refined, count: int) -> None:
@@ -120,7 +119,7 @@ class Record:
         iterations.setflags(write=False)
         errors, condition = self._estimates(count)
         effects = self._asked.effects
-        told = effects if self._asked.doubts is not None else ()
+        told = effects if self._asked.errors else ()
         of_car = [turn.first(count) for turn in self._turns]
         lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors, of_car)
         in_order = {name: position[name] for name in model.reported}
@@ -146,46 +145,28 @@ class Record:
 
     def _estimates(self, count: int) -> tuple[Errors, Array | None]:
         """Errors and condition numbers of the first `count` instants; nothing where none were asked for."""
-        doubts, nothing, conditions = (
-            self._asked.doubts,
-            Errors({}, {}, {}, {}, {}, {}),
-            self._asked.conditions,
-        )
-        model = self._mechanism.model
-        if doubts is None:
-            return nothing, self._condition_numbers(count) if conditions else None
+        model, conditions = self._mechanism.model, self._asked.conditions
+        if not self._asked.errors:
+            return Errors({}, {}, {}, {}, {}, {}), self._condition_numbers(count) if conditions else None
         points, bodies = (
             {name: np.empty((count, 3)) for name in names} for names in (model.points, model.moving)
         )
-        whole = Errors(
-            points,
-            *(
-                [
-                    {name: array.copy() for name, array in of.items()}
-                    for of in (points, points, bodies, bodies, bodies)
-                ]
-            ),
-        )
+        kinds = (points, points, points, bodies, bodies, bodies)
+        whole = Errors(*({name: array.copy() for name, array in kind.items()} for kind in kinds))
         numbers = np.empty(count)
-        exact = not doubts.any()
-        for start in range(0, count, STRETCH if exact else BATCH):
-            part = slice(start, min(start + (STRETCH if exact else BATCH), count))
+        for start in range(0, count, STRETCH):
+            part = slice(start, min(start + STRETCH, count))
             origin, series = self._origin[part], self._series[part]
             still = np.zeros((*origin.shape[:2], 2, 3))
             rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)
             motion = BodyMotion(self._rotation[part], origin, *rates)
-            if exact:
-                if not self._rates:
-                    series = series * np.array([1.0, 0.0, 0.0])[:, None]
-                found, numbers[part] = sampled(self._mechanism, motion, series, self._left[part], conditions)
-                told = named(self._mechanism, motion, self._chassis[part], found)
-            else:
-                told = estimate(self._mechanism, motion, series, doubts[part], self._chassis[part])
+            if not self._rates:
+                series = series * np.array([1.0, 0.0, 0.0])[:, None]
+            found, numbers[part] = sampled(self._mechanism, motion, series, self._left[part], conditions)
+            told = named(self._mechanism, motion, self._chassis[part], found)
             for kept, added in zip(whole, told, strict=True):
                 for name, values in added.items():
                     kept[name][part] = values
-        if not exact and conditions:
-            numbers = self._condition_numbers(count)
         if not self._rates:
             whole = Errors(whole.position, {}, {}, whole.rotation, {}, {})
         return whole, numbers if conditions else None

@@ -65,12 +65,12 @@ class Computed(NamedTuple):
 def sampled(
     mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, conditions: bool
 ) -> tuple[Array, Array]:
-    """Totals (3, N, 3 * of these) as of `estimate.totals` for exact inputs, and condition numbers (N,).
+    """Totals (3, N, 3 * of these) as of `estimate.totals`, and condition numbers (N,).
 
     Neither is smaller than computed at each instant, nor larger by more than about MARGIN and BENT.
 
     Args:
-        motion, series: as of `estimate`. left: (N, 3, rows) what is left of the equations as computed.
+        motion, series, left: as of `totals`.
         conditions: False leaves the condition numbers 1.
     """
     count = len(left)
@@ -84,7 +84,7 @@ def sampled(
         for start in range(0, len(places), BATCH):
             these = places[start : start + BATCH]
             part = BodyMotion(*(array[these] for array in motion))
-            total, made = totals(mechanism, part, series[these], np.zeros_like(series[these]), left[these])
+            total, made = totals(mechanism, part, series[these], left[these])
             if not found.size:
                 found = np.empty((3, count, total.shape[-1]))
             found[:, these] = total

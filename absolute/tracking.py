@@ -108,8 +108,7 @@ class Tracking:
 
     def _begin(self) -> None:
         self._values: list[float] = self.mechanism.drawn_inputs.tolist()
-        zeros = [0.0] * len(self._values)
-        self._target = self.mechanism.targets(self._values, zeros, zeros)[0]
+        self._target = self.mechanism.targets(self._values)[0]
         self._here = rough_of(self._drawn)
         self._expansion: Expansion | None = None
         self._before: Expansion | None = None

@@ -86,7 +86,7 @@ def other_branch(strut: absolute.Model, angle: float) -> Rough:
     """A pose of the same bodies at the same inputs on another branch."""
     mechanism = Mechanism(strut)
     pose, _ = assemble(mechanism)
-    target = mechanism.targets([angle, 0.0], [0.0, 0.0], [0.0, 0.0])[0]
+    target = mechanism.targets([angle, 0.0])[0]
     random = np.random.default_rng(0)
     while True:
         q = mechanism.moved(pose.q, pose.poses.rotation, random.normal(size=mechanism.stack.count))

@@ -167,7 +167,7 @@ def blocked() -> object:
 
     def path(share: float) -> Any:
         values = [a + share * c for a, c in zip(begin, change, strict=True)]
-        return mechanism.targets(values, change, [0.0, 0.0])
+        return mechanism.targets(values, change)
 
     return follow(mechanism, assemble(mechanism)[0], path)
 
