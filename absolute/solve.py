@@ -72,7 +72,7 @@ def solve(
     """
     asked = effects_of(effects)
     for effect in asked:
-        model.require(effect.role)
+        model.corner.ends(effect.role)
     rates = rates or any(effect.derivative > 0 for effect in asked)
     series = driven_series(model, inputs)
     count = len(series)

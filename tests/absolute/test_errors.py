@@ -115,6 +115,7 @@ def test_errors_of_another_linkage_are_below_their_estimates(turns: float) -> No
             "bore": ends_of("prismatic", "ground", "slider", axis("pivot", x), axis("piston", x)),
         },
         {"angle": absolute.Input("ground", axis("pivot", x), "crank", "pin", "cosine", 50.0)},
+        absolute.Corner((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)),
     )
     angles = np.linspace(0.3, 2.8, 60)
     series = np.stack([angles, np.full(60, turns), np.zeros(60)], -1)
