@@ -11,10 +11,13 @@ from absolute.mechanism import Mechanism
 from absolute.newton import MOST_CORRECTIONS, held_to, rounding_of
 from absolute.precision import EPS
 from absolute.solution import Array, Counts
-from absolute.tracking import SMALL, Found
+from absolute.tracking import Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 64
+
+# A prediction that needs no larger first correction was right: a hundredth of the distance of branches.
+SMALL = 1e-6
 
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 32 * EPS

@@ -193,8 +193,9 @@ class RowStack:
     def gap(self, placed: Placed, target: Array) -> Array:
         """(..., rows) target less value, of turns to the nearest of all that look alike."""
         gap: Array = target - placed.values
-        turns = gap[..., self.turn_rows]
-        turns -= WHOLE_TURN * np.round(turns / WHOLE_TURN)
+        if self._turned.size:
+            turns = gap[..., self.turn_rows]
+            turns -= WHOLE_TURN * np.round(turns / WHOLE_TURN)
         return gap
 
     def kept(self, placed: Placed) -> NDArray[np.bool_]:
