@@ -8,13 +8,6 @@ Jacobian J is block triangular, and so is its inverse K,
 
 with p all groups before g: small inverses and a few products. A block's determinant changes its sign where
 the assemblies of its group meet, and so tells more than that of J, which is the product of all.
-
-Successive instants are near each other and share the inverse K of a block J: with E = I - K J', |E| < 1,
-
-    (I + E) K,    (I + E^2) (I + E) K,    (I + E^4) (I + E^2) (I + E) K
-
-are off from the inverse of J' by E to the power 2, 4, 8 (Newton, Schulz), and det J' has the sign of det J,
-since no eigenvalue of K J' = I - E is zero on the way from E to nothing.
 """
 
 from typing import NamedTuple
@@ -28,9 +21,6 @@ Places = NDArray[np.intp]
 
 # An inverse that is off by some such share of itself serves to solve and to correct.
 SERVES = 1e-4
-# Successive instants that share an inverse, tried in turn, and how near their blocks must be for that.
-TOGETHER = (32, 4)
-NEIGHBOUR = 0.3
 
 
 class Groups(NamedTuple):
@@ -112,11 +102,9 @@ def signs_of(groups: Groups, jacobian: Array) -> Array:
 
 
 def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
-    """Inverses of Jacobians (N, rows, rows) of successive instants, and signs (N, groups) of the determinants
-    of their blocks.
+    """Inverses of Jacobians (N, rows, rows), and signs (N, groups) of the determinants of their blocks.
 
-    The inverses are in the order of the groups and off by some SERVES of themselves; not numbers, with a sign
-    of 0, where one is singular.
+    The inverses are in the order of the groups; not numbers, with a sign of 0, where one is singular.
     """
     count, size = jacobian.shape[:2]
     # Column by column, as they are made.
@@ -126,40 +114,11 @@ def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
     signs = np.empty((count, len(groups.ends)))
     for number, own in enumerate(groups.blocks):
         before = slice(own.start)
-        found, signs[:, number] = _of_block(flat.take(places[own, own], 1))
+        found, signs[:, number] = directly(flat.take(places[own, own], 1))
         inverse[:, own, own] = found
         if own.start:
             coupling = flat.take(places[own, before], 1)
             inverse[:, own, before] = -found @ (coupling @ inverse[:, before, before])
-    return inverse, signs
-
-
-def _of_block(block: Array) -> tuple[Array, Array]:
-    """Inverses of N blocks and signs of their determinants, shared among neighbours that are near enough."""
-    count, size = block.shape[:2]
-    inverse, signs = np.empty_like(block), np.empty(count)
-    left = np.arange(count)
-    for together in TOGETHER:
-        if left.size < together:
-            continue
-        number = np.arange(left.size) // together
-        middles = np.minimum(np.arange(0, left.size, together) + together // 2, left.size - 1)
-        shared, sign = directly(block[left[middles]])
-        found = shared[number]
-        error = np.eye(size) - found @ block[left]
-        off = magnitude(error)
-        near = off <= NEIGHBOUR
-        if not near.all():
-            found, error = found[near], error[near]
-        these, share = left[near], float(off[near].max(initial=0.0))
-        found += error @ found
-        while share * share > SERVES:
-            error, share = error @ error, share * share
-            found += error @ found
-        inverse[these], signs[these] = found, sign[number[near]]
-        left = left[~near]
-    if left.size:
-        inverse[left], signs[left] = directly(block[left])
     return inverse, signs
 
 
