@@ -77,7 +77,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     """
     stack = mechanism.stack
     q, corrections = found.q, found.corrections.copy()
-    rotation, origin = mechanism.poses_of(q)
+    rotation, origin = mechanism.poses(q)
     placed = stack.place(rotation, origin)
     jacobian = stack.jacobian(placed)
     groups = mechanism.groups
@@ -89,9 +89,9 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     more = np.ones(len(q), dtype=np.bool_)
     for _ in range(MOST_CORRECTIONS):
         steps[~more] = 0.0
-        q = mechanism.moved_all(q, rotation, steps)
+        q = mechanism.moved(q, rotation, steps)
         corrections += more
-        rotation, origin = mechanism.poses_of(q)
+        rotation, origin = mechanism.poses(q)
         placed = stack.place(rotation, origin)
         jacobian = stack.jacobian(placed)
         # Negated, so that what is not a number is stale.

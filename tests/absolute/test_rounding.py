@@ -65,7 +65,7 @@ def test_a_target_is_off_by_no_more_than_its_six_roundings_at_worst() -> None:
 def test_a_row_is_rounded_from_its_arms_its_places_and_its_reach(model: absolute.Model) -> None:
     # In the drawing nothing is turned: arms and directions are those of the rows as described.
     mechanism = Mechanism(model)
-    poses = mechanism.poses_of(mechanism.drawn[None])
+    poses = mechanism.poses(mechanism.drawn[None])
     placed = mechanism.stack.place(*poses)
     target = np.random.default_rng(3).normal(size=(1, mechanism.stack.count))
     doubt = pose_doubt(mechanism, placed, target)
