@@ -61,42 +61,18 @@ class Errors(NamedTuple):
     angular_acceleration: dict[str, Array]
 
 
-class Answers(NamedTuple):
-    """What the doubts of each row do to the moving bodies, [o, turn] and its rates.
-
-    Attributes:
-        every: (4, N, rows, 6 * bodies) of them, four kinds:
-            K, pose to p, velocity to t, acceleration to s;
-            -K H K, velocity to p; the same of acceleration to p; and that of acceleration to t.
-        known, squared: (N, 3, rows) the doubts p, t, s: what is left, and the squares of what is rounded.
-        grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
-    """
-
-    every: Array
-    known: Array
-    squared: Array
-    grown: tuple[Array, Array, Array]
-
-
-class Lengths(NamedTuple):
-    """Numbers of points or bodies, (N, rows, 3 * of these), per doubt of each row: as `Answers.every`."""
-
-    direct: Array
-    speed: Array
-    second: Array
-    bent: Array
-
-
 class Sensitivity(NamedTuple):
     """What the doubts of the rows do at N instants to the turn of each moving body and to its points.
 
     Attributes:
-        lengths: numbers of all of these side by side, in the order of `places_of`.
+        lengths: (4, N, rows, 3 * of these) per doubt of each row, side by side in the order of `places_of`:
+            a quantity to its own equation's doubt, its rate to that of the pose, its second rate to that of
+            the pose and to that of the rates.
         rounded: (3, N, 3 * of these) errors of quantities and their rates by what is rounded.
-        grown: (3, N) see `Answers`.
+        grown: (3, N) what the next orders multiply the errors of pose, velocity and acceleration by.
     """
 
-    lengths: Lengths
+    lengths: Array
     rounded: Array
     grown: Array
 
@@ -109,17 +85,11 @@ def totals(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array)
         motion: poses and rates of the bodies at N solved instants.
         series: inputs (N, 3, inputs). left: (N, 3, rows) what is left of the equations as computed.
     """
-    answers = _answers(mechanism, motion, series, left)
-    every = [
-        _lengths(answers, motion, index, arms)
-        for index, (_, arms) in enumerate(places_of(mechanism, motion.rotation), 1)
-    ]
-    lengths = Lengths(*(np.concatenate(kind, axis=-1) for kind in zip(*every, strict=True)))
-    sensitivity = Sensitivity(
-        lengths, by_row(np.sqrt, answers.squared, Lengths(*(a * a for a in lengths))), np.array(answers.grown)
-    )
-    found = known_part(answers.known, Lengths(*map(np.abs, lengths))) + sensitivity.rounded
-    return further(found, sensitivity.grown), sensitivity
+    answers, rounded, grown = _answers(mechanism, motion, series, np.abs(left))
+    places = enumerate(places_of(mechanism, motion.rotation), 1)
+    lengths = np.concatenate([_lengths(answers, motion, index, arms) for index, (_, arms) in places], axis=-1)
+    made = Sensitivity(lengths, by_row(np.sqrt, rounded * rounded, lengths * lengths), grown)
+    return further(by_row(np.asarray, np.abs(left), np.abs(lengths)) + made.rounded, grown), made
 
 
 def places_of(mechanism: Mechanism, rotation: Array) -> list[tuple[list[str], Array]]:
@@ -162,8 +132,8 @@ def named(mechanism: Mechanism, motion: BodyMotion, chassis: Array, found: Array
     return errors
 
 
-def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> tuple[Array, Array, Array]:
-    """How much larger than to first order errors of pose, velocity and acceleration are, each (N,).
+def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> Array:
+    """How much larger than to first order errors of pose, velocity and acceleration are, (3, N).
 
     Along the largest displacement x that the doubts allow, the equation left is c x + h x^2 = d with the
     first-order answer d / c, and m = h d / c^2 measures how near its fold is: the exact answer is
@@ -184,10 +154,19 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
         # (1 / r - 1) / (2 m) and (1 / r^3 - 1) / (6 m), written without the difference.
         speed = 2.0 / (root * (1.0 + root))
         second = 2.0 * (1.0 + root + root * root) / (3.0 * root**3 * (1.0 + root))
-    return 2.0 / (1.0 + root), speed, second
+    return np.array((2.0 / (1.0 + root), speed, second))
 
 
-def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array) -> Answers:
+def _answers(
+    mechanism: Mechanism, motion: BodyMotion, series: Array, known: Array
+) -> tuple[Array, Array, Array]:
+    """What the doubts p, t, s of each row do to [o, turn] of the moving bodies and its rates.
+
+    Returns:
+        (4, N, rows, 6 * bodies): K, pose to p, velocity to t, acceleration to s; -K H K, velocity to p; the
+        same of acceleration to p; and that of acceleration to t. (N, 3, rows) how far p, t, s are off by
+        rounding. (3, N) as `Sensitivity.grown`.
+    """
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
     targets = mechanism.target_series(series)
@@ -198,7 +177,6 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Arra
     with np.errstate(over="ignore", invalid="ignore"):
         bending = stack.motion(placed, motion.acceleration)
     speeds = motion.velocity[:, 1:].reshape(len(inverse), -1)
-    known: Array = np.abs(left)
     rounded = np.stack(
         (
             pose_doubt(mechanism, placed, targets[0]),
@@ -221,15 +199,11 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Arra
     off = np.einsum("nij,nj->ni", np.abs(inverse), rate)
     fastest = np.abs(speeds).max(axis=1)
     share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
-    return Answers(
-        np.stack((inverse, speed, second, bent)).swapaxes(-1, -2),
-        known,
-        rounded * rounded,
-        (grown[0], grown[1], grown[2] * (1.0 + share)),
-    )
+    grown[2] *= 1.0 + share
+    return np.stack((inverse, speed, second, bent)).swapaxes(-1, -2), rounded, grown
 
 
-def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> Lengths:
+def _lengths(answers: Array, motion: BodyMotion, index: int, arms: Array) -> Array:
     """The turn of a body and its rates, and its points at arms (N, points, 3) from its origin.
 
     p = o + r,  p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r), where r turns by turn x r. Each vector
@@ -243,7 +217,7 @@ def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> L
     bent = moved - wheel(turning)
     moved1 = r @ spin1 + moved @ spin
     first = 6 * (index - 1)
-    origin, turn = answers.every[..., first : first + 3], answers.every[..., first + 3 : first + 6]
+    origin, turn = answers[..., first : first + 3], answers[..., first + 3 : first + 6]
     turned = turn @ side_by_side(r)
     further = turn[0] @ side_by_side(np.concatenate((moved, bent, moved1), axis=1))
     width = turned.shape[-1]
@@ -254,7 +228,7 @@ def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> L
     found = np.empty((*turned.shape[:-1], 3 + width))
     found[..., :3] = turn
     np.add(turned, np.tile(origin, len(arms[0])), out=found[..., 3:])
-    return Lengths(*found)
+    return found
 
 
 def wheel(vectors: Array) -> Array:
@@ -299,15 +273,14 @@ def further(total: Array, grown: Array) -> Array:
     return np.asarray((each + more).reshape(total.shape))
 
 
-def known_part(known: Array, magnitudes: Lengths) -> Array:
-    """(3, N, 3 * of these) for what is left of the equations, (N, 3, rows), by magnitudes of lengths."""
-    return by_row(np.asarray, known, magnitudes)
-
-
-def by_row(each: Callable[[Array], Array], doubts: Array, lengths: Lengths) -> Array:
+def by_row(each: Callable[[Array], Array], doubts: Array, lengths: Array) -> Array:
     """Sums over the rows for doubts p, t, s (N, 3, rows), each sum put through a function before it is
-    added to others, for a quantity and its rates."""
-    direct = each(doubts @ lengths.direct)
-    speed, second = each(doubts[:, :1] @ lengths.speed)[:, 0], each(doubts[:, :1] @ lengths.second)[:, 0]
-    bent = each(doubts[:, 1:2] @ lengths.bent)[:, 0]
-    return np.array((direct[:, 0], speed + direct[:, 1], second + bent + direct[:, 2]))
+    added to others, for a quantity and its rates. Lengths are those of `Sensitivity`, or of one instant for
+    all, (4, rows, 3 * of these).
+    """
+    own, speed, second, bent = lengths
+    p, t = doubts[:, :1], doubts[:, 1:2]
+    direct = each(doubts @ own).swapaxes(0, 1)
+    direct[1] += each(p @ speed)[:, 0]
+    direct[2] += each(p @ second)[:, 0] + each(t @ bent)[:, 0]
+    return direct
