@@ -133,6 +133,9 @@ class _Compiler:
         side = "left" if side is None else side
         _one_of("side", side, SIDES)
         roles = self.of.get("roles", {})
+        for role in ("wheel_axis", "steering_axis"):
+            for end in roles.get(role, ()):
+                _one_of(f"an end of the {role}", end, self.points)
         axes = (tuple(roles[role]) if role in roles else None for role in ("wheel_axis", "steering_axis"))
         return Corner(plain(up), plain(right), plain(SIDES[side] * right), *axes)
 

@@ -53,12 +53,11 @@ def _itineraries(
 
 def _straight(mechanism: Mechanism, begin: Sequence[float], end: Sequence[float]) -> Path:
     change = [b - a for a, b in zip(begin, end, strict=True)]
-    zeros = [0.0] * len(change)
 
     def path(share: float) -> Array:
         # The end is exact, so that an instant does not depend on where it was reached from.
         values = list(end) if share == 1.0 else [a + share * c for a, c in zip(begin, change, strict=True)]
-        return mechanism.targets(values, change, zeros)
+        return mechanism.targets(values, change)
 
     return path
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from absolute.errors import DescriptionError
-from absolute.laws import LAWS
 from absolute.mapping import ReadOnly
 from absolute.solution import Array
 
@@ -91,12 +90,10 @@ class Corner:
     """What of a linkage is the wheel and the steering axis, and which way the car points.
 
     Attributes:
-        up, right, outboard: directions of the car in the frame of the points, given at any length and kept
-            as unit vectors; outboard leads from the car's middle to the wheel: right or minus right.
+        up, right, outboard: directions of the car in the frame of the points, unit vectors; outboard leads
+            from the car's middle to the wheel: right or minus right.
         wheel_axis: the wheel's spin axis, from its inner point to the wheel centre, if there is one.
         steering_axis: the axis about which the wheel is steered, from its lower to its upper point, likewise.
-    Raises:
-        DescriptionError: a direction is no three finite numbers, or zero.
     """
 
     up: Vector
@@ -104,11 +101,6 @@ class Corner:
     outboard: Vector
     wheel_axis: tuple[str, str] | None = None
     steering_axis: tuple[str, str] | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("up", "right", "outboard"):
-            direction = unit_of(name, vector_of(name, name, getattr(self, name)))
-            object.__setattr__(self, name, plain(direction))
 
     @property
     def down(self) -> Vector:
@@ -148,7 +140,7 @@ class Corner:
 
 @dataclass(frozen=True)
 class Model:
-    """A linkage, checked on construction.
+    """A linkage, as `compile` makes it of names that it has checked.
 
     Attributes:
         points: name -> (x, y, z) of the drawing, mm.
@@ -156,14 +148,13 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        corner: what of it is the wheel, where effects are asked for; none by default.
+        corner: what of it is the wheel.
         aids: bodies, and points, that are there for the equations only and are not reported.
         turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
             car, one after the other; these directions do not turn.
     Raises:
-        DescriptionError: a name is unknown, a number is not finite, a coordinate is beyond
-            LARGEST_COORDINATE, an axis has no length, or joints and inputs give fewer than six rows per
-            moving body.
+        DescriptionError: no body moves, a body has no point or a point no body, or joints and inputs give
+            fewer than six rows per moving body.
     """
 
     points: Mapping[str, Vector]
@@ -171,41 +162,17 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    corner: Corner | None = None
+    corner: Corner
     aids: frozenset[str] = frozenset()
     turns: Mapping[str, Axis] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        points = {name: point_of(name, value) for name, value in self.points.items()}
-        object.__setattr__(self, "points", ReadOnly(points))
-        object.__setattr__(self, "bodies", ReadOnly({k: tuple(v) for k, v in self.bodies.items()}))
-        object.__setattr__(self, "joints", ReadOnly(self.joints))
-        object.__setattr__(self, "turns", ReadOnly(self.turns))
         # Turns last: rows of lengths and rows of angles stay apart.
-        driven = sorted(self.inputs.items(), key=lambda drive: drive[1].law == "turn")
-        object.__setattr__(self, "inputs", ReadOnly(dict(driven)))
+        driven = dict(sorted(self.inputs.items(), key=lambda drive: drive[1].law == "turn"))
+        object.__setattr__(self, "inputs", driven)
+        for name in ("points", "bodies", "joints", "inputs", "turns"):
+            object.__setattr__(self, name, ReadOnly(getattr(self, name)))
         _check_bodies(self)
-        for name, joint in self.joints.items():
-            _check_choice(f"kind of joint {name!r}", name, joint.kind, JOINT_ROWS)
-            _check_pair(self, f"joint {name!r}", name, joint.first, joint.second)
-            for body, axis in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
-                _check_axis(self, f"joint {name!r}", name, body, axis, joint.kind not in WITHOUT_LINE)
-        for name, drive in self.inputs.items():
-            _check_choice(f"law of input {name!r}", name, drive.law, LAWS)
-            _check_pair(self, f"input {name!r}", name, drive.first, drive.second)
-            _check_axis(self, f"input {name!r}", name, drive.first, drive.axis, drive.law != "distance")
-            _check_axis(self, f"input {name!r}", name, drive.second, Axis(drive.point), False)
-            if not np.isfinite(drive.factor) or drive.factor == 0:
-                raise DescriptionError(
-                    f"factor of input {name!r} is {drive.factor!r}; it must be finite and not zero",
-                    name,
-                    drive.factor,
-                )
-        for name, axis in self.turns.items():
-            _check_choice(f"the point of turn {name!r}", name, axis.through, self.points)
-            _check_direction(f"turn {name!r}", name, axis.toward)
-        if self.corner is not None:
-            _check_corner(self, self.corner)
         self._check_count()
 
     @property
@@ -222,20 +189,6 @@ class Model:
     def reported(self) -> tuple[str, ...]:
         """Names of the points that are not aids."""
         return tuple(name for name in self.points if name not in self.aids)
-
-    def require(self, role: str) -> None:
-        """Refuse to go on without a role of the corner.
-
-        Raises:
-            DescriptionError: there is none.
-        """
-        if self.corner is None:
-            raise DescriptionError(
-                "the linkage does not say which of its parts is the wheel, so it has no effects: give a "
-                "`corner`, or ask for no effects",
-                "corner",
-            )
-        self.corner.ends(role)
 
     def _check_count(self) -> None:
         rows = sum(JOINT_ROWS[joint.kind] for joint in self.joints.values()) + len(self.inputs)
@@ -291,57 +244,14 @@ def point_of(name: str, value: object) -> Vector:
     return point
 
 
-def _check_choice(what: str, name: str, value: str, allowed: Mapping[str, object]) -> None:
-    if value not in allowed:
-        raise DescriptionError(f"{what} is {value!r}; it must be one of {sorted(allowed)}", name, value)
-
-
 def _check_bodies(model: Model) -> None:
-    _check_choice("chassis", "chassis", model.chassis, model.bodies)
     if not model.moving:
         raise DescriptionError("there is no moving body; give at least one beside the chassis", "bodies")
     placed: set[str] = set()
     for body, names in model.bodies.items():
         if not names:
             raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
-        for name in names:
-            _check_choice(f"a point of body {body!r}", body, name, model.points)
         placed.update(names)
     loose = sorted(set(model.points) - placed)
     if loose:
         raise DescriptionError(f"points {loose} belong to no body; add them to one or drop them", loose[0])
-
-
-def _check_pair(model: Model, what: str, name: str, first: str, second: str) -> None:
-    for body in (first, second):
-        _check_choice(f"a body of {what}", name, body, model.bodies)
-    if first == second:
-        raise DescriptionError(f"{what} joins body {first!r} to itself; name two bodies", name, first)
-
-
-def _check_axis(model: Model, what: str, name: str, body: str, axis: Axis, needs_line: bool) -> None:
-    if axis.through not in model.bodies[body]:
-        raise DescriptionError(
-            f"{what} uses point {axis.through!r}, which body {body!r} does not hold; "
-            f"its points are {list(model.bodies[body])}",
-            name,
-            axis.through,
-        )
-    if isinstance(axis.toward, str):
-        _check_choice(f"a point of {what}", name, axis.toward, model.points)
-    if needs_line and axis.toward is None:
-        raise DescriptionError(f"{what} needs a direction at {axis.through!r}: give `toward`", name)
-    if axis.toward is not None and not isinstance(axis.toward, str):
-        _check_direction(what, name, axis.toward)
-
-
-def _check_corner(model: Model, corner: Corner) -> None:
-    for what in ("wheel_axis", "steering_axis"):
-        for end in getattr(corner, what) or ():
-            _check_choice(f"an end of the {what}", what, end, model.points)
-
-
-def _check_direction(what: str, name: str, value: object) -> None:
-    direction = vector_of(f"a direction of {what}", name, value)
-    if not any(direction):
-        raise DescriptionError(f"a direction of {what} is {direction}; it must not be zero", name, direction)

@@ -15,7 +15,7 @@ import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt, spread
+from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt, spread
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose
 from absolute.solution import Array
 from absolute.stack import Placed
@@ -61,93 +61,35 @@ class Errors(NamedTuple):
     angular_acceleration: dict[str, Array]
 
 
-class Answers(NamedTuple):
-    """What the doubts of each row do to the moving bodies, [o, turn] and its rates.
-
-    Attributes:
-        every: (4, N, rows, 6 * bodies) of them, four kinds:
-            K, pose to p, velocity to t, acceleration to s;
-            -K H K, velocity to p; the same of acceleration to p; and that of acceleration to t.
-        known, squared: (N, 3, rows) the doubts p, t, s: what is left, and the squares of what is rounded.
-        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs;
-            None where inputs are exact.
-        grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
-    """
-
-    every: Array
-    known: Array
-    squared: Array
-    slopes: Array
-    inputs: Array | None
-    grown: tuple[Array, Array, Array]
-
-
-class Lengths(NamedTuple):
-    """Numbers of points or bodies, (N, rows, 3 * of these), per doubt of each row: as `Answers.every`."""
-
-    direct: Array
-    speed: Array
-    second: Array
-    bent: Array
-
-
 class Sensitivity(NamedTuple):
     """What the doubts of the rows do at N instants to the turn of each moving body and to its points.
 
     Attributes:
-        lengths: numbers of all of these side by side, in the order of `places_of`.
+        lengths: (4, N, rows, 3 * of these) per doubt of each row, side by side in the order of `places_of`:
+            a quantity to its own equation's doubt, its rate to that of the pose, its second rate to that of
+            the pose and to that of the rates.
         rounded: (3, N, 3 * of these) errors of quantities and their rates by what is rounded.
-        grown: (3, N) see `Answers`.
+        grown: (3, N) what the next orders multiply the errors of pose, velocity and acceleration by.
     """
 
-    lengths: Lengths
+    lengths: Array
     rounded: Array
     grown: Array
 
 
-def estimate(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, chassis: Array
-) -> Errors:
-    """Errors of points and bodies at N solved instants.
-
-    Args:
-        motion: poses and rates of the bodies.
-        series: inputs (N, 3, inputs). doubts: how far each number of them may be off.
-        chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
-    """
-    return named(mechanism, motion, chassis, totals(mechanism, motion, series, doubts)[0])
-
-
-def totals(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None = None
-) -> tuple[Array, Sensitivity]:
+def totals(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array) -> tuple[Array, Sensitivity]:
     """(3, N, 3 * of these) errors of all turns and points, without what sums of these round, in units of
     size, and what they are made of.
 
     Args:
-        mechanism, motion, series, doubts: as of `estimate`.
-        left: (N, 3, rows) what is left of the equations as computed, where that is known.
+        motion: poses and rates of the bodies at N solved instants.
+        series: inputs (N, 3, inputs). left: (N, 3, rows) what is left of the equations as computed.
     """
-    answers = _answers(mechanism, motion, series, doubts, left)
-    every = [
-        _lengths(answers, motion, index, arms)
-        for index, (_, arms) in enumerate(places_of(mechanism, motion.rotation), 1)
-    ]
-    lengths = Lengths(*(np.concatenate(kind, axis=-1) for kind in zip(*every, strict=True)))
-    sensitivity = Sensitivity(
-        lengths, by_row(np.sqrt, answers.squared, Lengths(*(a * a for a in lengths))), np.array(answers.grown)
-    )
-    found = known_part(answers.known, Lengths(*map(np.abs, lengths))) + sensitivity.rounded
-    if answers.inputs is not None:
-        # An input's row answers to all three equations at once where its value is off.
-        driven = slice(lengths.direct.shape[1] - answers.inputs.shape[-1], None)
-        d, v, a, b = (answer[:, driven] for answer in lengths)
-        for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
-            to_pose, to_rate, to_rest = slopes[..., None]
-            changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
-            for total, change in zip(found, changes, strict=True):
-                total += np.einsum("nic,ni->nc", np.abs(change), off)
-    return further(found, sensitivity.grown), sensitivity
+    answers, rounded, grown = _answers(mechanism, motion, series, np.abs(left))
+    places = enumerate(places_of(mechanism, motion.rotation), 1)
+    lengths = np.concatenate([_lengths(answers, motion, index, arms) for index, (_, arms) in places], axis=-1)
+    made = Sensitivity(lengths, by_row(np.sqrt, rounded * rounded, lengths * lengths), grown)
+    return further(by_row(np.asarray, np.abs(left), np.abs(lengths)) + made.rounded, grown), made
 
 
 def places_of(mechanism: Mechanism, rotation: Array) -> list[tuple[list[str], Array]]:
@@ -190,8 +132,8 @@ def named(mechanism: Mechanism, motion: BodyMotion, chassis: Array, found: Array
     return errors
 
 
-def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> tuple[Array, Array, Array]:
-    """How much larger than to first order errors of pose, velocity and acceleration are, each (N,).
+def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> Array:
+    """How much larger than to first order errors of pose, velocity and acceleration are, (3, N).
 
     Along the largest displacement x that the doubts allow, the equation left is c x + h x^2 = d with the
     first-order answer d / c, and m = h d / c^2 measures how near its fold is: the exact answer is
@@ -212,12 +154,19 @@ def fold(mechanism: Mechanism, placed: Placed, inverse: Array, doubt: Array) -> 
         # (1 / r - 1) / (2 m) and (1 / r^3 - 1) / (6 m), written without the difference.
         speed = 2.0 / (root * (1.0 + root))
         second = 2.0 * (1.0 + root + root * root) / (3.0 * root**3 * (1.0 + root))
-    return 2.0 / (1.0 + root), speed, second
+    return np.array((2.0 / (1.0 + root), speed, second))
 
 
 def _answers(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array | None
-) -> Answers:
+    mechanism: Mechanism, motion: BodyMotion, series: Array, known: Array
+) -> tuple[Array, Array, Array]:
+    """What the doubts p, t, s of each row do to [o, turn] of the moving bodies and its rates.
+
+    Returns:
+        (4, N, rows, 6 * bodies): K, pose to p, velocity to t, acceleration to s; -K H K, velocity to p; the
+        same of acceleration to p; and that of acceleration to t. (N, 3, rows) how far p, t, s are off by
+        rounding. (3, N) as `Sensitivity.grown`.
+    """
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
     targets = mechanism.target_series(series)
@@ -227,21 +176,16 @@ def _answers(
     # Of the accelerations only the first rates count: their squares may be beyond any number.
     with np.errstate(over="ignore", invalid="ignore"):
         bending = stack.motion(placed, motion.acceleration)
-    speeds, seconds = (
-        rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
+    speeds = motion.velocity[:, 1:].reshape(len(inverse), -1)
+    rounded = np.stack(
+        (
+            pose_doubt(mechanism, placed, targets[0]),
+            rate_doubt(moving, targets[1]),
+            second_doubt(moving, bending, targets[2]),
+        ),
+        axis=1,
     )
-    drift = stack.drift(placed, motion.velocity)
-    three = [
-        pose_doubt(mechanism, placed, targets[0]),
-        rate_doubt(moving, jacobian, speeds, targets[1]),
-        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
-    ]
-    if left is not None:
-        three = [Doubt(np.abs(left[:, order]), doubt.rounded) for order, doubt in enumerate(three)]
-    pose, rate, _ = three
-    slopes = mechanism.target_slopes(series)
-    everything = pose.known + pose.rounded
-    everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
+    pose, rate, _ = (known + rounded).swapaxes(0, 1)
     by_velocity = drift_by_velocity(stack, moving)
     changes = (rate_by_pose(stack, moving), rate_by_pose(stack, bending) + drift_by_pose(stack, moving))
     count = stack.count
@@ -250,23 +194,16 @@ def _answers(
     speed = -inverse @ turned[:, :count]
     turned[:, count : 2 * count] += by_velocity @ speed
     second, bent = -inverse @ turned[:, count : 2 * count], -inverse @ turned[:, 2 * count :]
-    grown = fold(mechanism, placed, inverse, everything)
+    grown = fold(mechanism, placed, inverse, pose)
     # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
-    off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
+    off = np.einsum("nij,nj->ni", np.abs(inverse), rate)
     fastest = np.abs(speeds).max(axis=1)
     share = np.divide(off.max(axis=1), fastest, out=np.zeros_like(fastest), where=fastest > 0)
-    rounded = np.stack([doubt.rounded for doubt in three], axis=1)
-    return Answers(
-        np.stack((inverse, speed, second, bent)).swapaxes(-1, -2),
-        np.stack([doubt.known for doubt in three], axis=1),
-        rounded * rounded,
-        slopes,
-        doubts if doubts.any() else None,
-        (grown[0], grown[1], grown[2] * (1.0 + share)),
-    )
+    grown[2] *= 1.0 + share
+    return np.stack((inverse, speed, second, bent)).swapaxes(-1, -2), rounded, grown
 
 
-def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> Lengths:
+def _lengths(answers: Array, motion: BodyMotion, index: int, arms: Array) -> Array:
     """The turn of a body and its rates, and its points at arms (N, points, 3) from its origin.
 
     p = o + r,  p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r), where r turns by turn x r. Each vector
@@ -280,7 +217,7 @@ def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> L
     bent = moved - wheel(turning)
     moved1 = r @ spin1 + moved @ spin
     first = 6 * (index - 1)
-    origin, turn = answers.every[..., first : first + 3], answers.every[..., first + 3 : first + 6]
+    origin, turn = answers[..., first : first + 3], answers[..., first + 3 : first + 6]
     turned = turn @ side_by_side(r)
     further = turn[0] @ side_by_side(np.concatenate((moved, bent, moved1), axis=1))
     width = turned.shape[-1]
@@ -291,7 +228,7 @@ def _lengths(answers: Answers, motion: BodyMotion, index: int, arms: Array) -> L
     found = np.empty((*turned.shape[:-1], 3 + width))
     found[..., :3] = turn
     np.add(turned, np.tile(origin, len(arms[0])), out=found[..., 3:])
-    return Lengths(*found)
+    return found
 
 
 def wheel(vectors: Array) -> Array:
@@ -336,15 +273,14 @@ def further(total: Array, grown: Array) -> Array:
     return np.asarray((each + more).reshape(total.shape))
 
 
-def known_part(known: Array, magnitudes: Lengths) -> Array:
-    """(3, N, 3 * of these) for what is left of the equations, (N, 3, rows), by magnitudes of lengths."""
-    return by_row(np.asarray, known, magnitudes)
-
-
-def by_row(each: Callable[[Array], Array], doubts: Array, lengths: Lengths) -> Array:
+def by_row(each: Callable[[Array], Array], doubts: Array, lengths: Array) -> Array:
     """Sums over the rows for doubts p, t, s (N, 3, rows), each sum put through a function before it is
-    added to others, for a quantity and its rates."""
-    direct = each(doubts @ lengths.direct)
-    speed, second = each(doubts[:, :1] @ lengths.speed)[:, 0], each(doubts[:, :1] @ lengths.second)[:, 0]
-    bent = each(doubts[:, 1:2] @ lengths.bent)[:, 0]
-    return np.array((direct[:, 0], speed + direct[:, 1], second + bent + direct[:, 2]))
+    added to others, for a quantity and its rates. Lengths are those of `Sensitivity`, or of one instant for
+    all, (4, rows, 3 * of these).
+    """
+    own, speed, second, bent = lengths
+    p, t = doubts[:, :1], doubts[:, 1:2]
+    direct = each(doubts @ own).swapaxes(0, 1)
+    direct[1] += each(p @ speed)[:, 0]
+    direct[2] += each(p @ second)[:, 0] + each(t @ bent)[:, 0]
+    return direct

@@ -8,21 +8,12 @@ Jacobian J is block triangular, and so is its inverse K,
 
 with p all groups before g: small inverses and a few products. A block's determinant changes its sign where
 the assemblies of its group meet, and so tells more than that of J, which is the product of all.
-
-Successive instants are near each other and share the inverse K of a block J: with E = I - K J', |E| < 1,
-
-    (I + E) K,    (I + E^2) (I + E) K,    (I + E^4) (I + E^2) (I + E) K
-
-are off from the inverse of J' by E to the power 2, 4, 8 (Newton, Schulz), and det J' has the sign of det J,
-since no eigenvalue of K J' = I - E is zero on the way from E to nothing.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from absolute.solution import Array
 
@@ -30,9 +21,6 @@ Places = NDArray[np.intp]
 
 # An inverse that is off by some such share of itself serves to solve and to correct.
 SERVES = 1e-4
-# Successive instants that share an inverse, tried in turn, and how near their blocks must be for that.
-TOGETHER = (32, 4)
-NEIGHBOUR = 0.3
 
 
 class Groups(NamedTuple):
@@ -58,39 +46,52 @@ class Groups(NamedTuple):
 def groups_of(first: Places, second: Places, bodies: int) -> Groups:
     """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
 
-    Rows are matched with freedoms of their bodies. A body then waits for all others in its own rows, and
+    Six rows are matched with each body. A body then waits for all others in its own rows, and
     bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched,
     all are one group: some body can still move.
 
     Args:
         first, second: the two bodies of each row.
     """
+    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
+    own: list[list[int]] = [[] for _ in range(bodies)]
+
+    def matched(row: int, tried: set[int]) -> bool:
+        """Whether a body of the row has a place for it, or one of its rows can go to another body."""
+        for body in pairs[row]:
+            if body and body not in tried:
+                tried.add(body)
+                if len(own[body]) < 6:
+                    own[body].append(row)
+                    return True
+                for place, other in enumerate(own[body]):
+                    if matched(other, tried):
+                        own[body][place] = row
+                        return True
+        return False
+
     freedoms = 6 * (bodies - 1)
-    pairs = np.array([first, second]).T
-    touched = np.zeros((len(pairs), bodies), dtype=np.bool_)
-    touched[np.arange(len(pairs))[:, None], pairs] = True
-    pattern = csr_array(np.repeat(touched[:, 1:], 6, axis=1))
-    of_row = maximum_bipartite_matching(pattern, perm_type="column") // 6
-    if len(pairs) != freedoms or (of_row < 0).any():
+    if len(pairs) != freedoms or not all(matched(row, set()) for row in range(len(pairs))):
         whole = np.arange(freedoms)
         return Groups(np.arange(len(pairs)), whole, whole, (freedoms,))
-    waits = np.zeros((bodies - 1, bodies - 1), dtype=np.bool_)
-    for row, body in enumerate(of_row):
-        waits[body] |= touched[row, 1:]
-    count, label = connected_components(csr_array(waits), connection="strong")
-    ahead = [set(label[waits[label == group].any(axis=0)].tolist()) - {group} for group in range(count)]
-    rows, columns, ends, done = list[int](), list[int](), list[int](), set[int]()
-    while len(done) < count:
-        group = min(
-            (group for group in range(count) if group not in done and ahead[group] <= done),
-            key=lambda group: int(np.argmax(label == group)),
-        )
-        done.add(group)
-        rows += np.flatnonzero(label[of_row] == group).tolist()
-        columns += np.flatnonzero(np.repeat(label == group, 6)).tolist()
-        ends.append(len(columns))
-    orders = np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp)
-    return Groups(*orders, np.argsort(orders[1]), tuple(ends))
+    waits = np.eye(bodies, dtype=np.bool_)
+    for body, rows in enumerate(own):
+        waits[body, [each for row in rows for each in pairs[row]]] = True
+    waits[:, 0] = False
+    for _ in range(bodies.bit_length()):  # also for those that these wait for
+        waits = waits @ waits
+    group = (waits & waits.T).argmax(axis=1)
+    # Who waits for another waits for more bodies than that one.
+    order = sorted(range(1, bodies), key=lambda body: (waits[body].sum(), group[body]))
+    ends = [
+        6 * place
+        for place in range(1, bodies)
+        if place == bodies - 1 or group[order[place]] != group[order[place - 1]]
+    ]
+    columns = np.add.outer(6 * (np.array(order) - 1), np.arange(6)).ravel()
+    return Groups(
+        np.array([row for body in order for row in own[body]]), columns, np.argsort(columns), tuple(ends)
+    )
 
 
 def signs_of(groups: Groups, jacobian: Array) -> Array:
@@ -101,11 +102,9 @@ def signs_of(groups: Groups, jacobian: Array) -> Array:
 
 
 def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
-    """Inverses of Jacobians (N, rows, rows) of successive instants, and signs (N, groups) of the determinants
-    of their blocks.
+    """Inverses of Jacobians (N, rows, rows), and signs (N, groups) of the determinants of their blocks.
 
-    The inverses are in the order of the groups and off by some SERVES of themselves; not numbers, with a sign
-    of 0, where one is singular.
+    The inverses are in the order of the groups; not numbers, with a sign of 0, where one is singular.
     """
     count, size = jacobian.shape[:2]
     # Column by column, as they are made.
@@ -115,40 +114,11 @@ def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
     signs = np.empty((count, len(groups.ends)))
     for number, own in enumerate(groups.blocks):
         before = slice(own.start)
-        found, signs[:, number] = _of_block(flat.take(places[own, own], 1))
+        found, signs[:, number] = directly(flat.take(places[own, own], 1))
         inverse[:, own, own] = found
         if own.start:
             coupling = flat.take(places[own, before], 1)
             inverse[:, own, before] = -found @ (coupling @ inverse[:, before, before])
-    return inverse, signs
-
-
-def _of_block(block: Array) -> tuple[Array, Array]:
-    """Inverses of N blocks and signs of their determinants, shared among neighbours that are near enough."""
-    count, size = block.shape[:2]
-    inverse, signs = np.empty_like(block), np.empty(count)
-    left = np.arange(count)
-    for together in TOGETHER:
-        if left.size < together:
-            continue
-        number = np.arange(left.size) // together
-        middles = np.minimum(np.arange(0, left.size, together) + together // 2, left.size - 1)
-        shared, sign = directly(block[left[middles]])
-        found = shared[number]
-        error = np.eye(size) - found @ block[left]
-        off = magnitude(error)
-        near = off <= NEIGHBOUR
-        if not near.all():
-            found, error = found[near], error[near]
-        these, share = left[near], float(off[near].max(initial=0.0))
-        found += error @ found
-        while share * share > SERVES:
-            error, share = error @ error, share * share
-            found += error @ found
-        inverse[these], signs[these] = found, sign[number[near]]
-        left = left[~near]
-    if left.size:
-        inverse[left], signs[left] = directly(block[left])
     return inverse, signs
 
 

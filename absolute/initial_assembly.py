@@ -30,10 +30,7 @@ def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     drawn = _drawn_pose(mechanism)
-    inputs = mechanism.drawn_inputs.tolist()
-    zeros = [0.0] * len(inputs)
-    target = mechanism.targets(inputs, zeros, zeros)[0]
-    gap = mechanism.stack.gap(drawn.placed, target)
+    gap = mechanism.stack.gap(drawn.placed, mechanism.targets(mechanism.drawn_inputs.tolist())[0])
 
     def closing(share: float) -> Array:
         return np.array([drawn.placed.values + share * gap, gap, np.zeros_like(gap)])

@@ -31,35 +31,6 @@ def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
     return np.stack(columns, axis=-1) if columns else np.zeros((0, 3, 0))
 
 
-def doubt_series(names: Sequence[str], doubts: Mapping[str, Array], count: int) -> Array:
-    """(N, 3, inputs): how far values, rates and accelerations may be off; zeros where not given.
-
-    Raises:
-        InputError: an input is unknown, of another length, or its numbers are negative or not finite.
-    """
-    unknown = sorted(set(doubts) - set(names))
-    if unknown:
-        raise InputError(f"input_errors may name {sorted(names)}; unknown: {unknown}", unknown[0])
-    series = np.zeros((count, 3, len(names)))
-    content = "how far value, rate and acceleration may be off at each instant"
-    for place, name in enumerate(names):
-        if name not in doubts:
-            continue
-        column = checked(name, doubts[name], (3,), content, count)
-        negative = np.flatnonzero((column < 0).any(axis=1))
-        if negative.size:
-            instant = int(negative[0])
-            found = column[instant].tolist()
-            raise InputError(
-                f"input_errors of {name!r} are {found} at instant {instant}; give magnitudes",
-                name,
-                instant,
-                found,
-            )
-        series[:, :, place] = column
-    return series
-
-
 def turn_series(names: Sequence[str], inputs: Mapping[str, Array], count: int) -> dict[str, Array]:
     """name -> (N, 3): angle, rate and acceleration of those turns of the chassis that are told.
 

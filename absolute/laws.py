@@ -10,12 +10,10 @@ class Law(NamedTuple):
 
     Attributes:
         expand: value -> (f, df/dvalue, d2f/dvalue2).
-        third: value -> d3f/dvalue3.
         invert: coordinate / factor -> value, for the drawing's own input.
     """
 
     expand: Callable[[float], tuple[float, float, float]]
-    third: Callable[[float], float]
     invert: Callable[[float], float]
 
 
@@ -24,7 +22,7 @@ def _cosine(angle: float) -> tuple[float, float, float]:
     return cosine, -math.sin(angle), -cosine
 
 
-_LINEAR = Law(lambda value: (value, 1.0, 0.0), lambda value: 0.0, lambda ratio: ratio)
+_LINEAR = Law(lambda value: (value, 1.0, 0.0), lambda ratio: ratio)
 
 LAWS = {
     # coordinate = factor * value, value in mm, or in rad for a turn
@@ -32,5 +30,5 @@ LAWS = {
     "distance": _LINEAR,
     "turn": _LINEAR,
     # coordinate = factor * cos(value), value in rad, factor in mm
-    "cosine": Law(_cosine, math.sin, lambda ratio: math.acos(max(-1.0, min(1.0, ratio)))),
+    "cosine": Law(_cosine, lambda ratio: math.acos(max(-1.0, min(1.0, ratio)))),
 }

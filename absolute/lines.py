@@ -37,10 +37,7 @@ class SolvedLines:
     @property
     def corner(self) -> Corner:
         """What of the linkage is the wheel, and which way the car points."""
-        corner = self.mechanism.model.corner
-        if corner is None:
-            raise AttributeError("corner")
-        return corner
+        return self.mechanism.model.corner
 
     def line(self, ends: tuple[str, str]) -> Array:
         """(N, 3) from one point to another."""

@@ -21,7 +21,7 @@ LARGEST_DEPENDENT = 0.1
 
 
 class Poses(NamedTuple):
-    """Poses of all bodies, the chassis first: rotation (bodies, 3, 3), origin (bodies, 3)."""
+    """Poses of all bodies, the chassis first: rotation (..., bodies, 3, 3), origin (..., bodies, 3)."""
 
     rotation: Array
     origin: Array
@@ -66,16 +66,11 @@ class Mechanism:
         self.pin_data = self.pin_model.createData()
         self.drawn = pin.neutral(self.pin_model)
         self.drawn.reshape(-1, 7)[:, :3] = drawing.origins[1:]
-        # Pinocchio keeps the placements one after the other, the universe first: two views reach
-        # them all, and `poses` copies these out.
-        placements = self.pin_data.oMi
-        rotation, origin = placements[0].rotation, placements[0].translation
-        apart = address(placements[1].rotation) - address(rotation)
-        count = len(drawing.bodies)
-        self._rotations = as_strided(rotation, (count, 3, 3), (apart, *rotation.strides))
-        self._origins = as_strided(origin, (count, 3), (apart, *origin.strides))
-        # A rotation and the translation after it, column by column.
-        self._placements = as_strided(rotation, (count, 12), (apart, rotation.itemsize))
+        # Pinocchio keeps the placements one after the other, the universe first, each a rotation and the
+        # translation after it, column by column: a view reaches them all, and `poses` copies it out.
+        first, second = (placement.rotation for placement in list(self.pin_data.oMi)[:2])
+        apart = address(second) - address(first)
+        self._placements = as_strided(first, (bodies, 12), (apart, first.itemsize))
         # Turns are no lengths.
         self._laws = [
             (LAWS[drive.law].expand, drive.factor / (1.0 if drive.law == "turn" else drawing.size))
@@ -99,32 +94,24 @@ class Mechanism:
         return signs_of(self.groups, jacobian)
 
     def poses(self, q: Array) -> Poses:
-        """Poses of all bodies at a configuration."""
-        pin.forwardKinematics(self.pin_model, self.pin_data, q)
-        return Poses(self._rotations.copy(), self._origins.copy())
-
-    def poses_of(self, q: Array) -> Poses:
-        """Poses at N configurations (N, 7 * moving bodies): (N, bodies, 3, 3) and (N, bodies, 3)."""
-        held = np.empty((len(q), *self._placements.shape))
+        """Poses of all bodies at configurations (..., 7 * moving bodies)."""
+        held = np.empty((*q.shape[:-1], *self._placements.shape))
         model, data, placements = self.pin_model, self.pin_data, self._placements
-        for each, found in zip(q, held, strict=True):
-            pin.forwardKinematics(model, data, each)
+        each = zip(q.reshape(-1, model.nq), held.reshape(-1, *placements.shape), strict=True)
+        for one, found in each:
+            pin.forwardKinematics(model, data, one)
             found[...] = placements
-        # Pinocchio keeps the columns of a rotation one after the other.
         rotation = held[..., :9].reshape(*held.shape[:-1], 3, 3).swapaxes(-1, -2)
         return Poses(rotation.copy(), held[..., 9:].copy())
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
-        """Configuration after a step [o', w] per body in world axes; Pinocchio takes body axes."""
-        local = step.reshape(-1, 2, 3) @ rotation[1:]
-        return self.normalized(pin.integrate(self.pin_model, q, local.ravel()))
-
-    def moved_all(self, q: Array, rotation: Array, steps: Array) -> Array:
-        """N configurations after a step each: (N, 7 * moving bodies), (N, bodies, 3, 3), (N, rows)."""
-        local = (steps.reshape(len(steps), -1, 2, 3) @ rotation[:, 1:]).reshape(len(steps), -1)
-        moved = np.empty_like(q)
-        for number, (each, step) in enumerate(zip(q, local, strict=True)):
-            moved[number] = pin.normalize(self.pin_model, pin.integrate(self.pin_model, each, step))
+        """Configurations (..., 7 * moving bodies) after steps [o', w] per body in world axes (..., rows), of
+        bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
+        local = step.reshape(*step.shape[:-1], -1, 2, 3) @ rotation[..., 1:, :, :]
+        moved, model = np.empty_like(q), self.pin_model
+        each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
+        for one, way, there in zip(*each, strict=True):
+            there[...] = pin.normalize(model, pin.integrate(model, one, way))
         return moved
 
     def normalized(self, q: Array) -> Array:
@@ -139,16 +126,12 @@ class Mechanism:
             named.setdefault(drive.value or name, value)
         return named
 
-    def targets(self, values: list[float], rates: list[float], seconds: list[float]) -> Array:
-        """(3, rows): what the rows shall equal, and its first and second rate, for inputs and their rates."""
-        driven = []
-        for (law, factor), value, speed, second in zip(self._laws, values, rates, seconds, strict=True):
-            f, f1, f2 = law(value)
-            driven.append((factor * f, factor * f1 * speed, factor * (f2 * speed * speed + f1 * second)))
-        targets = np.zeros((3, self.stack.count))
-        targets[0] = self.stack.drawn
-        targets[:, self.joint_rows :] = np.array(driven).T
-        return targets
+    def targets(self, values: Sequence[float], rates: Sequence[float] | None = None) -> Array:
+        """(3, rows): what the rows shall equal, and its first and second rate, for inputs at steady rates."""
+        series = np.zeros((1, 3, len(self._laws)))
+        series[0, 0] = values
+        series[0, 1] = 0.0 if rates is None else rates
+        return np.asarray(self.target_series(series)[:, 0])
 
     def target_series(self, series: Array) -> Array:
         """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
@@ -161,23 +144,6 @@ class Mechanism:
             f, f1, f2 = factor * np.array([law(value) for value in column[0].tolist()]).reshape(-1, 3).T
             targets[:, :, row] = f, f1 * speed, f2 * speed * speed + f1 * second
         return targets
-
-    def target_slopes(self, series: Array) -> Array:
-        """(3, 3, N, inputs): how the targets of the inputs' rows, and their first and second rates, change
-        with value, rate and acceleration of the input, (N, 3, inputs): slopes[of the input, of the target].
-        """
-        slopes = np.zeros((3, 3, len(series), series.shape[-1]))
-        for place, (drive, (law, factor), column) in enumerate(
-            zip(self.model.inputs.values(), self._laws, series.transpose(2, 1, 0), strict=True)
-        ):
-            third = LAWS[drive.law].third
-            terms = [(*law(value)[1:], third(value)) for value in column[0].tolist()]
-            f1, f2, f3 = factor * np.array(terms).reshape(-1, 3).T
-            _, speed, second = column
-            slopes[0, :, :, place] = f1, f2 * speed, f3 * speed * speed + f2 * second
-            slopes[1, 1:, :, place] = f1, 2.0 * f2 * speed
-            slopes[2, 2, :, place] = f1
-        return slopes
 
 
 def _left_out(stack: RowStack, inputs: int, rotation: Array, origin: Array) -> set[int]:

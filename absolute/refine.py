@@ -11,10 +11,13 @@ from absolute.mechanism import Mechanism
 from absolute.newton import MOST_CORRECTIONS, held_to, rounding_of
 from absolute.precision import EPS
 from absolute.solution import Array, Counts
-from absolute.tracking import SMALL, Found
+from absolute.tracking import Found
 
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 64
+
+# A prediction that needs no larger first correction was right: a hundredth of the distance of branches.
+SMALL = 1e-6
 
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 32 * EPS
@@ -73,8 +76,8 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         rates: False leaves velocity and acceleration empty.
     """
     stack = mechanism.stack
-    q, corrections = found.q.copy(), found.corrections.copy()
-    rotation, origin = mechanism.poses_of(q)
+    q, corrections = found.q, found.corrections.copy()
+    rotation, origin = mechanism.poses(q)
     placed = stack.place(rotation, origin)
     jacobian = stack.jacobian(placed)
     groups = mechanism.groups
@@ -83,43 +86,31 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     first = previous = lengths(steps)
     # How far a pose may move so that its inverse is off by no more than SERVES.
     reach = SERVES / magnitude(inverse)
-    pending = np.arange(len(q))
+    more = np.ones(len(q), dtype=np.bool_)
     for _ in range(MOST_CORRECTIONS):
-        whole = pending.size == len(q)
-        q[pending] = mechanism.moved_all(q[pending], rotation[pending], steps)
-        corrections[pending] += 1
-        poses = mechanism.poses_of(q[pending])
-        fresh = stack.place(*poses)
-        renewed = stack.jacobian(fresh)
-        if whole:
-            (rotation, origin), placed, jacobian = poses, fresh, renewed
-        else:
-            rotation[pending], origin[pending], jacobian[pending] = *poses, renewed
-            for kind, part in zip(placed, fresh, strict=True):
-                kind[pending] = part
+        steps[~more] = 0.0
+        q = mechanism.moved(q, rotation, steps)
+        corrections += more
+        rotation, origin = mechanism.poses(q)
+        placed = stack.place(rotation, origin)
+        jacobian = stack.jacobian(placed)
         # Negated, so that what is not a number is stale.
-        stale = pending[~(previous[pending] <= reach[pending])]
+        stale = np.flatnonzero(~(previous <= reach))
         if stale.size:
             inverse[stale], signs[stale] = inverses(groups, jacobian[stale])
             reach[stale] = SERVES / magnitude(inverse[stale])
-        of = slice(None) if whole else pending
-        steps = times(groups, inverse[of], stack.gap(fresh, targets[0, of]))
+        steps = times(groups, inverse, stack.gap(placed, targets[0]))
         size = lengths(steps)
         # Negated, so that what is not a number counts as more to do.
         more = ~(size <= ROUNDING)
-        for place in np.flatnonzero(more & (size > 0.5 * previous[pending])).tolist():
-            more[place] = not size[place] <= rounding_of(eigenpy.PartialPivLU(renewed[place]).rcond())
+        for place in np.flatnonzero(more & (size > 0.5 * previous)).tolist():
+            more[place] = not size[place] <= rounding_of(eigenpy.PartialPivLU(jacobian[place]).rcond())
         # Near a fold corrections become as small as rounding before the rows close.
-        more |= ~stack.closed(fresh, targets[0, pending])
-        if whole:
-            previous = size
-        else:
-            previous[pending] = size
-        pending, steps = pending[more], steps[more]
-        if not pending.size:
+        more |= ~stack.closed(placed, targets[0])
+        previous = size
+        if not more.any():
             break
-    closed = np.ones(len(q), dtype=np.bool_)
-    closed[pending] = False
+    closed = ~more
     velocity = acceleration = np.empty((0, stack.count))
     if rates:
         velocity = solved(groups, jacobian, inverse, targets[1])

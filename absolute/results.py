@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from absolute.effects.effect import Effect
-from absolute.estimate import BodyMotion, Errors, estimate, named
+from absolute.estimate import BodyMotion, Errors, named
 from absolute.lines import SolvedLines
 from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
@@ -26,14 +26,13 @@ class Asked(NamedTuple):
     """What shall be told of each instant beside the poses.
 
     Attributes:
-        rates: velocities and accelerations. conditions: condition numbers.
-        doubts: (N, 3, inputs) how far the inputs may be off, or None: no errors.
+        rates: velocities and accelerations. conditions: condition numbers. errors: how far these may be off.
         effects: those whose values are told.
     """
 
     rates: bool
     conditions: bool
-    doubts: Array | None
+    errors: bool
     effects: tuple[Effect, ...]
 
 
@@ -58,12 +57,11 @@ class Record:
         self._rates = rates
         self._rotation = np.zeros((count, bodies, 3, 3))
         self._origin = np.zeros((count, bodies, 3))
-        # [origin, angular] of each body; the chassis stays at zero.
-        self._velocity = np.zeros((count if rates else 0, bodies, 2, 3))
-        self._acceleration = np.zeros((count if rates else 0, bodies, 2, 3))
+        # [origin, angular] of each body; the chassis, and all without rates, stay at zero.
+        self._velocity, self._acceleration = np.zeros((2, count, bodies, 2, 3))
         self._iterations = np.zeros(count, dtype=np.int64)
         self._residual = np.zeros(count)
-        self._left = np.zeros((0 if asked.doubts is None else count, 3, mechanism.stack.count))
+        self._left = np.zeros((count if asked.errors else 0, 3, mechanism.stack.count))
         self.written = 0
 
     def store(self, refined: Refined, count: int) -> None:
@@ -72,10 +70,9 @@ class Record:
         self._rotation[part] = refined.rotation[:count]
         self._origin[part] = refined.origin[:count]
         if self._rates:
-            self._velocity[part, 1:] = refined.velocity[:count].reshape(self._velocity[part, 1:].shape)
-            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(
-                self._velocity[part, 1:].shape
-            )
+            bodies = self._velocity[part, 1:]
+            bodies[...] = refined.velocity[:count].reshape(bodies.shape)
+            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(bodies.shape)
         self._iterations[part] = refined.corrections[:count]
         self._residual[part] = refined.residual[:count]
         if len(self._left):
@@ -84,108 +81,79 @@ class Record:
 
     def solution(self) -> Solution:
         """The instants solved so far in mm, carried by the chassis' motion."""
-        count, chassis = self.written, self._chassis
-        drawing, model = self._mechanism.drawing, self._mechanism.model
-        position: dict[str, Array] = {}
-        velocity: dict[str, Array] = {}
-        acceleration: dict[str, Array] = {}
-        for body, index in drawing.bodies.items():
-            for point in model.bodies[body]:
-                if point in position or point in model.aids:
-                    continue
-                if index == 0:
-                    position[point] = np.array(model.points[point]) + chassis[:count, 0]
-                    if self._rates:
-                        velocity[point] = chassis[:count, 1].copy()
-                        acceleration[point] = chassis[:count, 2].copy()
-                    continue
-                arm = self._rotation[:count, index] @ drawing.arm(body, point)
-                position[point] = (
-                    (self._origin[:count, index] + arm) * drawing.size + drawing.middle + chassis[:count, 0]
-                )
-                if self._rates:
-                    # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
-                    speed, spin = self._velocity[:count, index, 0], self._velocity[:count, index, 1]
-                    second, spin1 = self._acceleration[:count, index, 0], self._acceleration[:count, index, 1]
-                    turning = cross(spin, arm)
-                    velocity[point] = (speed + turning) * drawing.size + chassis[:count, 1]
-                    acceleration[point] = (
-                        second + cross(spin1, arm) + cross(spin, turning)
-                    ) * drawing.size + chassis[:count, 2]
-        turns = {body: i for body, i in drawing.bodies.items() if self._rates and body not in model.aids}
-        bodies = tuple(body for body in model.moving if body not in model.aids)
-        spins = {body: self._velocity[:count, i, 1].copy() for body, i in turns.items() if i}
-        spins1 = {body: self._acceleration[:count, i, 1].copy() for body, i in turns.items() if i}
-        iterations = self._iterations[:count].copy()
-        iterations.setflags(write=False)
+        count, drawing, model = self.written, self._mechanism.drawing, self._mechanism.model
+        bodies = {body: drawing.bodies[body] for body in model.moving if body not in model.aids}
+        points = {name: self._point(name) for name in model.reported}
+        orders = range(3 if self._rates else 1)
+        numbers = {
+            kind: {name: state[order] for name, state in points.items()} if order in orders else {}
+            for order, kind in enumerate(("position", "velocity", "acceleration"))
+        }
+        for kind, rates in (
+            ("angular_velocity", self._velocity),
+            ("angular_acceleration", self._acceleration),
+        ):
+            numbers[kind] = {body: rates[:count, i, 1].copy() for body, i in bodies.items() if self._rates}
         errors, condition = self._estimates(count)
-        effects = self._asked.effects
-        told = effects if self._asked.doubts is not None else ()
+        for kind, found in errors._asdict().items():
+            numbers[f"{kind}_error"] = {name: found[name] for name in (*points, *bodies) if name in found}
         of_car = [turn.first(count) for turn in self._turns]
         lines = SolvedLines(self._mechanism, self._rotation[:count], self._origin[:count], errors, of_car)
-        in_order = {name: position[name] for name in model.reported}
+        effects = self._asked.effects
+        numbers["effects"] = {effect.name: effect.value(lines) for effect in effects}
+        numbers["effect_errors"] = {
+            effect.name: effect.error(lines) for effect in effects if self._asked.errors
+        }
+        iterations = self._iterations[:count].copy()
+        iterations.setflags(write=False)
         solved = Solution(
-            position=_fixed(in_order),
-            velocity=_fixed({name: velocity[name] for name in model.reported} if self._rates else {}),
-            acceleration=_fixed({name: acceleration[name] for name in model.reported} if self._rates else {}),
-            angular_velocity=_fixed(spins),
-            angular_acceleration=_fixed(spins1),
             iterations=iterations,
             residual=_locked(self._residual[:count] * drawing.size),
             condition=None if condition is None else _locked(condition),
-            position_error=_told(errors.position, model.reported),
-            velocity_error=_told(errors.velocity, model.reported),
-            acceleration_error=_told(errors.acceleration, model.reported),
-            rotation_error=_told(errors.rotation, bodies),
-            angular_velocity_error=_told(errors.angular_velocity, bodies),
-            angular_acceleration_error=_told(errors.angular_acceleration, bodies),
-            effects=_fixed({effect.name: effect.value(lines) for effect in effects}),
-            effect_errors=_fixed({effect.name: effect.error(lines) for effect in told}),
+            **{kind: ReadOnly({n: _locked(a) for n, a in of.items()}) for kind, of in numbers.items()},
         )
         return carried(solved, of_car, self._shift[:count]) if of_car else solved
 
+    def _point(self, name: str) -> Array:
+        """(orders, N, 3) a point and its rates, mm and s."""
+        drawing, model, count = self._mechanism.drawing, self._mechanism.model, self.written
+        body, index = next(of for of in drawing.bodies.items() if name in model.bodies[of[0]])
+        state = np.zeros((3, count, 3))
+        if index:
+            arm = self._rotation[:count, index] @ drawing.arm(body, name)
+            speed, spin = self._velocity[:count, index].swapaxes(0, 1)
+            second, spin1 = self._acceleration[:count, index].swapaxes(0, 1)
+            # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
+            turning = cross(spin, arm)
+            state[0] = (self._origin[:count, index] + arm) * drawing.size + drawing.middle
+            state[1] = (speed + turning) * drawing.size
+            state[2] = (second + cross(spin1, arm) + cross(spin, turning)) * drawing.size
+        else:
+            state[0] = model.points[name]
+        return state + self._chassis[:count].swapaxes(0, 1)
+
     def _estimates(self, count: int) -> tuple[Errors, Array | None]:
         """Errors and condition numbers of the first `count` instants; nothing where none were asked for."""
-        doubts, nothing, conditions = (
-            self._asked.doubts,
-            Errors({}, {}, {}, {}, {}, {}),
-            self._asked.conditions,
-        )
-        model = self._mechanism.model
-        if doubts is None:
-            return nothing, self._condition_numbers(count) if conditions else None
+        model, conditions = self._mechanism.model, self._asked.conditions
+        if not self._asked.errors:
+            return Errors({}, {}, {}, {}, {}, {}), self._condition_numbers(count) if conditions else None
         points, bodies = (
             {name: np.empty((count, 3)) for name in names} for names in (model.points, model.moving)
         )
-        whole = Errors(
-            points,
-            *(
-                [
-                    {name: array.copy() for name, array in of.items()}
-                    for of in (points, points, bodies, bodies, bodies)
-                ]
-            ),
-        )
+        kinds = (points, points, points, bodies, bodies, bodies)
+        whole = Errors(*({name: array.copy() for name, array in kind.items()} for kind in kinds))
         numbers = np.empty(count)
-        exact = not doubts.any()
-        for start in range(0, count, STRETCH if exact else BATCH):
-            part = slice(start, min(start + (STRETCH if exact else BATCH), count))
+        for start in range(0, count, STRETCH):
+            part = slice(start, min(start + STRETCH, count))
             origin, series = self._origin[part], self._series[part]
-            still = np.zeros((*origin.shape[:2], 2, 3))
-            rates = (self._velocity[part], self._acceleration[part]) if self._rates else (still, still)
-            motion = BodyMotion(self._rotation[part], origin, *rates)
-            if exact:
-                if not self._rates:
-                    series = series * np.array([1.0, 0.0, 0.0])[:, None]
-                found, numbers[part] = sampled(self._mechanism, motion, series, self._left[part], conditions)
-                told = named(self._mechanism, motion, self._chassis[part], found)
-            else:
-                told = estimate(self._mechanism, motion, series, doubts[part], self._chassis[part])
+            motion = BodyMotion(self._rotation[part], origin, self._velocity[part], self._acceleration[part])
+            if not self._rates:
+                series = series * np.array([1.0, 0.0, 0.0])[:, None]
+            found, numbers[part] = sampled(self._mechanism, motion, series, self._left[part], conditions)
+            told = named(self._mechanism, motion, self._chassis[part], found)
             for kept, added in zip(whole, told, strict=True):
                 for name, values in added.items():
                     kept[name][part] = values
-        if not exact and conditions:
-            numbers = self._condition_numbers(count)
         if not self._rates:
             whole = Errors(whole.position, {}, {}, whole.rotation, {}, {})
         return whole, numbers if conditions else None
@@ -204,11 +172,3 @@ class Record:
 def _locked(array: Array) -> Array:
     array.setflags(write=False)
     return array
-
-
-def _fixed(arrays: dict[str, Array]) -> ReadOnly[Array]:
-    return ReadOnly({name: _locked(array) for name, array in arrays.items()})
-
-
-def _told(arrays: dict[str, Array], names: tuple[str, ...]) -> ReadOnly[Array]:
-    return _fixed({name: arrays[name] for name in names} if arrays else {})

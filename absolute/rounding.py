@@ -4,11 +4,10 @@ A rounding is even between -eps / 2 and eps / 2 of the power of two below a numb
 eps^2 / 12 times the mean of (2^k / x)^2, which is 1 / 2 for even x: a standard deviation of eps / 2 / sqrt(6)
 of x. It is made in one component of a vector, with a mean square of a third. Of n independent ones made
 in vectors whose lengths add up to M, four standard deviations are  spread(n) M,  and from row to row they
-add up in squares again. What is left of an equation as computed is known, and adds up as it is.
+add up in squares again.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -41,19 +40,8 @@ DRIFT = spread(22 + 13 + 2 * 3 + 12 + 3)
 TARGET = 6 * EPS / 2.0
 
 
-class Doubt(NamedTuple):
-    """How far each row of an equation may be off, (N, rows) each, in units of size and s.
-
-    Attributes:
-        known: what is left of it as computed. rounded: four standard deviations of its rounding.
-    """
-
-    known: Array
-    rounded: Array
-
-
-def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Doubt:
-    """Of  rows = target."""
+def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Array:
+    """(N, rows) four standard deviations of what  rows = target  is off by rounding, in units of size."""
     stack = mechanism.stack
     offsets = stack.offset_rows
     rounded: Array = REACH * length(placed.reach) + TARGET * np.abs(target)
@@ -64,30 +52,26 @@ def pose_doubt(mechanism: Mechanism, placed: Placed, target: Array) -> Doubt:
     rounded[:, offsets] += PLACE * (length(first) + length(second))
     r1 = placed.parts[:, 3, offsets] - placed.reach[:, offsets]
     rounded[:, offsets] += ARM * (length(r1) + length(placed.parts[:, 4, offsets]))
-    return Doubt(np.abs(stack.gap(placed, target)), rounded)
+    return rounded
 
 
-def rate_doubt(motion: RowMotion, jacobian: Array, rates: Array, target: Array) -> Doubt:
-    """Of  J v = target."""
-    left = target - np.einsum("nij,nj->ni", jacobian, rates)
-    return Doubt(np.abs(left), RATE * pushes(motion) + TARGET * np.abs(target))
+def rate_doubt(motion: RowMotion, target: Array) -> Array:
+    """(N, rows) likewise of  J v = target."""
+    return np.asarray(RATE * pushes(motion) + TARGET * np.abs(target))
 
 
-def second_doubt(
-    motion: RowMotion, bending: RowMotion, jacobian: Array, seconds: Array, drift: Array, target: Array
-) -> Doubt:
-    """Of  J a = target - drift.
+def second_doubt(motion: RowMotion, bending: RowMotion, target: Array) -> Array:
+    """(N, rows) likewise of  J a = target - drift.
 
     Args:
         motion, bending: rows at the velocities and at the accelerations of the bodies.
     """
-    left = target - drift - np.einsum("nij,nj->ni", jacobian, seconds)
     # The direction of a distance turns by itself.
     w1, w2 = np.maximum(length(motion.w1), length(motion.a1)), length(motion.w2)
     e, r1, r2 = length(motion.e), length(motion.r1), length(motion.r2)
-    speeds = length(motion.s1) + length(motion.s2) + w1 * r1 + w2 * r2
+    speeds = length(motion.s1) + length(motion.s2) + w1 * (r1 + e) + w2 * r2
     terms = w1 * w1 * (e + r1) + w2 * w2 * r2 + 2.0 * w1 * speeds
-    return Doubt(np.abs(left), RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target))
+    return np.asarray(RATE * pushes(bending) + DRIFT * terms + TARGET * np.abs(target))
 
 
 def pushes(motion: RowMotion) -> Array:

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.estimate import BodyMotion, Lengths, further, totals
+from absolute.estimate import BodyMotion, by_row, further, totals
 from absolute.mechanism import Mechanism
 from absolute.solution import Array
 
@@ -52,11 +52,11 @@ class Computed(NamedTuple):
     """An instant whose coefficients are computed.
 
     Attributes:
-        magnitudes: of the coefficients, (rows, 3 * of these). rounded: (3, 3 * of these), R.
-        grown: (3,) see `estimate.Answers`. condition: number of the Jacobian.
+        magnitudes: of the coefficients, (4, rows, 3 * of these). rounded: (3, 3 * of these), R.
+        grown: (3,) see `estimate.Sensitivity`. condition: number of the Jacobian.
     """
 
-    magnitudes: Lengths
+    magnitudes: Array
     rounded: Array
     grown: Array
     condition: float
@@ -65,12 +65,12 @@ class Computed(NamedTuple):
 def sampled(
     mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, conditions: bool
 ) -> tuple[Array, Array]:
-    """Totals (3, N, 3 * of these) as of `estimate.totals` for exact inputs, and condition numbers (N,).
+    """Totals (3, N, 3 * of these) as of `estimate.totals`, and condition numbers (N,).
 
     Neither is smaller than computed at each instant, nor larger by more than about MARGIN and BENT.
 
     Args:
-        motion, series: as of `estimate`. left: (N, 3, rows) what is left of the equations as computed.
+        motion, series, left: as of `totals`.
         conditions: False leaves the condition numbers 1.
     """
     count = len(left)
@@ -84,17 +84,17 @@ def sampled(
         for start in range(0, len(places), BATCH):
             these = places[start : start + BATCH]
             part = BodyMotion(*(array[these] for array in motion))
-            total, made = totals(mechanism, part, series[these], np.zeros_like(series[these]), left[these])
+            total, made = totals(mechanism, part, series[these], left[these])
             if not found.size:
                 found = np.empty((3, count, total.shape[-1]))
             found[:, these] = total
             if conditions:
                 stack = mechanism.stack
                 numbers[these] = np.linalg.cond(stack.jacobian(stack.place(part.rotation, part.origin)))
-            magnitudes = [np.abs(kind) for kind in made.lengths]
+            magnitudes = np.abs(made.lengths)
             for row, place in enumerate(these.tolist() if hold else ()):
                 held[place] = Computed(
-                    Lengths(*(kind[row] for kind in magnitudes)),
+                    magnitudes[:, row],
                     made.rounded[:, row],
                     made.grown[:, row],
                     float(numbers[place]),
@@ -188,11 +188,7 @@ def interpolated(first: Computed, last: Computed, share: Array, known: Array) ->
         np.zeros(len(share)),
     )
     for of, end in ((1.0 - share, first), (share, last)):
-        p, t, s = (known * of[..., None]).swapaxes(0, 1)
-        direct, speed, second, bent = end.magnitudes
-        left = np.array((p @ direct, p @ speed + t @ direct, p @ second + t @ bent + s @ direct))
-        total += left
-        total += of * end.rounded[:, None]
+        total += by_row(np.asarray, known * of[..., None], end.magnitudes) + of * end.rounded[:, None]
         grown += of[:, 0] * end.grown[:, None]
         condition += of[:, 0] * end.condition
     whole = further(total, grown)

@@ -9,7 +9,7 @@ from absolute.description import Model
 from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
 from absolute.initial_assembly import branch_error, locked
-from absolute.input_arrays import chassis_series, doubt_series, input_series
+from absolute.input_arrays import chassis_series, input_series
 from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
 from absolute.refine import BATCH, Refined, refine
@@ -29,7 +29,6 @@ def solve(
     rates: bool = True,
     conditions: bool = False,
     errors: bool = False,
-    input_errors: Mapping[str, Array] | None = None,
     effects: Sequence[str] = (),
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
@@ -45,8 +44,6 @@ def solve(
         errors: also an estimate of the error of each quantity at each instant (see `estimate`), of which
             long smooth motions have some per cent more (see `sampled_estimate`). It costs several times as
             much as the solution itself, and half of it where those are dense; nothing of that changes.
-        input_errors: name -> (N, 3) how far the numbers of an input may be off, for `errors`; exact
-            where it is not given. What the chassis motion is off comes on top of every point alike.
         effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives
             over time brings the rates with it.
     Returns:
@@ -75,21 +72,14 @@ def solve(
     """
     asked = effects_of(effects)
     for effect in asked:
-        model.require(effect.role)
+        model.corner.ends(effect.role)
     rates = rates or any(effect.derivative > 0 for effect in asked)
     series = driven_series(model, inputs)
     count = len(series)
     carried = chassis_series(chassis, count)
     mechanism = Mechanism(model)
-    doubts = doubt_series((*model.values, *model.turns), input_errors or {}, count) if errors else None
-    of_turns = (
-        None
-        if doubts is None
-        else {name: doubts[..., place] for place, name in enumerate(model.turns, len(model.values))}
-    )
-    turns = turnings(model, inputs, count, of_turns)
-    doubts = None if doubts is None else doubts[..., _columns(model)]
-    record = Record(mechanism, series, carried, Asked(rates, conditions, doubts, asked), turns)
+    turns = turnings(model, inputs, count)
+    record = Record(mechanism, series, carried, Asked(rates, conditions, errors, asked), turns)
     try:
         with np.errstate(over="ignore", invalid="ignore"):
             tracking = Tracking(mechanism)
@@ -107,12 +97,9 @@ def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
         InputError: one is missing, unknown, of another length, or not finite.
     """
     driving = {name: law for name, law in inputs.items() if name not in model.turns}
-    return input_series(model.values, driving)[..., _columns(model)]
-
-
-def _columns(model: Model) -> list[int]:
-    """Which value each input takes: those that take the same one have a column each."""
-    return [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
+    # Inputs that take the same value have a column each.
+    columns = [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
+    return input_series(model.values, driving)[..., columns]
 
 
 def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
@@ -212,9 +199,8 @@ def _stalled(
 ) -> SingularError:
     stack, size = mechanism.stack, mechanism.drawing.size
     residual, step = float(refined.residual[place]), float(refined.step[place])
-    zeros = [0.0] * len(values)
     goal, drawn = (
-        mechanism.targets(each, zeros, zeros)[0, mechanism.joint_rows :]
+        mechanism.targets(each)[0, mechanism.joint_rows :]
         for each in (values, mechanism.drawn_inputs.tolist())
     )
     jacobian = stack.jacobian(stack.place(refined.rotation[place], refined.origin[place]))

@@ -14,10 +14,10 @@ The turn t of axes x, y of the first and x2, y2 of the second body about a commo
 cos t = x . x2 and sin t = y . x2, has the rate of the right angle  -(x cos t + y sin t) . y2  which is 0
 there, t held. Its value is known up to whole turns: `gap` takes the nearest.
 
-First and second rate of any row, with the rates a1 and a2 of a and e1, e2 of e:
-    a1.e + a.e1,    a2.e + 2 a1.e1 + a.e2
-    e1 = s2 + w2 x r2 - s1 - w1 x r1,  s the velocity of an origin;   a1 = w1 x a, a2 = w1 x a1, or of a
-    distance  a1 = (e1 - (a.e1) a) / |e|,  a2 = (e2 - (a.e2) a - 2 (a.e1) a1 - (a1.e1) a) / |e|.
+With the turning a1 = w1 x a and the velocity v of e as it is seen from the first body, a row's rate is a . v
+and its second rate, when no body accelerates,
+    a1 . (2 v + t1) - (w2 x a) . t2,    v = s2 + t2 - s1 - t1,    t1 = w1 x (r1 + e),    t2 = w2 x r2,
+s the velocity of an origin, and of a distance (v . v - (a . v)^2) / |e| more.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.features import Features
 from absolute.precision import EPS
 from absolute.rows import Angle, Offset, Rows, Turn
 from absolute.solution import Array
@@ -85,42 +84,44 @@ class RowStack:
     """Index arrays built once from the rows of a mechanism."""
 
     def __init__(self, rows: Rows, bodies: int) -> None:
-        features = Features(bodies)
+        table: dict[tuple[int, tuple[float, ...], bool], int] = {}
+
+        def feature(body: int, vector: Array, is_point: bool = False) -> int:
+            """The place of a point or direction in the axes of a body; each is kept once."""
+            return table.setdefault((body, tuple(vector.tolist()), is_point), len(table))
+
         every: list[Angle | Offset | Turn] = [*rows.angles, *rows.offsets, *rows.turns]
         self.owners = tuple(row.owner for row in every)
         self.count = count = len(every)
         # What joints hold each row to: the drawn lengths of distances.
         self.drawn = np.zeros(count)
-        nothing = features.add(0, np.zeros(3), False)
-        partners = [features.add(r.second, r.partner, False) for r in rows.angles]
+        nothing = feature(0, np.zeros(3))
+        partners = [feature(r.second, r.partner) for r in rows.angles]
         picks = [
-            (features.add(r.first, r.direction, False), partner, nothing, nothing, partner)
+            (feature(r.first, r.direction), partner, nothing, nothing, partner)
             for r, partner in zip(rows.angles, partners, strict=True)
         ] + [
             (
-                nothing if r.direction is None else features.add(r.first, r.direction, False),
-                features.add(r.second, r.second_arm, True),
-                features.add(r.first, r.first_arm, True),
-                features.add(r.first, r.first_arm, False),
-                features.add(r.second, r.second_arm, False),
+                nothing if r.direction is None else feature(r.first, r.direction),
+                feature(r.second, r.second_arm, is_point=True),
+                feature(r.first, r.first_arm, is_point=True),
+                feature(r.first, r.first_arm),
+                feature(r.second, r.second_arm),
             )
             for r in rows.offsets
         ]
         for r in rows.turns:
-            partner = features.add(r.second, -r.frame[1], False)
+            partner = feature(r.second, -r.frame[1])
             picks.append((nothing, partner, nothing, nothing, partner))
         turned = [
             (
-                features.add(r.first, r.frame[0], False),
-                features.add(r.first, r.frame[1], False),
-                features.add(r.second, r.frame[0], False),
+                feature(r.first, r.frame[0]),
+                feature(r.first, r.frame[1]),
+                feature(r.second, r.frame[0]),
             )
             for r in rows.turns
         ]
-        senses = [
-            (features.add(r.first, r.direction, False), features.add(r.second, r.partner, False))
-            for r in rows.senses
-        ]
+        senses = [(feature(r.first, r.direction), feature(r.second, r.partner)) for r in rows.senses]
         # What the terms of a row add up to at most, apart from the distances of the origins.
         arms = np.array([(r.first_arm, r.second_arm) for r in rows.offsets]).reshape(-1, 2, 3)
         self._spans = np.ones(count)
@@ -130,15 +131,23 @@ class RowStack:
         self._between = np.zeros((bodies, count))
         for row, offset in enumerate(rows.offsets, len(rows.angles)):
             self._between[[offset.first, offset.second], row] = 1.0
-        self._local, self._is_point = features.tables()
-        self._picks = np.array(features.flat(picks)).T.copy()
+        # One after the other for each body, as many for all: one product turns them.
+        own = [[of for of in table if of[0] == body] for body in range(bodies)]
+        width = max(map(len, own))
+        self._local, self._is_point = np.zeros((bodies, width, 3)), np.zeros((bodies, width, 1))
+        where = np.empty(len(table), dtype=np.intp)
+        for body, features in enumerate(own):
+            for place, of in enumerate(features):
+                self._local[body, place], self._is_point[body, place] = of[1:]
+                where[table[of]] = body * width + place
+        self._picks = where[np.array(picks)].T.copy()
         # Rows of one joint that say where the same point, or direction, is.
         owner = np.array(self.owners)
         self._mates = ((owner[:, None] == owner) & np.equal.outer(self._picks[1], self._picks[1])).astype(
             float
         )
-        self._senses = np.array(features.flat(senses), dtype=np.intp).reshape(-1, 2).T.copy()
-        self._turned = np.array(features.flat(turned), dtype=np.intp).reshape(-1, 3).T.copy()
+        self._senses = where[np.array(senses, dtype=np.intp)].reshape(-1, 2).T.copy()
+        self._turned = where[np.array(turned, dtype=np.intp)].reshape(-1, 3).T.copy()
         self.turn_rows = slice(count - len(rows.turns), count)
         self.drawn[self.offset_rows] = [of.length for of in rows.offsets]
         self._is_offset = np.zeros((count, 1))
@@ -149,16 +158,17 @@ class RowStack:
         )
         # Where each entry of the Jacobian is found among [0, a and -a of offsets, w1 parts, w2 parts].
         angles = len(rows.angles)
-        self.first, self.second = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
+        self._bodies = np.array([[row.first, row.second] for row in every]).reshape(-1, 2).T
+        self.first, self.second = self._bodies
         source = np.zeros((count, bodies, 2, 3), dtype=int)
         axis = np.arange(3)
         pushes = 3 * len(rows.offsets)
-        for row, of in enumerate(every):
-            source[row, of.first, 1] = 1 + 2 * pushes + 3 * row + axis
-            source[row, of.second, 1] = 1 + 2 * pushes + 3 * (count + row) + axis
-            if isinstance(of, Offset):
-                source[row, of.second, 0] = 1 + 3 * (row - angles) + axis
-                source[row, of.first, 0] = 1 + pushes + 3 * (row - angles) + axis
+        for row, one in enumerate(every):
+            source[row, one.first, 1] = 1 + 2 * pushes + 3 * row + axis
+            source[row, one.second, 1] = 1 + 2 * pushes + 3 * (count + row) + axis
+            if isinstance(one, Offset):
+                source[row, one.second, 0] = 1 + 3 * (row - angles) + axis
+                source[row, one.first, 0] = 1 + pushes + 3 * (row - angles) + axis
         self._none = np.zeros(1)
         # Column by column, the order in which a factorisation reads without a copy.
         self._source = source[:, 1:].reshape(count, -1).T.copy()
@@ -192,8 +202,9 @@ class RowStack:
     def gap(self, placed: Placed, target: Array) -> Array:
         """(..., rows) target less value, of turns to the nearest of all that look alike."""
         gap: Array = target - placed.values
-        turns = gap[..., self.turn_rows]
-        turns -= WHOLE_TURN * np.round(turns / WHOLE_TURN)
+        if self._turned.size:
+            turns = gap[..., self.turn_rows]
+            turns -= WHOLE_TURN * np.round(turns / WHOLE_TURN)
         return gap
 
     def kept(self, placed: Placed) -> NDArray[np.bool_]:
@@ -269,8 +280,16 @@ class RowStack:
 
     def drift(self, placed: Placed, rates: Array) -> Array:
         """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""
-        m = self.motion(placed, rates)
-        drift: Array = np.vecdot(m.a2, m.e)
-        drift += 2.0 * np.vecdot(m.a1, m.e1)
-        drift += np.vecdot(m.a, m.e2)
+        both = rates.take(self._bodies, -3)
+        a1, a2, t1, t2 = np.moveaxis(
+            cross(both[..., 1, :].take([0, 1, 0, 1], -3), placed.parts.take([0, 0, 3, 4], -3)), -3, 0
+        )
+        v = (both[..., 1, :, 0, :] - both[..., 0, :, 0, :]) * self._is_offset + t2 - t1
+        drift: Array = np.vecdot(a1, 2.0 * v + t1) - np.vecdot(a2, t2)
+        if self.distances.size:
+            a, v = placed.parts[..., 0, self.distances, :], v[..., self.distances, :]
+            along = np.vecdot(a, v)
+            drift[..., self.distances] += (np.vecdot(v, v) - along * along) / placed.values[
+                ..., self.distances
+            ]
         return drift

@@ -3,17 +3,14 @@
 What is found lies a small correction from the exact pose and on its branch; `refine` takes all
 instants to rounding together. A run is as many instants as the expansion of the pose at its start
 (see `expansion`) holds for: the pose at its last instant is corrected and expanded as well, and those
-between are predicted by both. Where runs would be short, each instant takes one tangent step and one
-correction; where that does not do, the careful continuation goes on.
+between are predicted by both. Where runs would be short, the careful continuation leads to each instant.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.backend import eigenpy
 from absolute.continuation import LARGEST_CORRECTION, LONGEST_STEP
 from absolute.continue_to import continue_to
 from absolute.expansion import Expansion, between, expand, line_between, products
@@ -21,19 +18,15 @@ from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
 from absolute.newton import Pose, correct
 from absolute.solution import Array, Counts
-from absolute.stack import Placed
 
-# Poses nearer to a fold than this are left to the careful continuation: branches are at least
+# A run that ends nearer to a fold than this is left to the careful continuation: branches are at least
 # about this far apart elsewhere.
 SAFE_RCOND = 1e-4
-# Corrections below this are always fine: held inputs step by nothing, but the pose before was
-# left rough. A hundredth of the distance of branches.
-SMALL = 1e-6
 
 # A run ends where the second order of its expansion is this share of the first, so that with orders that
 # fall like a geometric series the sixth, of 64 of which Hermite's interpolation is off by one, is some
-# 1e-8 of the first: then one correction is enough.
-LARGEST_BEND = 0.08
+# 1e-7 of the first: then one correction is enough.
+LARGEST_BEND = 0.1
 # Nor may it be longer than this, in units of size and quaternions, which turn by half of an angle.
 LONGEST_RUN = 0.5 * LONGEST_STEP
 # A third order below this needs no second expansion: one correction is enough then.
@@ -44,30 +37,11 @@ BESIDE = 1e-7
 TURNED = 0.2
 # A prediction by the way behind is better than by one place as far ahead as this, where 1 is that place.
 FURTHEST = 3.0
-# The end of a run is corrected once more from here on: its expansion would be off by as much.
-CLOSE = 1e-5
-# Both ends of a run cost as much as so many single steps.
-SHORTEST_RUN = 4
+# The end of a run costs as much as a single step.
+SHORTEST_RUN = 2
 # Instants that are looked at for a run: at first, and at most.
-FIRST_WINDOW = 32
+FIRST_WINDOW = 8
 LARGEST_WINDOW = 256
-
-
-class Rough(NamedTuple):
-    """A configuration close to a pose, and the factors of a Jacobian near it.
-
-    Attributes:
-        q: the configuration, the last correction made.
-        rotation, placed, factors, sign: of the bodies, rows, Jacobian and its whole determinant before that.
-        correction: size of that correction.
-    """
-
-    q: Array
-    rotation: Array
-    placed: Placed
-    factors: eigenpy.PartialPivLU
-    sign: float
-    correction: float
 
 
 class Found(NamedTuple):
@@ -95,32 +69,18 @@ class Tracking:
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
-        pose, self._spent = assemble(mechanism)
-        self._drawn = pose
-        self._instant = 0
-        self._careful = False
-        # Instants to step through before the next run may begin, and after one that was too short.
-        self._steps, self._pause = 0, SHORTEST_RUN
+        self._drawn, self._spent = assemble(mechanism)
         self._window = FIRST_WINDOW
+        # Instants to step through before the next run may begin, after one that was too short, or wrong.
+        self._steps, self._pause, self._caution = 1, 1, SHORTEST_RUN
         self.found = self._room(0)
-        self._begin()
-        self._started = self._here, self._values, self._target
-
-    def _begin(self) -> None:
-        self._values: list[float] = self.mechanism.drawn_inputs.tolist()
-        zeros = [0.0] * len(self._values)
-        self._target = self.mechanism.targets(self._values, zeros, zeros)[0]
-        self._here = rough_of(self._drawn)
-        self._expansion: Expansion | None = None
-        self._before: Expansion | None = None
-        # The last exact pose, and its inputs.
-        self._exact, self._exact_values = self._drawn, self._values
+        self.back_to(0)
+        self._started = self._here, self._values
 
     def back_to(self, instant: int) -> None:
         """Go on with this instant, by the careful way from the assembled drawing."""
-        self._begin()
-        self._instant = instant
-        self._careful = True
+        self._arrive(self._drawn, self.mechanism.drawn_inputs.tolist())
+        self._instant, self._steps = instant, 1
 
     def step_to(self, instant: int, q: Array | None, values: list[float], target: Array) -> None:
         """Go on with this instant, step by step, from the one before: its configuration, inputs and target.
@@ -128,12 +88,11 @@ class Tracking:
         Args:
             q: None if that is where the last `advance` began.
         """
-        self._instant = instant
-        if q is None:
-            self._arrive(*self._started)
-        else:
-            self._arrive(corrected(self.mechanism, q, target), values, target)
-        self._steps = LARGEST_WINDOW
+        there = None if q is None else correct(self.mechanism, q, target, SAFE_RCOND).pose
+        self._arrive(*(self._started if there is None else (there, values)))
+        # All beyond is found again, so after each wrong prediction the next one comes twice as late.
+        self._instant, self._steps = instant, self._caution
+        self._window, self._caution = FIRST_WINDOW, min(2 * self._caution, LARGEST_WINDOW)
 
     def advance(self, values: list[list[float]], targets: Array) -> Found:
         """Configurations for further instants: inputs (N, inputs) and targets (N, rows).
@@ -142,16 +101,16 @@ class Tracking:
             UnreachableError, SingularError: at the first instant without a pose; `found` holds the
                 configurations before it.
         """
-        self._started = self._here, self._values, self._target
+        self._started = self._here, self._values
         every = self._room(len(values))
         self.found = every.part(slice(0))
         done = 0
         while done < len(values):
             run = 0
-            if not self._careful and self._steps <= 0 and len(values) - done >= SHORTEST_RUN:
+            if self._steps <= 0 and len(values) - done >= SHORTEST_RUN:
                 run = self._run(values, targets, every, done)
             if not run:
-                self._step(values[done], targets[done], every, done)
+                self._step(values[done], every, done)
                 run = 1
             done += run
             self._instant += run
@@ -166,21 +125,17 @@ class Tracking:
             self._drawn.signs,
         )
 
-    def _arrive(self, there: Rough, values: list[float], target: Array) -> None:
-        self._here, self._values, self._target = there, values, target
-        self._expansion = self._before = None
+    def _arrive(self, there: Pose, values: list[float]) -> None:
+        self._here, self._values = there, values
+        self._expansion: Expansion | None = None
+        self._before: Expansion | None = None
 
-    def _step(self, value: list[float], target: Array, every: Found, place: int) -> None:
-        """One instant, by one step or with care."""
-        there, spent = None, 1
-        if not self._careful:
-            there = glide(self.mechanism, self._here, target - self._target, target)
-        if there is None:
-            there, spent = self._careful_way(value)
+    def _step(self, value: list[float], every: Found, place: int) -> None:
+        """One instant, with care."""
+        there, spent = continue_to(self.mechanism, self._here, self._values, value, self._instant)
         every.q[place], every.corrections[place] = there.q, spent + self._spent
-        self._arrive(there, value, target)
+        self._arrive(there, value)
         self._spent = 0
-        self._careful = False
         self._steps -= 1
 
     def _run(self, values: list[list[float]], targets: Array, every: Found, done: int) -> int:
@@ -188,11 +143,9 @@ class Tracking:
         mechanism = self.mechanism
         driven = slice(mechanism.joint_rows, None)
         places = targets[done : done + self._window, driven]
+        if self._expansion is None:
+            self._expansion = expanded(mechanism, self._here, mechanism.targets(self._values)[0, driven])
         here = self._expansion
-        if here is None:
-            if self._here.correction > SMALL:
-                self._here = corrected(mechanism, self._here.q, self._target)
-            here = self._expansion = expanded(mechanism, self._here, self._target[driven])
         ahead = Ahead.of(here, places - here.place)
         count = ahead.length()
         while count >= SHORTEST_RUN:
@@ -206,20 +159,20 @@ class Tracking:
             return self._too_short()
         last, target = count - 1, targets[done + count - 1]
         start = ahead.q[last]
-        if self._before is not None and ahead.third[last] > FLAT:
+        if self._before is not None:
             # The way behind tells more of the way ahead than this place alone, if it leads on or back.
             onward = line_between(self._before.place, here.place, places[last:count])
             if 0.0 < onward.share[0, 0] < FURTHEST:
                 start = between(self._before, here, onward)[0]
-        there, spent = corrected(mechanism, mechanism.normalized(start), target), 1
-        allowed = LARGEST_CORRECTION * float(ahead.size[last]) + SMALL
-        if not there.correction <= allowed or not safe(there, self._here.sign):
+        outcome = correct(mechanism, mechanism.normalized(start), target, self._here.rcond)
+        there = outcome.pose
+        if (
+            there is None
+            or not outcome.first <= LARGEST_CORRECTION * float(ahead.size[last]) + there.floor
+            or not there.rcond >= SAFE_RCOND
+            or (there.signs != self._here.signs).any()
+        ):
             return self._too_short()
-        if there.correction > CLOSE:
-            first, spent = there.correction, 2
-            there = corrected(mechanism, there.q, target)
-            if not there.correction <= LARGEST_CORRECTION * first or not safe(there, self._here.sign):
-                return self._too_short()
         end = expanded(mechanism, there, target[driven])
         bent = np.flatnonzero(ahead.third[:last] > FLAT)
         q = every.q[done : done + last]
@@ -231,12 +184,12 @@ class Tracking:
         every.q[done + last] = there.q
         every.predicted[done : done + last] = True
         every.corrections[done] += self._spent
-        every.corrections[done + last] += spent
+        every.corrections[done + last] += outcome.corrections
         self._spent = 0
-        self._arrive(there, values[done + last], target)
+        self._arrive(there, values[done + last])
         self._before, self._expansion = here, end
-        self._window = min(LARGEST_WINDOW, max(FIRST_WINDOW, 2 * count))
-        self._pause = SHORTEST_RUN
+        self._window = min(LARGEST_WINDOW, 2 * count)
+        self._pause = 1
         return count
 
     def _too_short(self) -> int:
@@ -244,15 +197,6 @@ class Tracking:
         self._steps, self._window = self._pause, FIRST_WINDOW
         self._pause = min(2 * self._pause, LARGEST_WINDOW)
         return 0
-
-    def _careful_way(self, goal: list[float]) -> tuple[Rough, int]:
-        """The careful way, from the pose here made exact (or from the last exact one)."""
-        settled = correct(self.mechanism, self._here.q, self._target, SAFE_RCOND)
-        if settled.pose is not None:
-            self._exact, self._exact_values = settled.pose, self._values
-        pose, spent = continue_to(self.mechanism, self._exact, self._exact_values, goal, self._instant)
-        self._exact, self._exact_values = pose, goal
-        return rough_of(pose), spent + settled.corrections
 
 
 class Ahead(NamedTuple):
@@ -289,44 +233,6 @@ class Ahead(NamedTuple):
         return count if turn == count else int(np.argmax(self.size[:turn])) + 1
 
 
-def rough_of(pose: Pose) -> Rough:
-    """An exact pose is also a rough one."""
-    sign = math.copysign(1.0, pose.factors.determinant())
-    return Rough(pose.q, pose.poses.rotation, pose.placed, pose.factors, sign, 0.0)
-
-
-def corrected(mechanism: Mechanism, q: Array, target: Array) -> Rough:
-    """One Newton correction of a configuration."""
-    poses = mechanism.poses(q)
-    placed = mechanism.stack.place(*poses)
-    factors = eigenpy.PartialPivLU(mechanism.stack.jacobian(placed))
-    correction = factors.solve(mechanism.stack.gap(placed, target))
-    sign = math.copysign(1.0, factors.determinant())
-    size = math.sqrt(correction @ correction)
-    return Rough(mechanism.moved(q, poses.rotation, correction), poses.rotation, placed, factors, sign, size)
-
-
-def safe(there: Rough, sign: float) -> bool:
-    """Whether a corrected configuration is on the side of the folds that it came from, and far from one."""
-    return there.sign == sign and bool(there.factors.rcond() >= SAFE_RCOND)
-
-
-def expanded(mechanism: Mechanism, here: Rough, place: Array) -> Expansion:
-    """The expansion at a configuration, for targets of the inputs' rows (inputs,)."""
+def expanded(mechanism: Mechanism, here: Pose, place: Array) -> Expansion:
+    """The expansion at a pose, for targets of the inputs' rows (inputs,)."""
     return expand(mechanism, here.q, here.placed, here.factors, place)
-
-
-def glide(mechanism: Mechanism, here: Rough, change: Array, target: Array) -> Rough | None:
-    """One tangent step for a change of the targets, one Newton correction; None if that is not safe.
-
-    Safe is a step that is short, needs a correction that is small against it, keeps the sign of
-    the determinant and ends far from a fold.
-    """
-    step = here.factors.solve(change)
-    size = math.sqrt(step @ step)
-    if not size <= LONGEST_STEP:
-        return None
-    # The rotations before its last correction serve this step as they are.
-    there = corrected(mechanism, mechanism.moved(here.q, here.rotation, step), target)
-    small = there.correction <= LARGEST_CORRECTION * size + SMALL
-    return there if small and safe(there, here.sign) else None

@@ -46,17 +46,15 @@ class Turning:
 
     Attributes:
         about: P, (3,), mm. axis: u, (3,). angle: t, t', t'', (N, 3), rad and s.
-        doubt: how far these may be off beside their rounding, (N, 3).
     """
 
     about: Array
     axis: Array
     angle: Array
-    doubt: Array
 
     def first(self, count: int) -> "Turning":
         """At the first instants alone."""
-        return replace(self, angle=self.angle[:count], doubt=self.doubt[:count])
+        return replace(self, angle=self.angle[:count])
 
     @property
     def rotation(self) -> Array:
@@ -85,11 +83,11 @@ class Turning:
 
     def error(self, vector: Array, off: Array) -> Array:
         """How far `seen` may be off where s and its rates are by `off`, (orders, N, 3)."""
-        angle, told = np.abs(self.angle.T), self.doubt.T
+        angle = np.abs(self.angle.T)
         size = np.linalg.norm(vector, axis=-1)
-        turned = PRODUCT + ANGLE * np.minimum(angle[0], 1.0) + U * angle[0] + told[0]
+        turned = PRODUCT + ANGLE * np.minimum(angle[0], 1.0) + U * angle[0]
         w, a = np.abs(self.rates)
-        speed, second = TURNED * angle[1:] + told[1:]
+        speed, second = TURNED * angle[1:]
         with np.errstate(invalid="ignore"):  # nothing times what may be anything
             error: Array = np.matvec(np.abs(self.rotation), off) + (turned * size)[..., None]
             seen = error.copy()
@@ -107,14 +105,11 @@ def _product(a: Array, b: Array) -> Array:
     return np.asarray(np.roll(a, -1, -1) * np.roll(b, -2, -1) + np.roll(a, -2, -1) * np.roll(b, -1, -1))
 
 
-def turnings(
-    model: Model, inputs: Mapping[str, Array], count: int, doubts: Mapping[str, Array] | None = None
-) -> tuple[Turning, ...]:
+def turnings(model: Model, inputs: Mapping[str, Array], count: int) -> tuple[Turning, ...]:
     """The turns of a model that are told, in its order.
 
     Args:
         inputs: name -> (N, 3) angle, rate and acceleration of some of them, among others. count: N.
-        doubts: how far these may be off, of all that are told; exact by default.
     Raises:
         InputError: one is of another length, not finite, or too fast.
     """
@@ -123,7 +118,6 @@ def turnings(
             np.array(model.points[model.turns[name].through]),
             unit_of(name, vector_of(name, name, model.turns[name].toward)),
             angle,
-            np.zeros_like(angle) if doubts is None else doubts[name],
         )
         for name, angle in turn_series(tuple(model.turns), inputs, count).items()
     )
@@ -155,7 +149,7 @@ def carried(solved: Solution, turns: Sequence[Turning], shift: Array) -> Solutio
     def of_body(state: Array, off: Array | None) -> tuple[Array, Array | None]:
         for turn in turns:
             if off is not None:
-                own = TURNED * np.abs(turn.angle.T[1:]) + turn.doubt.T[1:]
+                own = TURNED * np.abs(turn.angle.T[1:])
                 off = turn.error(state, off) + own[..., None]
             state = turn.seen(state) + turn.rates
             if off is not None:

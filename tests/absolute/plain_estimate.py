@@ -8,11 +8,18 @@ from numpy.typing import NDArray
 from absolute.estimate import SUMMED, TURNED, TURNED_TWICE, BodyMotion, Errors, fold
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.rounding import ARM, Doubt, length, pose_doubt, rate_doubt, second_doubt
+from absolute.rounding import ARM, length, pose_doubt, rate_doubt, second_doubt
 from absolute.sensitivity import drift_by_pose, drift_by_velocity, rate_by_pose
 from absolute.vectors import cross
 
 Array = NDArray[np.float64]
+
+
+class Doubt(NamedTuple):
+    """How far each row of an equation may be off, (N, rows): what is left of it, and its rounding."""
+
+    known: Array
+    rounded: Array
 
 
 class Answers(NamedTuple):
@@ -22,7 +29,6 @@ class Answers(NamedTuple):
         direct: K, (N, rows, bodies, 2, 3): pose to p, velocity to t, acceleration to s.
         speed, second: -K H K: velocity to p; acceleration to p. bent: acceleration to t.
         pose, rate, rest: the doubts p, t, s themselves.
-        slopes, inputs: change of the inputs' targets (see `target_slopes`), doubts (N, 3, inputs) of inputs.
         grown: what the next orders multiply the errors of pose, velocity and acceleration by, (N,) each.
     """
 
@@ -33,22 +39,18 @@ class Answers(NamedTuple):
     pose: Doubt
     rate: Doubt
     rest: Doubt
-    slopes: Array
-    inputs: Array
     grown: tuple[Array, Array, Array]
 
 
-def estimate(
-    mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, chassis: Array
-) -> Errors:
+def estimate(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, chassis: Array) -> Errors:
     """Errors of points and bodies at N solved instants.
 
     Args:
         motion: poses and rates of the bodies.
-        series: inputs (N, 3, inputs). doubts: how far each number of them may be off.
+        series: inputs (N, 3, inputs). left: (N, 3, rows) what is left of the equations as computed.
         chassis: (N, 3, 3) what was added to positions, velocities and accelerations, mm.
     """
-    answers = _answers(mechanism, motion, series, doubts)
+    answers = _answers(mechanism, motion, series, left)
     model = mechanism.model
     errors = Errors({}, {}, {}, {}, {}, {})
     for body, index in mechanism.drawing.bodies.items():
@@ -71,28 +73,22 @@ def estimate(
     return errors
 
 
-def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array) -> Answers:
+def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array) -> Answers:
     stack = mechanism.stack
     placed = stack.place(motion.rotation, motion.origin)
     targets = mechanism.target_series(series)
     jacobian = stack.jacobian(placed)
     inverse = np.asarray(np.linalg.inv(jacobian), dtype=float)
     moving, bending = (stack.motion(placed, rates) for rates in (motion.velocity, motion.acceleration))
-    speeds, seconds = (
-        rates[:, 1:].reshape(len(inverse), -1) for rates in (motion.velocity, motion.acceleration)
-    )
-    drift = stack.drift(placed, motion.velocity)
-    pose = pose_doubt(mechanism, placed, targets[0])
-    slopes = mechanism.target_slopes(series)
-    everything = pose.known + pose.rounded
-    everything[:, mechanism.joint_rows :] += np.abs(slopes[0, 0]) * doubts[:, 0]
+    speeds = motion.velocity[:, 1:].reshape(len(inverse), -1)
+    pose = Doubt(np.abs(left[:, 0]), pose_doubt(mechanism, placed, targets[0]))
     by_velocity = drift_by_velocity(stack, moving)
     by_pose = rate_by_pose(stack, bending) + drift_by_pose(stack, moving)
     speed = -inverse @ rate_by_pose(stack, moving) @ inverse
     second = -inverse @ (by_pose @ inverse + by_velocity @ speed)
     bent = -inverse @ by_velocity @ inverse
-    rate = rate_doubt(moving, jacobian, speeds, targets[1])
-    grown = fold(mechanism, placed, inverse, everything)
+    rate = Doubt(np.abs(left[:, 1]), rate_doubt(moving, targets[1]))
+    grown = fold(mechanism, placed, inverse, pose.known + pose.rounded)
     # The drift is quadratic in the velocities: its next order is smaller by what these are off themselves.
     off = np.einsum("nij,nj->ni", np.abs(inverse), rate.known + rate.rounded)
     fastest = np.abs(speeds).max(axis=1)
@@ -104,9 +100,7 @@ def _answers(mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Ar
         _by_row(bent),
         pose,
         rate,
-        second_doubt(moving, bending, jacobian, seconds, drift, targets[2]),
-        slopes,
-        doubts,
+        Doubt(np.abs(left[:, 2]), second_doubt(moving, bending, targets[2])),
         (grown[0], grown[1], grown[2] * (1.0 + share)),
     )
 
@@ -162,14 +156,6 @@ def _totals(
         _summed(speed, p) + _summed(direct, t),
         _summed(second, p) + _summed(bent, t) + _summed(direct, s),
     )
-    # An input's row answers to all three equations at once where its value is off.
-    driven = slice(direct.shape[1] - answers.inputs.shape[-1], None)
-    d, v, a, b = (answer[:, driven] for answer in (direct, speed, second, bent))
-    for slopes, off in zip(answers.slopes, answers.inputs.swapaxes(0, 1), strict=True):
-        to_pose, to_rate, to_rest = slopes[..., None]
-        changes = d * to_pose, v * to_pose + d * to_rate, a * to_pose + b * to_rate + d * to_rest
-        for total, change in zip(totals, changes, strict=True):
-            total += np.einsum("nic,ni->nc", np.abs(change), off)
     position, velocity, acceleration = (
         total + _further(total, grown) for total, grown in zip(totals, answers.grown, strict=True)
     )

@@ -155,7 +155,7 @@ def test_a_way_that_no_step_leads_along_is_given_up_at_the_root_of_eps(
 ) -> None:
     mechanism = Mechanism(strut)
     pose, _ = assemble(mechanism)
-    begin, zeros = mechanism.drawn_inputs.tolist(), [0.0, 0.0]
+    begin = mechanism.drawn_inputs.tolist()
     sizes = []
 
     def watched(within: Mechanism, start: Pose, rate: Array, second: Array) -> tuple[Array, Array]:
@@ -169,7 +169,7 @@ def test_a_way_that_no_step_leads_along_is_given_up_at_the_root_of_eps(
         follow(
             mechanism,
             pose,
-            lambda share: mechanism.targets([begin[0], begin[1] + share * way], [0.0, way], zeros),
+            lambda share: mechanism.targets([begin[0], begin[1] + share * way], [0.0, way]),
         )
     # Halves, the last of which is the first at or below it.
     root = math.sqrt(np.finfo(float).eps)

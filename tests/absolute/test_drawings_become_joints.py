@@ -44,7 +44,14 @@ def lines_of(first: tuple[float, float, float], second: tuple[float, float, floa
         for i in range(FREEDOMS[kind])
     }
     bodies = {"ground": ("o", "a", "c"), "body": ("o", "b")}
-    return Model(POINTS, "ground", bodies, {"joint": joint}, inputs)
+    return Model(
+        POINTS,
+        "ground",
+        bodies,
+        {"joint": joint},
+        inputs,
+        absolute.Corner((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)),
+    )
 
 
 @pytest.mark.parametrize("kind", FREEDOMS)
@@ -133,7 +140,6 @@ def test_lines_that_lead_against_each_other_are_refused(
 
 def test_a_drawing_without_words_is_a_left_wheel_drawn_z_up_and_y_right() -> None:
     model = built_in("macpherson", TABLE)
-    assert model.corner is not None
     assert (model.corner.up, model.corner.right, model.corner.outboard) == ((0, 0, 1), (0, 1, 0), (0, -1, 0))
     right = built_in("macpherson", TABLE, side="right", up=(0, 0, 4), right=(-3, 0, 0)).corner
     assert right is not None

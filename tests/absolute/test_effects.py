@@ -172,24 +172,6 @@ def test_a_top_mount_moved_inboard_by_hand_is_kingpin(lean: float, side: str, ou
     assert abs(motion.effects["kingpin"][0] - lean) < 10 * 60 * EPS
 
 
-def test_what_input_errors_do_to_an_angle_is_in_its_claim() -> None:
-    kind = KINDS["strut"]
-    car = kind.random_car(4, True)
-    inputs = drawn_pose(kind, car)
-    off = {"arm_angle": np.array([[1e-5, 0.0, 0.0]])}
-    names = tuple(absolute.EFFECTS)
-    model = kind.build(car)
-    told = absolute.solve(model, inputs, errors=True, input_errors=off, effects=names)
-    moved = absolute.solve(
-        model, {**inputs, "arm_angle": inputs["arm_angle"] + off["arm_angle"]}, effects=names
-    )
-    for name in names:
-        change = abs(moved.effects[name][0] - told.effects[name][0])
-        # Exact to first order, the next is smaller by the shift itself. The components of a turn are told
-        # without their signs, and may add up to a few times more.
-        assert 1e-8 < change <= (1.0 + 1e-4) * told.effect_errors[name][0] < 8 * change, name
-
-
 def test_a_line_without_length_has_any_angle() -> None:
     kind = KINDS["strut"]
     car = kind.random_car(1, True)
@@ -218,8 +200,8 @@ def test_an_unknown_effect_is_refused_with_those_there_are(strut: absolute.Model
 
 
 def test_a_linkage_without_a_wheel_has_no_effects(strut: absolute.Model) -> None:
-    bare = dataclasses.replace(strut, corner=None)
-    with pytest.raises(absolute.DescriptionError, match="no effects"):
+    bare = dataclasses.replace(strut, corner=dataclasses.replace(strut.corner, wheel_axis=None))
+    with pytest.raises(absolute.DescriptionError, match="no role 'wheel_axis'"):
         absolute.solve(bare, inputs_at((1.5, 0, 0), (3.0, 0, 0)), effects=["camber"])
     assert absolute.solve(bare, inputs_at((1.5, 0, 0), (3.0, 0, 0))).position
 
@@ -235,20 +217,6 @@ def test_a_refused_motion_keeps_the_effects_before_it(strut: absolute.Model) -> 
     assert caught.value.partial is not None
     assert caught.value.partial.effects["camber"].shape == (2,)
     assert caught.value.partial.effect_errors["camber"].shape == (2,)
-
-
-def test_corners_are_checked(strut: absolute.Model) -> None:
-    corner = strut.corner
-    assert corner is not None
-    for change in (
-        {"wheel_axis": ("hub", "wheel_centre")},
-        {"steering_axis": ("lower_ball_joint", "hub")},
-    ):
-        with pytest.raises(absolute.DescriptionError, match="hub"):
-            dataclasses.replace(strut, corner=dataclasses.replace(corner, **change))
-    with pytest.raises(absolute.DescriptionError, match="outboard"):
-        dataclasses.replace(corner, outboard=(0.0, 0.0, 0.0))
-    assert dataclasses.replace(corner, up=(0.0, 0.0, 7.0)).up == (0.0, 0.0, 1.0)
 
 
 @pytest.mark.parametrize("side", ["Left", "", "both"])

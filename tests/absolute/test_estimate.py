@@ -7,28 +7,24 @@ import pytest
 from numpy.typing import NDArray
 
 import absolute
-from absolute.estimate import BodyMotion, estimate
+from absolute.estimate import BodyMotion, named, totals
 from absolute.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 
 
-@pytest.mark.parametrize("exact_inputs", [True, False])
 def test_an_estimate_by_matrices_is_that_of_each_point_and_component(
-    kind: kinds.Kind, model: absolute.Model, monkeypatch: pytest.MonkeyPatch, exact_inputs: bool
+    kind: kinds.Kind, model: absolute.Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    t = np.linspace(0.0, 1.0, 40)
-    inputs = kind.inputs(t)
-    random = np.random.default_rng(5)
-    chassis = random.normal(size=(40, 3, 3)) * 100.0
-    doubts = None if exact_inputs else {"rack": 1e-9 * random.uniform(size=(40, 3))}
+    inputs = kind.inputs(np.linspace(0.0, 1.0, 40))
+    chassis = np.random.default_rng(5).normal(size=(40, 3, 3)) * 100.0
     compared = []
 
     def both(
-        mechanism: Mechanism, motion: BodyMotion, series: Array, off: Array, carried: Array
-    ) -> absolute.estimate.Errors:
-        found = estimate(mechanism, motion, series, off, carried)
-        plain = plain_estimate.estimate(mechanism, motion, series, off, carried)
+        mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, conditions: bool
+    ) -> tuple[Array, Array]:
+        found = named(mechanism, motion, chassis, totals(mechanism, motion, series, left)[0])
+        plain = plain_estimate.estimate(mechanism, motion, series, left, chassis)
         for quick, slow in zip(found, plain, strict=True):
             assert quick.keys() == slow.keys()
             for name, expected in slow.items():
@@ -36,19 +32,11 @@ def test_an_estimate_by_matrices_is_that_of_each_point_and_component(
                 # to spare: the same terms in another order.
                 assert np.allclose(quick[name], expected, rtol=1e-10, atol=0), name
                 compared.append(name)
-        return found
+        return sampled(mechanism, motion, series, left, conditions)
 
-    def sampled(
-        mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, conditions: bool
-    ) -> tuple[Array, Array]:
-        # Of exact inputs only some instants are computed: here all are.
-        both(mechanism, motion, series, np.zeros_like(series), chassis)
-        return plain_sampled(mechanism, motion, series, left, conditions)
-
-    plain_sampled = absolute.results.sampled
-    monkeypatch.setattr(absolute.results, "estimate", both)
-    monkeypatch.setattr(absolute.results, "sampled", sampled)
-    absolute.solve(model, inputs, chassis, errors=True, input_errors=doubts)
+    sampled = absolute.results.sampled
+    monkeypatch.setattr(absolute.results, "sampled", both)
+    absolute.solve(model, inputs, chassis, errors=True)
     assert {*model.points, *model.moving} <= set(compared)
 
 
@@ -60,8 +48,7 @@ def test_instants_of_a_long_motion_have_the_errors_they_have_alone(
     inputs = kind.inputs(t)
     random = np.random.default_rng(6)
     chassis = random.normal(size=(70, 3, 3)) * 100.0
-    doubts = {"arm_angle": 1e-6 * random.uniform(size=(70, 3))}
-    long = absolute.solve(model, inputs, chassis, errors=True, conditions=True, input_errors=doubts)
+    long = absolute.solve(model, inputs, chassis, errors=True, conditions=True)
     for k in (0, 31, 32, 33, 63, 64, 69):
         one = slice(k, k + 1)
         alone = absolute.solve(
@@ -70,15 +57,14 @@ def test_instants_of_a_long_motion_have_the_errors_they_have_alone(
             chassis[one],
             errors=True,
             conditions=True,
-            input_errors={name: column[one] for name, column in doubts.items()},
         )
         assert long.condition is not None
         assert alone.condition is not None
         assert long.condition[k] == pytest.approx(alone.condition[0], rel=1e-9)
         for kind_of in ("position_error", "velocity_error", "acceleration_error", "rotation_error"):
             for name, error in getattr(alone, kind_of).items():
-                # What the input may be off is a million times what is rounded.
-                assert getattr(long, kind_of)[name][k] == pytest.approx(error[0], rel=1e-3, abs=1e-12), name
+                # The same pose to rounding: a handful of the numbers that are left of an equation differ.
+                assert np.allclose(getattr(long, kind_of)[name][k], error[0], rtol=0.5), name
 
 
 def test_nothing_is_told_that_is_not_asked_for(model: absolute.Model, kind: kinds.Kind) -> None:
@@ -112,15 +98,13 @@ def test_the_residual_is_told_in_millimetres(
     assert motion.residual == pytest.approx(off * size, rel=1e-12)
 
 
-@pytest.mark.parametrize("known", [True, False])
-def test_rates_of_a_car_at_rest_are_not_off_at_all(model: absolute.Model, known: bool) -> None:
+def test_rates_of_a_car_at_rest_are_not_off_at_all(model: absolute.Model) -> None:
     # No row has a rate that may be rounded, however far the pose itself is off.
     drawn = dict(zip(model.inputs, Mechanism(model).drawn_inputs.tolist(), strict=True))
     motion = absolute.solve(
         model,
         {name: np.array([[value, 0.0, 0.0]]) for name, value in drawn.items()},
         errors=True,
-        input_errors=None if known else {name: np.array([[1e-9, 0.0, 0.0]]) for name in drawn},
     )
     assert all((error > 0.0).all() for error in motion.position_error.values())
     for errors in (

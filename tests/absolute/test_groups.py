@@ -16,7 +16,7 @@ def jacobians(mechanism: Mechanism, turns: Array, seed: int = 4) -> Array:
     ways = np.outer(turns, np.random.default_rng(seed).normal(size=mechanism.stack.count))
     drawn = mechanism.poses(mechanism.drawn).rotation
     q = np.array([mechanism.moved(mechanism.drawn, drawn, way) for way in ways])
-    return mechanism.stack.jacobian(mechanism.stack.place(*mechanism.poses_of(q)))
+    return mechanism.stack.jacobian(mechanism.stack.place(*mechanism.poses(q)))
 
 
 @pytest.mark.parametrize("furthest", [0.0, 1e-3, 0.1, 1.0])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import absolute
-from absolute.input_arrays import chassis_series, doubt_series, input_series
+from absolute.input_arrays import chassis_series, input_series
 
 NAMES = ("arm_angle", "rack")
 
@@ -20,13 +20,6 @@ def test_inputs_are_side_by_side_in_the_order_of_the_model() -> None:
     assert series.shape == (4, 3, 2)
     # Value, rate and acceleration of the third instant.
     assert series[2].tolist() == [[6.0, 106.0], [7.0, 107.0], [8.0, 108.0]]
-
-
-def test_inputs_that_are_not_in_doubt_are_exact() -> None:
-    series = doubt_series(NAMES, {"rack": numbers(4, 100.0)}, 4)
-    assert series.shape == (4, 3, 2)
-    assert series[2].tolist() == [[0.0, 106.0], [0.0, 107.0], [0.0, 108.0]]
-    assert not doubt_series(NAMES, {}, 4).any()
 
 
 def test_a_chassis_that_is_not_told_to_move_is_at_rest() -> None:
@@ -53,23 +46,6 @@ def test_the_input_at_fault_is_named_with_its_first_bad_instant(
 ) -> None:
     with pytest.raises(absolute.InputError) as caught:
         input_series(NAMES, inputs)
-    assert (caught.value.name, caught.value.instant) == (name, instant)
-
-
-@pytest.mark.parametrize(
-    ("doubts", "name", "instant"),
-    [
-        ({"y": numbers(4, 0.0), "x": numbers(4, 0.0)}, "x", None),
-        ({"rack": numbers(3, 0.0)}, "rack", None),
-        ({"rack": numbers(4, -4.0)}, "rack", 0),
-        ({"rack": [[0, 0, 0], [0, 0, 0], [0, -1e-300, 0], [-1, 0, 0]]}, "rack", 2),
-    ],
-)
-def test_the_doubt_at_fault_is_named_with_its_first_bad_instant(
-    doubts: dict[str, Any], name: str, instant: int | None
-) -> None:
-    with pytest.raises(absolute.InputError) as caught:
-        doubt_series(NAMES, doubts, 4)
     assert (caught.value.name, caught.value.instant) == (name, instant)
 
 

@@ -24,7 +24,7 @@ def solved_lines(model: absolute.Model, turn: float, place: float) -> SolvedLine
     ]
     turns = {body: turn * random.uniform(0.1, 1.0, (COUNT, 3)) for body in model.moving}
     places = {point: place * random.uniform(0.1, 1.0, (COUNT, 3)) for point in model.points}
-    return SolvedLines(mechanism, *mechanism.poses_of(np.array(q)), Errors(places, {}, {}, turns, {}, {}))
+    return SolvedLines(mechanism, *mechanism.poses(np.array(q)), Errors(places, {}, {}, turns, {}, {}))
 
 
 def body_of(model: absolute.Model, ends: tuple[str, str]) -> str:

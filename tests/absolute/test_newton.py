@@ -43,7 +43,7 @@ def test_one_correction_is_enough_below_the_root_of_eps_rcond(
     mechanism = Mechanism(strut)
     pose, _ = assemble(mechanism)
     inputs = mechanism.drawn_inputs.tolist()
-    target = mechanism.targets(inputs, [0.0, 0.0], [0.0, 0.0])[0]
+    target = mechanism.targets(inputs)[0]
     way = np.random.default_rng(2).normal(size=mechanism.stack.count)
     away = share * np.sqrt(EPS * pose.rcond) * way / np.linalg.norm(way)
     outcome = correct(mechanism, mechanism.moved(pose.q, pose.poses.rotation, away), target, pose.rcond)
@@ -67,9 +67,7 @@ def test_corrections_that_led_nowhere_are_counted_too(
     moved = mechanism.moved
     monkeypatch.setattr(mechanism, "moved", watched)
     # Rows that are called straight: one correction would be enough, but the next is far above rounding.
-    outcome = correct(
-        mechanism, pose.q, mechanism.targets([angle, rack + 20.0], [0.0] * 2, [0.0] * 2)[0], np.inf
-    )
+    outcome = correct(mechanism, pose.q, mechanism.targets([angle, rack + 20.0])[0], np.inf)
     assert outcome.pose is None
     assert outcome.corrections == len(made) == 1
 

@@ -116,7 +116,7 @@ def expansions(model: absolute.Model, changes: list[Array]) -> tuple[Mechanism, 
     """Expansions at poses whose targets are so far from those of the drawing."""
     mechanism = Mechanism(model)
     pose, _ = assemble(mechanism)
-    drawn = mechanism.targets(mechanism.drawn_inputs.tolist(), [0.0, 0.0], [0.0, 0.0])[0]
+    drawn = mechanism.targets(mechanism.drawn_inputs.tolist())[0]
     found, poses = [], []
     for change in changes:
         target = drawn.copy()

@@ -35,7 +35,7 @@ class Compared:
         self, mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array, conditions: bool
     ) -> tuple[Array, Array]:
         found, numbers = sampled(mechanism, motion, series, left, conditions)
-        exact, _ = totals(mechanism, motion, series, np.zeros_like(series), left)
+        exact, _ = totals(mechanism, motion, series, left)
         # Smaller numbers are made of the roundings of coefficients.
         kept = exact > DUST * exact.max(axis=-1, keepdims=True)
         shares = found[kept] / exact[kept]
@@ -61,10 +61,10 @@ def compared(
     both, plain = Compared(), sampled_estimate.totals
 
     def counted(
-        mechanism: Mechanism, motion: BodyMotion, series: Array, doubts: Array, left: Array
+        mechanism: Mechanism, motion: BodyMotion, series: Array, left: Array
     ) -> tuple[Array, Sensitivity]:
         both.computed += len(series)
-        return plain(mechanism, motion, series, doubts, left)
+        return plain(mechanism, motion, series, left)
 
     monkeypatch.setattr(sampled_estimate, "totals", counted)
     monkeypatch.setattr(absolute.results, "sampled", both)

@@ -193,27 +193,6 @@ def test_a_motion_that_ends_on_its_way_is_turned_as_far_as_it_goes() -> None:
         assert np.abs(partial.velocity[name] - speed).max() <= 2.0 * whole.velocity_error[name].max()
 
 
-@pytest.mark.parametrize("off", [(1e-6, 0.0, 0.0), (0.0, 1e-6, 0.0), (0.0, 0.0, 1e-6)])
-def test_what_a_turn_is_off_is_claimed_of_all_that_it_turns(off: tuple[float, ...]) -> None:
-    doubt = {"roll": np.tile(off, (len(TIMES), 1))}
-    claimed, exact = solved(input_errors=doubt), solved()
-    for sign in (1.0, -1.0):
-        law = {
-            name: told(law) + (sign * np.array(off) if name == "roll" else 0.0) for name, law in LAWS.items()
-        }
-        shift = told(SHIFT)[:, :, None] * np.array([0.0, 0.0, 1.0])
-        moved = absolute.solve(crank(), law, chassis=shift)
-        largest = 0.0
-        for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
-            for name, value in getattr(exact, quantity).items():
-                claim = getattr(claimed, f"{quantity}_error")[name]
-                change = np.abs(getattr(moved, quantity)[name] - value)
-                # The next order of a change of 1e-6.
-                assert (change <= claim * (1.0 + 1e-5) + 1e-11).all()
-                largest = max(largest, float((change / claim).max()))
-        assert largest > 0.5
-
-
 @pytest.mark.parametrize(
     ("law", "words"),
     [

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from flat import built_in
+from struts import TABLE
 
 import absolute
 from absolute.drawing import Drawing
@@ -28,6 +30,7 @@ def door(scale: float, points: dict[str, tuple[float, float, float]] = POINTS) -
         bodies={"frame": ("hinge", "low", "stop"), "door": ("hinge", "low", "edge")},
         joints={"hinges": absolute.Joint("revolute", "frame", "door", line, line)},
         inputs={"swing": swing},
+        corner=absolute.Corner((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)),
     )
 
 
@@ -74,7 +77,7 @@ def test_points_too_near_each_other_for_their_coordinates_are_refused() -> None:
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
 def test_directions_of_a_car_are_unit_vectors_at_any_length(scale: float) -> None:
     up, right = (0.0, 0.6 * scale, 0.8 * scale), (0.0, 0.8 * scale, -0.6 * scale)
-    corner = absolute.Corner(up, right, right)
+    corner = built_in("macpherson", TABLE, up=up, right=right, side="right").corner
     assert corner.up == pytest.approx((0.0, 0.6, 0.8), rel=1e-15, abs=0.0)
     assert corner.outboard == pytest.approx((0.0, 0.8, -0.6), rel=1e-15, abs=0.0)
     assert corner.inboard == pytest.approx((0.0, -0.8, 0.6), rel=1e-15, abs=0.0)

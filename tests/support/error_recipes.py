@@ -167,7 +167,7 @@ def blocked() -> object:
 
     def path(share: float) -> Any:
         values = [a + share * c for a, c in zip(begin, change, strict=True)]
-        return mechanism.targets(values, change, [0.0, 0.0])
+        return mechanism.targets(values, change)
 
     return follow(mechanism, assemble(mechanism)[0], path)
 
@@ -515,7 +515,7 @@ RECIPES: dict[str, Recipe] = {
         ("'absolute' needs the package", "not installed", "pip install 'pointcoord[validate]'"),
         {"part": "absolute", "package": "absolute"},
     ),
-    "validate.peers.linkage.PeerError": Recipe(
+    "validate.peers.errors.PeerError": Recipe(
         lambda *_: linkage_of(HINGE_OF_ONE_POINT),
         ("lower_arm_front is where lower_arm_rear is",),
         {"problem": bool, "instant": None},

@@ -31,7 +31,8 @@ from pointcoord.results.closing import ALLOWED
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, FormulationError, Numbers, Solution
-from validate.peers.linkage import Inputs, Linkage, PeerError, linkage_of
+from validate.peers.errors import PeerError
+from validate.peers.linkage import Inputs, Linkage, linkage_of
 from validate.peers.motion import Poses, Rates
 from validate.peers.motion import numbers as numbers_of
 

@@ -13,7 +13,7 @@ from numbers import Integral
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
 from pointcoord.data_classes import dataclass
 from validate.formulations.protocol import FormulationError
-from validate.peers.linkage import PeerError
+from validate.peers.errors import PeerError
 from validate.relative.errors import HardpointsError, InputError, PoseError
 
 DRAWING = "drawing has no assembly"

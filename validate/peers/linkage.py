@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
+from validate.peers.errors import PeerError
 from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.cut import (
     CHASSIS,
@@ -43,19 +44,6 @@ from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
 Array = NDArray[np.float64]
 
 UNIT_ROUNDOFF = 0.5 * float(np.finfo(float).eps)
-
-
-class PeerError(Exception):
-    """A peer does not answer: it cannot hold the mechanism, or a pose is not reached.
-
-    Attributes:
-        instant: its number, None if it is the drawing.
-    """
-
-    def __init__(self, problem: str, instant: int | None = None) -> None:
-        self.problem = problem
-        self.instant = instant
-        super().__init__(problem)
 
 
 @dataclass(frozen=True)

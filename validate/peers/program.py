@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from validate.peers.linkage import Linkage, PeerError
+from validate.peers.errors import PeerError
+from validate.peers.linkage import Linkage
 from validate.peers.motion import Poses, Rates
 from validate.spanning_tree.determined import independent_rows
 

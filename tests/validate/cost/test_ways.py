@@ -20,7 +20,7 @@ from validate.cost.ways.registry import OURS, WAYS, ways_named
 from validate.cost.ways.scipy_solvers import SolverStopped
 from validate.extras import MissingPackage
 from validate.peers import program
-from validate.peers.linkage import PeerError
+from validate.peers.errors import PeerError
 
 # What solves each instant, each as finely as it can be set.
 EXACT = [way.name for way in WAYS if way.name not in ("printed", "map", "series") and not way.rates_only]

@@ -18,8 +18,8 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.refusals import DRAWING, INPUT, MOTION, START, why_refused
 from validate.formulations.registry import OUTSIDE, WORDS, formulation
 from validate.hard.cars import BESIDE_CAR, PAPER_CAR, scene_content
+from validate.peers.errors import PeerError
 from validate.peers.in_mujoco import InMujoco
-from validate.peers.linkage import PeerError
 from validate.peers.motion import Poses, Rates
 from validate.strategies import scenes
 

@@ -10,7 +10,8 @@ from mechanism_files import mechanism_file, plain, plain_scene
 from relative_cars import plain_car
 from sample_cars import SAMPLES, SampleCar, by_car
 
-from validate.peers.linkage import Driven, PeerError, linkage_of
+from validate.peers.errors import PeerError
+from validate.peers.linkage import Driven, linkage_of
 from validate.spanning_tree.cut import CHASSIS, Drive, Place
 
 EPS = float(np.finfo(float).eps)

@@ -17,9 +17,10 @@ from sample_cars import GENERAL_STRUT, SAMPLES, SampleCar
 from suspensions_in_closed_form import FORMS, ClosedForm, rounded
 
 from validate.peers import program
+from validate.peers.errors import PeerError
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
-from validate.peers.linkage import Linkage, PeerError, linkage_of
+from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses, numbers
 
 Array = NDArray[np.float64]

@@ -37,7 +37,7 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
     tracking = Tracking(mechanism)
     rates = plan_effects(scene.effects).derivative > 0
     wanted = [name for quantity in asked if QUANTITIES[quantity].of == "car" for name in asked[quantity]]
-    told = Asked(rates, conditions=False, doubts=None, effects=effects_of(wanted))
+    told = Asked(rates, conditions=False, errors=False, effects=effects_of(wanted))
 
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)

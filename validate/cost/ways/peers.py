@@ -17,7 +17,7 @@ from validate.cost.way import Answer, Solve, Way
 from validate.cost.ways.inputs import laws_at
 from validate.formulations.outside_programs import asked_of, linkage_in, require_the_drawn_car
 from validate.formulations.registry import OUTSIDE, WORDS, engine_of
-from validate.peers.linkage import PeerError
+from validate.peers.errors import PeerError
 from validate.peers.motion import numbers
 
 Array = NDArray[np.float64]
