@@ -10,12 +10,13 @@ from validate.closed_drawing import warnings_of
 from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import require_target
 from validate.exit_status import ExitStatus
-from validate.hardpoint_files.axes import DIRECTIONS, UNITS
+from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import PARTS, SIDES, Imported, import_hardpoints, names_of
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_whole
 from validate.plain_text import shown
+from validate.tables.units import LENGTHS
 
 ENDINGS = (".toml",)
 
@@ -61,7 +62,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         metavar="X,Y,Z",
         help=f"where the file's x, y and z point, such as forward,left,up, of {', '.join(DIRECTIONS)}",
     )
-    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(UNITS)}")
+    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(LENGTHS)}")
     parser.add_argument(
         "--camber",
         metavar="DEG",

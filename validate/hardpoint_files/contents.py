@@ -97,7 +97,7 @@ class Contents:
         unit: of its lengths, if it says so.
         angles: static angles that it prints, by part and its own words, deg.
         spin_axes: by part, where its wheel's spin axis points, if said without a point.
-        axes: where x, y and z point, if it says so. turned: words of axes of its own that are not known here.
+        axes: where x, y and z point, if it says so.
         spoilt: lines that hold no point; right unless they are called like one.
         notes: by part, what the user should know of its points. doubts: by part, what may make them another
             car than the file's.
@@ -109,7 +109,6 @@ class Contents:
     angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
     spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
     axes: tuple[str, ...] = ()
-    turned: str = ""
     spoilt: tuple[Spoilt, ...] = ()
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -70,12 +70,12 @@ class Format:
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        endings, beginnings: sides and axles by what a point's name ends or begins with.
         vocabulary: other words for those of its names; None if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
-        our_own_names: whether its points may have our own names; where all do, its axes are ours as well.
+        our_own_names: whether its points may have our own names, and words for a wheel before or after a
+            name; where all have our own, its axes are ours as well.
         suspensions: by our name of each.
     """
 
@@ -87,8 +87,6 @@ class Format:
     unit: str
     side: str
     axes_told_by: str
-    endings: Mapping[str, Mapping[str, str]]
-    beginnings: Mapping[str, Mapping[str, str]]
     vocabulary: Vocabulary | None
     refused: str
     refused_words: str
@@ -150,8 +148,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
         unit=table["unit"],
         side=table.get("side", ""),
         axes_told_by=table.get("axes_told_by", ""),
-        endings=_senses(table.get("endings", {})),
-        beginnings=_senses(table.get("beginnings", {})),
         vocabulary=Vocabulary.of(table["vocabulary"], table["idle"]["words"])
         if "vocabulary" in table
         else None,
@@ -173,10 +169,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
             for kind, own in table["suspensions"].items()
         },
     )
-
-
-def _senses(table: Mapping[str, Mapping[str, str]]) -> dict[str, Mapping[str, str]]:
-    return {plain(word): sense for word, sense in table.items()}
 
 
 def format_of(text: str, name: str | None, source: str) -> Format:

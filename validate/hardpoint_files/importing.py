@@ -6,7 +6,6 @@ without a name of ours, points of ours that the file lacks.
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +18,8 @@ from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, UNITS, Axes, axes_seen
+from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
+from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
@@ -32,11 +32,11 @@ from validate.hardpoint_files.contents import (
 )
 from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import Format, Names, format_of
-from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
-from validate.hardpoint_files.names_to_fill_in import names_to_fill_in
-from validate.hardpoint_files.slips import slips
+from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+from validate.tables.cells import text_of
+from validate.tables.units import LENGTHS
 
 # mm: the points of one wheel's suspension, from model cars to lorries, span no less and no more.
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
@@ -150,7 +150,7 @@ def _known_choices(choices: Choices) -> None:
     allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
         ("suspension", choices.suspension, shipped()),
         ("side", choices.side, SIDES),
-        ("unit", choices.unit, UNITS),
+        ("unit", choices.unit, LENGTHS),
     )
     for kind, chosen, names in allowed:
         if chosen is not None and chosen not in names:
@@ -160,16 +160,11 @@ def _known_choices(choices: Choices) -> None:
 
 
 def _decoded(data: bytes, source: str) -> str:
-    """Text as programs write it: UTF-8, UTF-16 with its mark, or the code page of Western Windows."""
-    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-    for code in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
-        try:
-            text = data.decode(code)
-        except UnicodeDecodeError:
-            continue
-        if "\0" not in text:
-            return text
-    raise HardpointFileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
+    text = text_of(data)
+    if text is None:
+        problem, allowed = "is no text", "a text file; of a workbook, one sheet saved as CSV"
+        raise HardpointFileError(source, 0, problem, allowed)
+    return text
 
 
 @dataclass(frozen=True)
@@ -294,43 +289,30 @@ class _Import:
         def known(name: str) -> str:
             return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
 
-        # Beside names with a lonely f an r may be rear as well as right.
-        every = [plain(point.name).split() for point in self.contents.points]
-        parted = [part for name in every for part in ((name[:1], name[1:]), (name[-1:], name[:-1]))]
-        doubtful = any(edge == ["f"] and known(" ".join(rest)) for edge, rest in parted)
-
         def found(point: FilePoint) -> tuple[str, FilePoint]:
-            for base, begins, ends in self.readings(point.name):
+            for base, (side, part) in self.readings(point.name):
                 if our := known(base):
-                    if doubtful and "r" in (begins, ends):
-                        return "", point
-                    for sense in (self.format.beginnings.get(begins, {}), self.format.endings.get(ends, {})):
-                        if point.side and sense.get("side", point.side) != point.side:
-                            raise self.refuse(
-                                f"has {short(point.name)} for the {point.side} wheel", "one side", point.line
-                            )
-                        point = replace(
-                            point, side=sense.get("side", point.side), part=sense.get("part", point.part)
-                        )
-                    return our, point
+                    if side and point.side and side != point.side:
+                        told = f"has {short(point.name)} for the {point.side} wheel"
+                        raise self.refuse(told, "one side", point.line)
+                    return our, replace(point, side=side or point.side, part=part or point.part)
             return "", point
 
         return found
 
-    def readings(self, name: str) -> Iterator[tuple[str, str, str]]:
-        """A name whole, and without the words of a wheel that it begins or ends with, and these words."""
-        yield name, "", ""
-        begins, ends = self.format.beginnings, self.format.endings
-        words = re.findall(r"[^\W_]+", name)
-        for ahead, behind in ((0, 1), (2, 0), (1, 0), (2, 1), (1, 1)):
+    def readings(self, name: str) -> Iterator[tuple[str, Wheel]]:
+        """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
+        yield name, NO_WHEEL
+        words = re.findall(r"[^\W_]+", name) if self.format.our_own_names else []
+        for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
             base = words[ahead : len(words) - behind]
-            first, last = plain(" ".join(words[:ahead])), plain(" ".join(words[len(words) - behind :]))
-            if base and (not ahead or first in begins) and (not behind or last in ends):
-                yield " ".join(base), first, last
+            edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
+            if base and all(word in WHEELS for word in edge):
+                yield " ".join(base), wheel_of(edge)
 
     def holds_nothing(self, point: FilePoint) -> bool:
         """Whether a point is known and not needed, whatever tells its wheel."""
-        return any(self.format.holds_nothing(base) for base, _, _ in self.readings(point.name))
+        return any(self.format.holds_nothing(base) for base, _ in self.readings(point.name))
 
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names, and the others."""
@@ -490,11 +472,9 @@ class _Import:
         telling = (
             [point for point in read.values() if re.fullmatch(told_by, plain(point.name))] if told_by else []
         )
-        if not self.contents.turned and (not told_by or telling):
+        if not told_by or telling:
             return self.format.axes, f"names such as {short(telling[0].name)}" if telling else "its format"
-        told = (
-            f"has a {self.contents.turned}" if self.contents.turned else "does not say where x, y and z point"
-        )
+        told = "does not say where x, y and z point"
         seen, outboard, words = self.seen(topology, ours)
         if seen is None:
             raise self.refuse(told, f"--axes with {ALLOWED}")
@@ -524,12 +504,12 @@ class _Import:
     def is_our_own(self, ours: str, point: FilePoint) -> bool:
         """Whether a point of the file has our own name as we write it, with or without a side and an axle."""
         base, _, ending = point.name.rpartition("_")
-        return ours in (point.name, base if plain(ending) in self.format.endings else "")
+        return ours in (point.name, base if plain(ending) in WHEELS else "")
 
     def unit(self) -> str:
         said, chosen = self.contents.unit, self.choices.unit
-        if said and said not in UNITS:
-            raise self.refuse(f"has lengths in {short(said)}", ", ".join(UNITS))
+        if said and said not in LENGTHS:
+            raise self.refuse(f"has lengths in {short(said)}", ", ".join(LENGTHS))
         if said and chosen and said != chosen:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
         return chosen or said or self.format.unit
@@ -550,7 +530,6 @@ class _Import:
         if seen is None or _same_but_for_left(axes, seen):
             return []
         told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
-        told += self.slipped(topology, ours, axes)
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
         # Which way is left no point shows: it decides which wheel this is.
@@ -560,24 +539,16 @@ class _Import:
         allowed = f"{' or '.join(ways)} if that is so, --axes {axes.option} if not"
         raise self.refuse(told, allowed)
 
-    def slipped(self, topology: Topology, ours: Mapping[str, FilePoint], axes: Axes) -> str:
-        """The points that one slip puts apart from all others, and without it the axes fit, as a question."""
-        places = {name: point.place for name, point in ours.items()}
-        found = []
-        for name, place, words in slips(places, (*topology.front_and_rear, *topology.steering_axis)):
-            seen = self.seen(topology, {**ours, name: replace(ours[name], place=place)})[0]
-            if seen is not None and _same_but_for_left(axes, seen):
-                found.append(f"{short(ours[name].name)} on line {ours[name].line} ({words} would fit)")
-        return f" (or is one of these wrong: {', '.join(found)}?)" if found else ""
-
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
         places = [point.place for point in ours.values()]
         span = max(max(column) - min(column) for column in zip(*places, strict=True))
-        if SMALLEST <= span * UNITS[unit] <= LARGEST:
+        if SMALLEST <= span * LENGTHS[unit] <= LARGEST:
             return []
-        fitting = {other: span * size for other, size in UNITS.items() if SMALLEST <= span * size <= LARGEST}
-        told = f"spans {float(span * UNITS[unit]):.4g} mm if its lengths are in {unit}"
+        fitting = {
+            other: span * size for other, size in LENGTHS.items() if SMALLEST <= span * size <= LARGEST
+        }
+        told = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
         others = "; ".join(f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
         if self.choices.unit is not None:
             return [f"the file {told}" + (f"; {others}" if others else "")]
@@ -647,7 +618,7 @@ class _Import:
         parts = {point.part for point in ours.values()} | {""}
         printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
-        return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+        return check_angles(self.format.angles, printed, drawn, places, LENGTHS[unit], topology)
 
 
 def _same_but_for_left(axes: Axes, seen: Axes) -> bool:

@@ -49,8 +49,8 @@ from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import SPEED, Driven, Found, Numbers, Poses, of_a_pose, poses_of
 from validate.measured.supposed import Supposed, in_reach, likely
-from validate.measured.units import named
 from validate.plain_text import shown
+from validate.tables.units import named
 from validate.toml_written import key_of
 
 Array = NDArray[np.float64]

@@ -52,8 +52,8 @@ from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
 from validate.measured.errors import ResultsError
 from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
-from validate.measured.units import allowed_units, below_of, factor_of, is_unit
 from validate.plain_text import shown
+from validate.tables.units import allowed_units, below_of, factor_of, is_unit
 
 Array = NDArray[np.float64]
 

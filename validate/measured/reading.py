@@ -11,7 +11,6 @@ them are taken as written in full.
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections import Counter
@@ -27,23 +26,17 @@ from pointcoord.data_classes import dataclass
 from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
 from validate.measured.errors import ResultsError
-from validate.measured.units import is_unit
 from validate.plain_text import shown
+from validate.tables.cells import NUMBER, Row, is_number, joined, lines_of, text_of
+from validate.tables.units import is_unit
 
 Array = NDArray[np.float64]
 
-COMMENTS = ("#", "%", "//", "!")
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 NOTHING_AT_ALL = "nothing"
 # Digits that only a double in full has.
 DOUBLE = 15
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?")
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?")
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
-_WORDS = re.compile(r'"[^"]*"|\S+')
-
-Row = tuple[int, list[str]]
-"""The number of a line, and its cells."""
 
 
 @dataclass(frozen=True)
@@ -93,14 +86,9 @@ def read_columns(path: str) -> Columns:
         ) from None
     if data[:4] == b"PAR1":
         return _parquet(path, source)
-    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
-    if b"\0" in data and not wide:
+    text = text_of(data)
+    if text is None:
         raise ResultsError(source, "", "holds bytes that are no text", "text, or Parquet")
-    try:
-        text = data.decode("utf-16" if wide else "utf-8-sig")
-    except UnicodeDecodeError:
-        # What spreadsheets of Western Europe write; only names and units have such letters.
-        text = data.decode("cp1252", "replace")
     return columns_of_text(text, source)
 
 
@@ -147,13 +135,13 @@ def columns_of_text(text: str, source: str) -> Columns:
     Raises:
         ResultsError: see `read_columns`.
     """
-    every = enumerate(text.replace("\N{MINUS SIGN}", "-").splitlines(), 1)
-    lines = [(number, line.rstrip()) for number, line in every if line.strip()]
-    body = [(number, line) for number, line in lines if not line.lstrip().startswith(COMMENTS)]
-    if not body:
+    lines = lines_of(text)
+    cells = lines.rows
+    if not cells:
         raise ResultsError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
-    mark = _delimiter([line for _, line in body])
-    cells = [(number, _cells(line, mark)) for number, line in body]
+    if lines.mixed:
+        problem = "has a decimal comma, and other numbers have decimal points"
+        raise ResultsError(source, f"line {lines.mixed}", problem, "one sign before the decimals")
     first = next((i for i, (_, row) in enumerate(cells) if _numeric(row)), None)
     if first is None:
         raise ResultsError(source, "", "has no line of numbers", "a line of numbers for each pose")
@@ -161,10 +149,8 @@ def columns_of_text(text: str, source: str) -> Columns:
     count = _width(rows, head)
     if not head:
         # As numpy and gnuplot write names: in the last comment before the numbers.
-        before = [
-            _cells(line.lstrip().lstrip("#%/! "), mark) for number, line in lines if number < rows[0][0]
-        ]
-        head = [row for row in before[-1:] if len(_joined(row)) == count]
+        before = [row for number, row in lines.comments if number < rows[0][0]]
+        head = [row for row in before[-1:] if len(joined(row)) == count]
     names, units = _names(head, count, source)
     unsaid = [not name for name in names]
     names = tuple(name or f"column {i + 1}" for i, name in enumerate(names))
@@ -196,51 +182,19 @@ def _words(cells: Sequence[str], unnamed: bool) -> str:
     some = [cell for cell in cells if cell.lower() not in NOTHING]
     if not some:
         return NOTHING_AT_ALL if unnamed else ""
-    return "" if any(map(_NUMBER.fullmatch, some)) else f"{shown(some[0])!r} and the like"
-
-
-def _delimiter(lines: Sequence[str]) -> str:
-    """What stands between the cells; blanks are the empty text."""
-    for one in ";\t":
-        if sum(one in line for line in lines) * 2 > len(lines):
-            return one
-    words = [word for line in lines for word in line.split() if len(line.split()) > 1]
-    commas = sum(bool(_DECIMAL_COMMA.fullmatch(word)) for word in words)
-    numbers = commas + sum(bool(_NUMBER.fullmatch(word)) for word in words)
-    often = sum("," in line for line in lines) * 2 > len(lines)
-    return "," if often and not commas * 2 > numbers else ""
-
-
-def _cells(line: str, mark: str) -> list[str]:
-    """The cells of a line, decimal commas as points."""
-    if mark == ",":
-        return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
-    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True)) if mark else _WORDS.findall(line)
-    plain = (cell.strip() if mark else cell.strip('"') for cell in cells)
-    return [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in plain]
-
-
-def _joined(row: Sequence[str]) -> list[str]:
-    """Names between blanks with the units that stand behind them."""
-    found: list[str] = []
-    for word in row:
-        if found and word[:1] in "[(":
-            found[-1] += f" {word}"
-        else:
-            found.append(word)
-    return found
+    return "" if any(map(is_number, some)) else f"{shown(some[0])!r} and the like"
 
 
 def _numeric(row: Sequence[str]) -> bool:
     """Whether a line is one of numbers: as many of its cells are as are not."""
     told = [cell for cell in row if cell.lower() not in NOTHING]
-    return bool(told) and sum(bool(_NUMBER.fullmatch(cell)) for cell in told) * 2 >= len(told)
+    return bool(told) and sum(map(is_number, told)) * 2 >= len(told)
 
 
 def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
     """How many columns there are, without the empty one behind a delimiter at the end of every line."""
     widths = Counter(len(row) for _, row in rows)
-    named = {len(row) for row in head} | {len(_joined(row)) for row in head}
+    named = {len(row) for row in head} | {len(joined(row)) for row in head}
     count = max(widths, key=lambda width: (widths[width], width in named, width))
     while count > 1 and all(not any(row[count - 1 :]) for row in (*head, *(row for _, row in rows))):
         count -= 1
@@ -250,11 +204,11 @@ def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines above the numbers; a title of another width is passed over."""
     short = [row if any(row[count:]) else row[:count] for row in head]
-    wide = [row if len(row) == count else _joined(row) for row in short]
+    wide = [row if len(row) == count else joined(row) for row in short]
     wide = [row for row in wide if len(row) == count]
     if not wide:
         if head:
-            problem = f"has {count} columns of numbers under {len(_joined(head[-1]))} names"
+            problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
             raise ResultsError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
     names, units = (list(part) for part in zip(*map(_name_and_unit, wide[0]), strict=True))
@@ -282,7 +236,7 @@ def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, i
     """A number, and how many decimals and significant digits it is written with."""
     if cell.lower() in NOTHING:
         return math.nan, 0, 0
-    found = _NUMBER.fullmatch(cell)
+    found = NUMBER.fullmatch(cell)
     value = float(re.sub("[dD]", "e", cell)) if found else math.inf
     if found is None or not math.isfinite(value):
         problem = f"{shown(cell)!r} is no finite number"

@@ -22,8 +22,8 @@ from pointcoord import PointcoordError
 from pointcoord.data_classes import dataclass
 from validate.measured.mapping import INPUT, TIME, Measured, Series
 from validate.measured.poses import Driven, Found, of_a_pose
-from validate.measured.units import KINDS
 from validate.plain_text import shown
+from validate.tables.units import KINDS
 
 Array = NDArray[np.float64]
 OursOf = Callable[[Series, Found], Array | None]

@@ -228,9 +228,8 @@ def test_any_axes_are_turned_and_any_others_than_the_format_s_are_noticed(axes: 
     for word in words:
         signs[DIRECTIONS[word][0]] = DIRECTIONS[word][1]
     text = table(order=order, signs=(signs[0], signs[1], signs[2]))
-    with pytest.raises(HardpointFileError, match="--axes") as caught:
+    with pytest.raises(HardpointFileError, match="--axes"):
         imported(tmp_path, text)
-    assert "is one of these wrong" not in str(caught.value)
     assert drawn(imported(tmp_path, text, axes=axes)) == CAR
 
 
@@ -241,28 +240,6 @@ def test_a_tie_rod_through_the_middle_of_the_car_is_warned_of(
     (tmp_path / "car.csv").write_text(table({**CAR, "tie_rod_inner": (x, -y, z)}))
     assert main(["import", str(tmp_path / "car.csv")]) == 0
     assert f"tie_rod_inner lies {y:.4g} mm across the middle of the car" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("point", "factors", "words"),
-    [
-        ("lower_arm_rear", (1, -1, 1), "y of the other sign"),
-        ("lower_arm_front", (1, -1, 1), "y of the other sign"),
-        ("upper_ball_joint", (1, -1, 1), "y of the other sign"),
-        ("lower_arm_rear", (0.1, 0.1, 0.1), "ten times as much"),
-        ("lower_ball_joint", (10, 10, 10), "a tenth as much"),
-    ],
-)
-def test_one_point_that_is_at_odds_with_the_axes_is_named_beside_them(
-    point: str, factors: tuple[float, float, float], words: str, tmp_path: Path
-) -> None:
-    x, y, z = np.multiply(CAR[point], factors).tolist()
-    text = table({**CAR, point: (x, y, z)})
-    line = next(at for at, row in enumerate(text.splitlines(), 1) if row.startswith(OPTIMUMK[point]))
-    with pytest.raises(HardpointFileError) as caught:
-        imported(tmp_path, text)
-    named = f"{OPTIMUMK[point]!r} on line {line} ({words} would fit)"
-    assert f"(or is one of these wrong: {named}?)" in str(caught.value)
 
 
 def test_a_unit_that_makes_no_car_is_refused_with_those_that_do(tmp_path: Path) -> None:
@@ -427,7 +404,10 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         (table() + "CHAS_LowAft,1,2,3\n", "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
         (table(titles="Point,X,Y\n"), "line 1: has no column of z"),
         (table(titles="Point,X (m),Y (mm),Z (m)\n"), "line 1: has lengths in m, mm"),
-        (table(titles="Point,X (furlong),Y,Z\n"), "line 1: has lengths in furlong"),
+        (
+            table(titles="Point,X (furlong),Y,Z\n"),
+            r"line 1: has no column of x in .*X \(furlong\)",
+        ),
         ("", "has no points"),
         ("only words", "has no points"),
         (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),

@@ -9,7 +9,7 @@ import pytest
 
 from validate.measured.errors import ResultsError
 from validate.measured.reading import Columns, columns_of_text, read_columns
-from validate.measured.units import factor_of
+from validate.tables.units import factor_of
 
 VALUES = [[0.0, 0.1, 0.25], [1.5, -2.75, 3e-3]]
 WRITTEN = {
