@@ -24,12 +24,11 @@ from pointcoord.data_classes import dataclass
 from validate.fitting.errors import FitError
 from validate.measured.comparing import ours_of
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, of_a_pose, poses_of
+from validate.measured.poses import TIGHT, Driven, Found, of_a_pose, poses_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-TIGHT = 1e-12  # mm, of poses
 STEP = 0.02  # mm, of differences by coordinates
 
 
@@ -69,11 +68,12 @@ class Curves:
         Raises:
             PointcoordError: the design cannot be solved.
         """
-        design, numbers = self.design(amounts, self.driven.scene), self.measured.numbers
+        design, numbers = self.design(amounts), self.measured.numbers
         if values is None:
             values = [s.values for s in self.measured.independent]
         if all(of_a_pose(s.meaning) for s in numbers):
-            return Solved(self, self.driven.redrawn(design).poses(values, numbers, TIGHT))
+            driven = self.driven.redrawn(design, self.design(amounts, self.driven.scene))
+            return Solved(self, driven.poses(values, numbers, TIGHT))
         return Solved(self, poses_of(design, self.measured).at(values))
 
     def at(self, amounts: Array, values: Sequence[Array] | None = None) -> Array:

@@ -49,6 +49,7 @@ Numbers = dict[str, dict[str, Array]]
 WIDEST = {"rad": 1.2, "mm": 0.5}
 # Part of that by which an input that stands still is moved: to see what it moves, and for its rates.
 LITTLE = 1e-3
+TIGHT = 1e-12  # mm, of poses that others are measured from
 SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 1)
 
 
@@ -105,7 +106,7 @@ class Driven:
     columns: tuple[str, ...]
     said: Mapping[str, float]
     as_drawn: tuple[str, ...]
-    drawn: Mapping[str, float]
+    drawn: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
@@ -118,21 +119,32 @@ class Driven:
         columns = tuple(input_of(s.meaning.words) for s in measured.independent)
         said = {input_of(name): value for name, value in measured.held.items()}
         if columns == (TIME,):
-            return cls(scene, columns, {}, (), {})
+            return cls(scene, columns, {}, ())
         given = (*columns, *said)
         travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise ResultsError(measured.source, "", problem, "one travel, given or held")
-        if travels:
-            scene = _driven_by(scene, travels[0], given, measured)
-        required = scene.mechanism.topology.required_inputs
+        driven = _driven_by(scene, travels[0], given, measured) if travels else scene
+        required = driven.mechanism.topology.required_inputs
         as_drawn = tuple(name for name in required if name not in given)
-        return cls(scene, columns, said, as_drawn, drawn_inputs(scene))
+        return cls(driven, columns, said, as_drawn).redrawn(scene, driven)
 
-    def redrawn(self, design: Scene) -> Driven:
-        """Another design of the same car, driven by the same."""
-        return self if self.columns == (TIME,) else replace(self, scene=design, drawn=drawn_inputs(design))
+    def redrawn(self, drawn: Scene, driven: Scene) -> Driven:
+        """A design of the same car, driven by the same.
+
+        Args:
+            drawn: the design by the scene's own inputs, which say where its drawing closes.
+        """
+        if self.columns == (TIME,):
+            return replace(self, scene=driven)
+        inputs = drawn_inputs(drawn)
+        known = {name: inputs.get(name, 0.0) for name in driven.mechanism.topology.required_inputs}
+        for name in known.keys() - inputs.keys():
+            # Driven by a travel the same car may close elsewhere.
+            home, there = (solve_poses(*one, TIGHT).position for one in ((drawn, inputs), (driven, known)))
+            known[name] = _height(driven, name, home) - _height(driven, name, there)
+        return replace(self, scene=driven, drawn=known)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -242,12 +254,27 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
     own = content["mechanism"]
     if "type" in own:
         own |= read_tables(MECHANISMS / f"{own.pop('type')}.toml")
-    own["inputs"] = own["inputs"] | {travel: table}
+    own["inputs"] = own.get("inputs", {}) | {travel: table}
     if radius is not None:
         own["wheel_radius"] = radius
     content["inputs"] = {n: law for n, law in content["inputs"].items() if n != solved}
     content["inputs"][travel] = {"constant": 0.0}
     return Scene.from_mapping(content, scene.title or "scene")
+
+
+def _height(scene: Scene, travel: str, places: Mapping[str, Array]) -> float:
+    """How high the point that travels is, mm."""
+    part, point = scene.mechanism, travel.partition(".")[2]
+    up = np.array(part.up)
+    if point != CONTACT:
+        return float(places[point] @ up)
+    inner, outer = part.topology.wheel_axis
+    spin = places[outer] - places[inner]
+    lean = (spin @ up) / np.linalg.norm(spin)
+    # The lowest point of a thin disc is R sqrt(1 - lean^2) below its centre.
+    return float(
+        places[part.topology.wheel_centre] @ up - (part.wheel_radius or 0.0) * np.sqrt(1.0 - lean**2)
+    )
 
 
 def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
