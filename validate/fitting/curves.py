@@ -49,7 +49,7 @@ class Curves:
         """The car as drawn, driven by what rows are taken by.
 
         Raises:
-            ResultsError: a travel cannot be followed.
+            FileError: a travel cannot be followed.
         """
         return Driven.of(self.scene, self.measured)
 

@@ -18,7 +18,6 @@ from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
-    HardpointFileError,
     Spoilt,
     decimal_of,
     plain,
@@ -26,6 +25,7 @@ from validate.hardpoint_files.contents import (
     words_of,
 )
 from validate.tables.cells import is_number, joined, lines_of
+from validate.tables.errors import FileError
 from validate.tables.units import length_called
 
 Wheel = tuple[str, str]
@@ -55,7 +55,7 @@ SAY = (
 )
 NOWHERE = (Decimal(0), Decimal(0), Decimal(0))
 Row = Sequence[str]
-Refused = Callable[[int, str, str], HardpointFileError]
+Refused = Callable[[int, str, str], FileError]
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,9 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
     Args:
         said: titles or numbers of the columns name, x, y and z, and corner (which wheel) if there is one.
     Raises:
-        HardpointFileError: titles are not as they must be, a point has no name, or there is no point.
+        FileError: titles are not as they must be, a point has no name, or there is no point.
     """
-    refused = partial(HardpointFileError, source)
+    refused = partial(FileError, source)
     lines = lines_of(text)
     rows = [(line, row if lines.mark else _named(row)) for line, row in lines.rows]
     if lines.mixed:
@@ -297,7 +297,7 @@ def _points_of(
                 for axis, cell in zip("xyz", cells, strict=True)
             )
             points.append(replace(point, place=(x, y, z)))
-        except HardpointFileError as error:
+        except FileError as error:
             # A line of words alone is a heading; one with numbers elsewhere is a mistake.
             if any(cells) or value:
                 spoilt.append(Spoilt(point, error, next(filter(is_number, cells), value)))

@@ -16,8 +16,9 @@ from typing import Any
 from pointcoord.errors import UnknownName
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, HardpointFileError, plain
+from validate.hardpoint_files.contents import Contents, plain
 from validate.hardpoint_files.vocabulary import Vocabulary
+from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
 FORMS: Mapping[str, Callable[..., Contents]] = {
@@ -120,10 +121,10 @@ class Format:
         Args:
             said: which columns the user means, of a table.
         Raises:
-            HardpointFileError: it is not written as it must be.
+            FileError: it is not written as it must be.
         """
         if said and self.form != "columns":
-            raise HardpointFileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
+            raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
         return FORMS[self.form](text, source, said) if said else FORMS[self.form](text, source)
 
     def holds_nothing(self, name: str) -> bool:
@@ -176,12 +177,12 @@ def format_of(text: str, name: str | None, source: str) -> Format:
 
     Raises:
         UnknownName: there is none of that name.
-        HardpointFileError: it is a file of a known program that is not read.
+        FileError: it is a file of a known program that is not read.
     """
     known = formats()
     for one in known.values():
         if one.refused and re.search(one.refused, text):
-            raise HardpointFileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
+            raise FileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
     if name is not None:
         if name not in known:
             raise UnknownName("format", name, known)

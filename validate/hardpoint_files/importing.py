@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from math import radians, tan
 from pathlib import Path
+from typing import Any
 
 from pointcoord import Scene
 from pointcoord.errors import UnknownName
@@ -23,7 +24,6 @@ from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
-    HardpointFileError,
     Place,
     SpinAxis,
     Spoilt,
@@ -36,6 +36,7 @@ from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fi
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
 from validate.tables.cells import text_of
+from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
 
 # mm: the points of one wheel's suspension, from model cars to lorries, span no less and no more.
@@ -69,6 +70,18 @@ class Choices:
     toe: float | None = None
     mirror: bool = False
 
+    def __post_init__(self) -> None:
+        allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
+            ("suspension", self.suspension, shipped()),
+            ("side", self.side, SIDES),
+            ("unit", self.unit, LENGTHS),
+        )
+        for kind, chosen, names in allowed:
+            if chosen is not None and chosen not in names:
+                raise UnknownName(kind, chosen, names)
+        if self.part is not None and not self.part.isdecimal() and self.part not in PARTS:
+            raise UnknownName("part", self.part, (*PARTS, "1", "2", "3"))
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -95,35 +108,19 @@ class Imported:
     doubts: tuple[str, ...]
 
 
-def import_hardpoints(
-    path: str | Path,
-    *,
-    format: str | None = None,
-    suspension: str | None = None,
-    side: str | None = None,
-    part: str | None = None,
-    names: str | None = None,
-    axes: str | None = None,
-    unit: str | None = None,
-    camber: float | None = None,
-    toe: float | None = None,
-    mirror: bool = False,
-) -> Imported:
+def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     """Make a scene from a file of hardpoints; the arguments are those of `Choices`.
 
     Raises:
         SceneError: the file cannot be read.
-        HardpointFileError: it is not as it must be, or does not say all that is needed.
+        FileError: it is not as it must be, or does not say all that is needed.
         UnknownName: no such format, suspension, side, part, unit or point.
         UnknownAxes: `axes` are none.
         AssemblyError: its points cannot be put together.
     """
-    choices = Choices(format, suspension, side, part, names, axes, unit, camber, toe, mirror)
-    _known_choices(choices)
-    source = str(path)
-    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
-    own_names = NO_NAMES if names is None else read_names(names)
-    found = format_of(text, format, source)
+    choices, source = Choices(**said), str(path)
+    own_names = NO_NAMES if choices.names is None else read_names(choices.names)
+    found, text = _opened(source, choices)
     return _Import(source, choices, found, found.read(text, source, own_names.table), own_names).result()
 
 
@@ -131,40 +128,25 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     """A file of names (TOML) for a file of hardpoints, ready to be filled in.
 
     Raises:
-        SceneError, HardpointFileError, UnknownName: as `import_hardpoints`.
+        SceneError, FileError, UnknownName: as `import_hardpoints`.
     """
-    choices = Choices(format, suspension)
-    _known_choices(choices)
-    source = str(path)
-    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
-    found = format_of(text, format, source)
+    choices, source = Choices(format, suspension), str(path)
+    found, text = _opened(source, choices)
     try:
         contents = found.read(text, source, {})
-    except HardpointFileError:
+    except FileError:
         # Such as a table whose columns are not known: they can be said in the same file.
         contents = Contents(())
     return _Import(source, choices, found, contents, NO_NAMES).to_fill_in()
 
 
-def _known_choices(choices: Choices) -> None:
-    allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
-        ("suspension", choices.suspension, shipped()),
-        ("side", choices.side, SIDES),
-        ("unit", choices.unit, LENGTHS),
-    )
-    for kind, chosen, names in allowed:
-        if chosen is not None and chosen not in names:
-            raise UnknownName(kind, chosen, names)
-    if choices.part is not None and not choices.part.isdecimal() and choices.part not in PARTS:
-        raise UnknownName("part", choices.part, (*PARTS, "1", "2", "3"))
-
-
-def _decoded(data: bytes, source: str) -> str:
-    text = text_of(data)
+def _opened(source: str, choices: Choices) -> tuple[Format, str]:
+    """A file's format and its text."""
+    text = text_of(read_file(source, "the path of a file of hardpoints"))
     if text is None:
-        problem, allowed = "is no text", "a text file; of a workbook, one sheet saved as CSV"
-        raise HardpointFileError(source, 0, problem, allowed)
-    return text
+        allowed = "a text file; of a workbook, one sheet saved as CSV"
+        raise FileError(source, 0, "is no text", allowed)
+    return format_of(text, choices.format, source), text
 
 
 @dataclass(frozen=True)
@@ -177,8 +159,8 @@ class _Import:
     contents: Contents
     own: NamesFile
 
-    def refuse(self, problem: str, allowed: str, line: int = 0) -> HardpointFileError:
-        return HardpointFileError(self.source, line, problem, allowed)
+    def refuse(self, problem: str, allowed: str, line: int = 0) -> FileError:
+        return FileError(self.source, line, problem, allowed)
 
     def result(self) -> Imported:
         kind = self.suspension()

@@ -45,11 +45,11 @@ from validate.diagnosis.evidence import Evidence, Solved
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
 from validate.measured.poses import SPEED, Driven, Found, Numbers, Poses, of_a_pose, poses_of
 from validate.measured.supposed import Supposed, in_reach, likely
 from validate.plain_text import shown
+from validate.tables.errors import FileError
 from validate.tables.units import named
 from validate.toml_written import key_of
 
@@ -174,14 +174,14 @@ def compare_results(
             what a map says of a column goes before it. None: not said, see the top of this file.
         factor: how many times the tolerance to hold differences to.
     Raises:
-        ResultsError: no row can be reached, or nothing can be compared.
+        FileError: no row can be reached, or nothing can be compared.
         MissingPackage: digits in full without an accuracy need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     poses = poses_of(scene, measured)
     try:
         held, ours, notes = _held(measured, scene, accuracy, poses)
-    except ResultsError as error:
+    except FileError as error:
         raise _with_meant(error, measured, poses.driven) from None
     solution = _solution(measured, held, measured.source)
     rows = [
@@ -244,13 +244,13 @@ def _other_independent(
     return ()
 
 
-def _with_meant(error: ResultsError, measured: Measured, driven: Driven) -> ResultsError:
+def _with_meant(error: FileError, measured: Measured, driven: Driven) -> FileError:
     """A file of which no row can be reached, with what its columns may be meant as."""
     meant = _meant(measured, driven)
     if not meant:
         return error
     allowed = f"{error.allowed}; they nearly are if {meant}"
-    return ResultsError(error.source, error.place, error.problem, allowed)
+    return FileError(error.source, error.place, error.problem, allowed)
 
 
 def _likely(measured: Measured, driven: Driven) -> Iterator[Supposed]:
@@ -406,7 +406,7 @@ def as_solution(measured: Measured, scene: Scene, accuracy: float | None = None)
     Its times are those of `DataOutcome.outcome`; components that the file does not give are NaN, and claim 0.
 
     Raises:
-        ResultsError, PointcoordError: see `compare_results`.
+        FileError, PointcoordError: see `compare_results`.
     """
     held, _, _ = _held(measured, scene, accuracy)
     return _solution(measured, held, measured.source)
@@ -423,7 +423,7 @@ def _held(
     if not here.reached.any():
         row = min(here.reasons)
         problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
-        raise ResultsError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
+        raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
     stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
     if unsaid:

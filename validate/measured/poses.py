@@ -26,7 +26,6 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.simulation import scene_mechanism
 from validate.formulations.asked_numbers import per_second
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import (
     CONTACT,
     INPUT,
@@ -39,6 +38,7 @@ from validate.measured.mapping import (
     Series,
     angle_of,
 )
+from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -113,7 +113,7 @@ class Driven:
         """A scene by what a file gives and holds, and by the drawing for the rest.
 
         Raises:
-            ResultsError: a travel without what it needs, or of which no input can be solved for.
+            FileError: a travel without what it needs, or of which no input can be solved for.
         """
         scene = asked_scene(scene, measured)
         columns = tuple(input_of(s.meaning.words) for s in measured.independent)
@@ -124,7 +124,7 @@ class Driven:
         travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are travels of the same rows"
-            raise ResultsError(measured.source, "", problem, "one travel, given or held")
+            raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
         required = driven.mechanism.topology.required_inputs
         as_drawn = tuple(name for name in required if name not in given)
@@ -238,18 +238,18 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
         if not topology.wheel_axis:
             problem = f"{travel} needs the role wheel_axis, which {topology.name!r} does not have"
             allowed = f"{TRAVEL}.POINT, or wheel_axis under [roles] of the mechanism"
-            raise ResultsError(measured.source, "", problem, allowed)
+            raise FileError(measured.source, "", problem, allowed)
         table = {"contact": list(topology.wheel_axis)}
         radius = measured.rolling_radius if measured.rolling_radius > 0.0 else radius
         if radius is None:
             problem = f"{travel} needs the wheel's rolling radius"
-            raise ResultsError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
+            raise FileError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
     open_ = [name for name in topology.required_inputs if name not in given]
     rising = topology.wheel_centre if point == CONTACT else point
     solved = measured.solve_for or _strongest(scene, rising, open_)
     if solved not in open_:
         problem = f"{travel} is to be reached by an input, and all are given"
-        raise ResultsError(measured.source, "", problem, "a travel, or the inputs")
+        raise FileError(measured.source, "", problem, "a travel, or the inputs")
     content = scene.model_dump(exclude_none=True)
     own = content["mechanism"]
     if "type" in own:
@@ -304,7 +304,7 @@ def poses_of(scene: Scene, measured: Measured) -> Poses:
     """What gives our numbers at a file's rows.
 
     Raises:
-        ResultsError: a travel cannot be followed.
+        FileError: a travel cannot be followed.
         PointcoordError: the scene cannot be solved.
     """
     driven = Driven.of(scene, measured)

@@ -25,9 +25,9 @@ from pointcoord import SceneError
 from pointcoord.data_classes import dataclass
 from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
-from validate.measured.errors import ResultsError
 from validate.plain_text import shown
 from validate.tables.cells import NUMBER, Row, is_number, joined, lines_of, text_of
+from validate.tables.errors import FileError
 from validate.tables.units import is_unit
 
 Array = NDArray[np.float64]
@@ -67,28 +67,28 @@ class Columns:
         (name, count), *_ = Counter(self.names).most_common(1)
         if count > 1:
             problem, allowed = f"{shown(name)!r} is there {count} times", "each name once; rename one of them"
-            raise ResultsError(self.source, "names of the columns", problem, allowed)
+            raise FileError(self.source, "names of the columns", problem, allowed)
 
 
 def read_columns(path: str) -> Columns:
     """Read a file: Parquet by its first bytes or its ending, anything else as text.
 
     Raises:
-        ResultsError: it cannot be read, is empty, or holds what is no table of numbers.
+        FileError: it cannot be read, is empty, or holds what is no table of numbers.
         MissingPackage: Parquet needs pyarrow.
     """
     source = shown(path)
     try:
         data = b"PAR1" if path.endswith(".parquet") else read_file(path, "the path of a table")
     except SceneError as error:
-        raise ResultsError(
+        raise FileError(
             source, "", error.problem, error.allowed or "a table; larger ones as Parquet"
         ) from None
     if data[:4] == b"PAR1":
         return _parquet(path, source)
     text = text_of(data)
     if text is None:
-        raise ResultsError(source, "", "holds bytes that are no text", "text, or Parquet")
+        raise FileError(source, "", "holds bytes that are no text", "text, or Parquet")
     return columns_of_text(text, source)
 
 
@@ -105,7 +105,7 @@ def _parquet(path: str, source: str) -> Columns:
     # pyarrow's errors have no family of their own.
     except Exception as error:
         problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
-        raise ResultsError(source, "", problem, "Parquet, or text") from None
+        raise FileError(source, "", problem, "Parquet, or text") from None
     others = {
         name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"
     }
@@ -113,11 +113,11 @@ def _parquet(path: str, source: str) -> Columns:
     if not found or not table.num_rows:
         holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
         problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
-        raise ResultsError(source, "", problem, "a column of numbers for each quantity, and at least one row")
+        raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
     values = np.stack([column.astype(float) for column in found.values()])
     for column, row in np.argwhere(np.isinf(values))[:1].tolist():
         place = f"row {row + 1}, column {shown([*found][column][0])!r}"
-        raise ResultsError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
+        raise FileError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
     # Single precision rounds to half of the distance to the next number.
     coarse = [c.dtype.kind == "f" and c.dtype.itemsize < 8 for c in found.values()]
     steps = [
@@ -133,18 +133,18 @@ def columns_of_text(text: str, source: str) -> Columns:
     """The columns of a text.
 
     Raises:
-        ResultsError: see `read_columns`.
+        FileError: see `read_columns`.
     """
     lines = lines_of(text)
     cells = lines.rows
     if not cells:
-        raise ResultsError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
+        raise FileError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
     if lines.mixed:
         problem = "has a decimal comma, and other numbers have decimal points"
-        raise ResultsError(source, f"line {lines.mixed}", problem, "one sign before the decimals")
+        raise FileError(source, f"line {lines.mixed}", problem, "one sign before the decimals")
     first = next((i for i, (_, row) in enumerate(cells) if _numeric(row)), None)
     if first is None:
-        raise ResultsError(source, "", "has no line of numbers", "a line of numbers for each pose")
+        raise FileError(source, "", "has no line of numbers", "a line of numbers for each pose")
     head, rows = [row for _, row in cells[:first]], cells[first:]
     count = _width(rows, head)
     if not head:
@@ -157,7 +157,7 @@ def columns_of_text(text: str, source: str) -> Columns:
     for line, row in rows:
         if len(row) < count or any(row[count:]):
             allowed = f"{count}, one for each of {', '.join(names)}"
-            raise ResultsError(source, f"line {line}", f"has {len(row)} cells", allowed)
+            raise FileError(source, f"line {line}", f"has {len(row)} cells", allowed)
     words = {i: said for i in range(count) if (said := _words([row[i] for _, row in rows], unsaid[i]))}
     kept = [i for i in range(count) if i not in words] or [*range(count)]
     told = {names[i]: said for i, said in words.items() if i not in kept}
@@ -209,7 +209,7 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
     if not wide:
         if head:
             problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
-            raise ResultsError(source, "names of the columns", problem, "a name for each column")
+            raise FileError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
     names, units = (list(part) for part in zip(*map(_name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
@@ -217,7 +217,7 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
         wrong = [cell for cell in told if cell not in ("", "-", "1") and not is_unit(cell)]
         if wrong:
             problem = f"holds {shown(wrong[0])!r}, which is no unit"
-            raise ResultsError(source, "line of units", problem, "mm, deg, rad, s and so on")
+            raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
         units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, told, strict=True)]
     return tuple(names), tuple(units)
 
@@ -241,6 +241,6 @@ def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, i
     if found is None or not math.isfinite(value):
         problem = f"{shown(cell)!r} is no finite number"
         allowed = "a number, or nothing, - or nan for none"
-        raise ResultsError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
+        raise FileError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
     whole, _, part = found.group(1).partition(".")
     return value, len(part) - int(found.group(2) or 0), max(len((whole + part).lstrip("0")), 1)

@@ -9,9 +9,9 @@ from foreign_files import OPTIMUMK, STRUT, WISHBONE, table
 
 from pointcoord import Scene
 from validate.cli import main
-from validate.hardpoint_files.contents import HardpointFileError
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import Imported, import_hardpoints
+from validate.tables.errors import FileError
 
 POINTS = WISHBONE.mechanism.points
 CAR = {name: place for name, place in POINTS.items() if name != "rack_centre"}
@@ -88,12 +88,12 @@ def test_a_sheet_of_optimumk_gives_the_wheel_whose_columns_are_named(
 ) -> None:
     """Titles that stand twice are not guessed at; its names have its axes, and static angles are told."""
     car = WHEELS["front", side]
-    with pytest.raises(HardpointFileError, match=r"line 6: has two columns of x .*\[table\]"):
+    with pytest.raises(FileError, match=r"line 6: has two columns of x .*\[table\]"):
         imported(tmp_path, sheet(), side=side)
     names = tmp_path / "names.toml"
     columns = f"[table]\nname = 2\nx = {first}\ny = {first + 1}\nz = {first + 2}\n"
     names.write_text(columns)
-    with pytest.raises(HardpointFileError, match="lacks wheel_centre") as caught:
+    with pytest.raises(FileError, match="lacks wheel_centre") as caught:
         imported(tmp_path, sheet(), side=side, names=str(names))
     assert f"'Static Toe' {'0.5' if side == 'left' else '0.25'} on line" in str(caught.value)
     assert "+ toe in" in str(caught.value)
@@ -165,7 +165,7 @@ SHAPES: dict[str, str] = {
 
 @pytest.mark.parametrize("text", SHAPES.values(), ids=SHAPES)
 def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, tmp_path: Path) -> None:
-    with pytest.raises(HardpointFileError, match="--part front or --part rear"):
+    with pytest.raises(FileError, match="--part front or --part rear"):
         imported(tmp_path, text, axes=OURS)
     for (part, side), car in WHEELS.items():
         found = imported(tmp_path, text, axes=OURS, part=part, side=side)
@@ -188,7 +188,7 @@ def test_a_lonely_r_is_right_beside_an_l_and_asked_about_beside_an_f(before: boo
     text = lettered(before, {"L": left, "R": CAR})
     assert drawn(imported(tmp_path, text, axes=OURS, side="right")) == CAR
     text = lettered(before, {"F": CAR, "R": rear})
-    with pytest.raises(HardpointFileError, match=r"has lower_arm_front twice, .*--names"):
+    with pytest.raises(FileError, match=r"has lower_arm_front twice, .*--names"):
         imported(tmp_path, text, axes=OURS)
     names = tmp_path / "names.toml"
     lines = (f'{ours} = "{f"R_{word}" if before else f"{word} R"}"' for ours, word in WORDS.items())
@@ -215,7 +215,7 @@ def test_columns_that_are_not_known_are_those_that_the_user_names(
         names.write_text(f"[table]\nname = {name}\nx = {x}\ny = {y}\nz = {z}\n")
         assert drawn(imported(tmp_path, text, axes=OURS, names=str(names))) == car
     names.write_text('[table]\nname = "Point"\nx = "X"\ny = "Y"\n')
-    with pytest.raises(HardpointFileError, match=r"\[table\] is"):
+    with pytest.raises(FileError, match=r"\[table\] is"):
         imported(tmp_path, text, names=str(names))
 
 
@@ -223,19 +223,17 @@ def test_columns_that_are_not_known_are_those_that_the_user_names(
 @pytest.mark.parametrize("mark", [",", " ", "   "])
 def test_numbers_of_another_wheel_without_a_title_are_refused(ahead: str, mark: str, tmp_path: Path) -> None:
     text = ahead + "\n".join(BOTH)
-    with pytest.raises(HardpointFileError, match=r"has 6 numbers for 'LCA_IN_FRONT'"):
+    with pytest.raises(FileError, match=r"has 6 numbers for 'LCA_IN_FRONT'"):
         imported(tmp_path, text.replace(",", mark), axes=OURS)
 
 
 def test_titles_that_are_not_known_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(HardpointFileError, match=r"line 1: has no column of x in 'Point, 1 X"):
+    with pytest.raises(FileError, match=r"line 1: has no column of x in 'Point, 1 X"):
         imported(tmp_path, "\n".join(["Point,1 X,1 Y,1 Z,2 X,2 Y,2 Z", *BOTH]), axes=OURS)
     for titles in ("X1,Y1,Z1,X2,Y2,Z2", "XL,YL,ZL,XR,YR,ZR"):
-        with pytest.raises(HardpointFileError, match=r"titles that are not known.* \[table\]"):
+        with pytest.raises(FileError, match=r"titles that are not known.* \[table\]"):
             imported(tmp_path, "\n".join([f"Point,{titles}", *BOTH]), axes=OURS)
-    with pytest.raises(
-        HardpointFileError, match=r"line 1: has titles that are not known: 'Hoch, Quer, Laengs'"
-    ):
+    with pytest.raises(FileError, match=r"line 1: has titles that are not known: 'Hoch, Quer, Laengs'"):
         imported(tmp_path, "\n".join(["Punkt,Hoch,Quer,Laengs", *rows(str)]), axes=OURS)
 
 
@@ -279,7 +277,7 @@ def test_numbers_under_other_titles_are_told(others: str, tmp_path: Path) -> Non
 
 def test_a_name_of_the_other_side_than_its_column_is_refused(tmp_path: Path) -> None:
     text = "\n".join(["Point,Right X,Right Y,Right Z", *rows(lambda n: n + "_L")])
-    with pytest.raises(HardpointFileError, match=r"line 2: has 'LCA_IN_FRONT_L' for the right wheel"):
+    with pytest.raises(FileError, match=r"line 2: has 'LCA_IN_FRONT_L' for the right wheel"):
         imported(tmp_path, text, axes=OURS)
 
 
@@ -287,9 +285,7 @@ def test_two_tables_that_say_no_wheel_are_not_mixed(tmp_path: Path) -> None:
     two = ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in CAR.items())]
     assert drawn(imported(tmp_path, "\n".join(two), axes=OURS)) == CAR
     two += ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in WHEELS["rear", "right"].items())]
-    with pytest.raises(
-        HardpointFileError, match=r"line 13: has lower_arm_front twice, .* one wheel of one axle"
-    ):
+    with pytest.raises(FileError, match=r"line 13: has lower_arm_front twice, .* one wheel of one axle"):
         imported(tmp_path, "\n".join(two), axes=OURS)
 
 
@@ -383,16 +379,16 @@ def test_every_two_points_of_a_suspension_have_different_words() -> None:
 
 def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(tmp_path: Path) -> None:
     text = "\n".join(["Point,X,Y,Z", *rows(str)])
-    with pytest.raises(HardpointFileError, match="does not say where x, y and z point") as caught:
+    with pytest.raises(FileError, match="does not say where x, y and z point") as caught:
         imported(tmp_path, text)
     for words in ("--axes rearward,right,up of a right wheel", "--axes rearward,left,up of a left wheel"):
         assert words in str(caught.value)
-    with pytest.raises(HardpointFileError) as caught:
+    with pytest.raises(FileError) as caught:
         imported(tmp_path, text, side="right")
     assert "of a left wheel" not in str(caught.value)
     # Our own words in another's spelling are not our own names.
     spelt = "\n".join(["Point,X,Y,Z", *(f"{n.replace('_', ' ').title()},{cells(p)}" for n, p in CAR.items())])
-    with pytest.raises(HardpointFileError, match="does not say where"):
+    with pytest.raises(FileError, match="does not say where"):
         imported(tmp_path, spelt)
 
 
@@ -401,7 +397,7 @@ def test_titles_may_say_where_axes_point(tmp_path: Path) -> None:
     found = imported(tmp_path, text)
     assert drawn(found) == CAR
     assert any("by its titles" in fact for fact in found.facts)
-    with pytest.raises(HardpointFileError, match=r"line 1: says where only some of its axes point \(right\)"):
+    with pytest.raises(FileError, match=r"line 1: says where only some of its axes point \(right\)"):
         imported(tmp_path, text.replace("(rearward)", "").replace("(up)", ""))
 
 
@@ -423,7 +419,7 @@ def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path)
     found = imported(tmp_path, text, axes=OURS)
     for name, place in drawn(found).items():
         assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-12)
-    with pytest.raises(HardpointFileError, match="says that its lengths are in m"):
+    with pytest.raises(FileError, match="says that its lengths are in m"):
         imported(tmp_path, text, axes=OURS, unit="mm")
 
 
@@ -458,7 +454,7 @@ def test_other_columns_of_numbers_are_left_out_and_told(tmp_path: Path) -> None:
     found = imported(tmp_path, text, axes=OURS)
     assert drawn(found) == CAR
     assert "the column 'MIN X' is not read" in found.facts
-    with pytest.raises(HardpointFileError, match="has no column of x"):
+    with pytest.raises(FileError, match="has no column of x"):
         imported(tmp_path, text.replace("X,Y,Z,MIN X,MAX X", "old X,old Y,old Z,new X,new Y"), axes=OURS)
 
 
@@ -471,7 +467,7 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     assert "lines without a point: 'Steering rack' 1.3 on line 13" in found.facts
     broken = text.replace(f"{WORDS['tie_rod_inner']},{cells(CAR['tie_rod_inner'])}", "TIE_ROD_IN,none,,")
     assert "TIE_ROD_IN,none" in broken
-    with pytest.raises(HardpointFileError, match="x of 'TIE_ROD_IN' is 'none'"):
+    with pytest.raises(FileError, match="x of 'TIE_ROD_IN' is 'none'"):
         imported(tmp_path, broken, axes=OURS)
     assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
@@ -497,7 +493,7 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     ],
 )
 def test_a_table_that_cannot_be_read_is_told_in_one_line(text: str, words: str, tmp_path: Path) -> None:
-    with pytest.raises(HardpointFileError, match=words):
+    with pytest.raises(FileError, match=words):
         imported(tmp_path, text, axes=OURS)
 
 

@@ -15,12 +15,12 @@ from pointcoord import Scene, simulate, solve_poses, standing
 from validate.cli import main
 from validate.fitting.curves import Curves
 from validate.measured.comparing import DataOutcome, as_solution, compare_results
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import understood
 from validate.measured.poses import poses_of
 from validate.measured.reading import columns_of_text
 from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3, PrintedRow, compare_with_paper
+from validate.tables.errors import FileError
 
 STEER = Scene.load("steer")
 
@@ -232,7 +232,7 @@ def test_a_map_that_is_not_there_is_written_to_be_filled_in(
 @pytest.mark.parametrize("cells", ["0.1,{}", "{},1.0"])
 def test_a_number_that_no_car_has_is_named_by_line_and_column(number: str, cells: str) -> None:
     text = "time [s],camber [deg]\n0.0,1.0\n" + cells.format(number)
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         understood(columns_of_text(text, "mine.csv"), {}, STEER, "map")
     column = "camber" if cells.endswith("{}") else "time"
     assert f"mine.csv: line 3, column '{column}': is {float(number):g}" in str(caught.value)
@@ -266,7 +266,7 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
 def test_a_wrong_map_or_file_is_refused_with_its_place(
     text: str, content: dict[str, object], words: tuple[str, ...]
 ) -> None:
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         compare_results(understood(columns_of_text(text, "mine.csv"), content, STEER, "map.toml"), STEER, "x")
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
