@@ -33,31 +33,17 @@ HEAD = 4000
 
 
 @dataclass(frozen=True)
-class Derived:
-    """A point that a file does not have and that follows from others.
-
-    Attributes:
-        rule: how. of: from which points.
-    """
-
-    rule: str
-    of: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class Names:
     """A suspension in the words of a format.
 
     Attributes:
         called: what the format calls it, for people, with a pattern of each; empty if it does not say.
         names: what it calls each of our points, any of several names.
-        derived: points that follow from others where the file does not have them.
         notes: what the user should know of these points.
     """
 
     called: Mapping[str, str]
     names: Mapping[str, tuple[str, ...]]
-    derived: Mapping[str, Derived]
     notes: tuple[str, ...] = ()
 
 
@@ -161,10 +147,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
             kind: Names(
                 called=own.get("called", {}),
                 names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
-                derived={
-                    ours: Derived(rule["rule"], tuple(rule["of"]))
-                    for ours, rule in own.get("derived", {}).items()
-                },
                 notes=tuple(own.get("notes", ())),
             )
             for kind, own in table["suspensions"].items()

@@ -18,6 +18,7 @@ from pointcoord import Scene
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.mechanism.file import AS_DRAWN
 from pointcoord.toml_text import read_file
 from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
 from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
@@ -30,7 +31,7 @@ from validate.hardpoint_files.contents import (
     plain,
     short,
 )
-from validate.hardpoint_files.derived import RULES
+from validate.hardpoint_files.derived import derived
 from validate.hardpoint_files.format import Format, Names, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
@@ -164,7 +165,7 @@ class _Import:
 
     def result(self) -> Imported:
         kind = self.suspension()
-        words = self.format.suspensions.get(kind, Names({}, {}, {}))
+        words = self.format.suspensions.get(kind, Names({}, {}))
         topology = mechanism_file(kind).topology()
         if not (topology.wheel_axis and topology.inboard):
             raise self.refuse(
@@ -181,7 +182,7 @@ class _Import:
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned, axes)
-        points = self.placed(topology, words, ours, turned, axis, side)
+        points = self.placed(kind, ours, turned, axis, side)
         facts = [self.turning(axes, axes_by, unit)]
         facts += (*self.contents.notes.get(part, self.contents.notes.get("", ())), *words.notes)
         if values:
@@ -256,7 +257,7 @@ class _Import:
 
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        words = self.format.suspensions.get(kind, Names({}, {}, {})).names
+        words = self.format.suspensions.get(kind, Names({}, {})).names
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in mechanism_file(kind).points}
@@ -392,8 +393,9 @@ class _Import:
         values: Sequence[str],
     ) -> None:
         lacking = self.missing(topology, ours.items())
-        # The rule of the spin axis gives nothing without a direction.
-        lost = [name for name in lacking if not self.follows(name, words, ours, axis)]
+        there = {name: point.place for name, point in ours.items()}
+        structure = mechanism_file(kind).structures[AS_DRAWN]
+        lost = [name for name in lacking if derived(name, structure, there, 1, axis) is None]
         if not lost:
             return
         theirs = [
@@ -406,7 +408,7 @@ class _Import:
         listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
-        if any(name in words.derived and words.derived[name].rule == "spin axis" for name in lost):
+        if topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
         raise self.refuse(
             f"lacks {', '.join(theirs)} of a {kind}"
@@ -414,12 +416,6 @@ class _Import:
             + (f"; no points: {_some(values)}" if values else ""),
             advice,
         )
-
-    def follows(self, name: str, words: Names, ours: Mapping[str, FilePoint], axis: SpinAxis | None) -> bool:
-        rule = words.derived.get(name)
-        if rule is None or any(other not in ours for other in rule.of):
-            return False
-        return RULES[rule.rule]([ours[other].place for other in rule.of], 1, axis) is not None
 
     def spin_axis(self, part: str) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
@@ -568,14 +564,15 @@ class _Import:
 
     def placed(
         self,
-        topology: Topology,
-        words: Names,
+        kind: str,
         ours: Mapping[str, FilePoint],
         turned: Mapping[str, Place],
         axis: SpinAxis | None,
         side: str,
     ) -> dict[str, ScenePoint]:
         """The scene's points in the order of its topology, with where each comes from."""
+        file = mechanism_file(kind)
+        topology, structure = file.topology(), file.structures[AS_DRAWN]
         out = 1 if side == "right" else -1
         needed = {*topology.required_points, *topology.wheel_axis}
         found = {}
@@ -583,14 +580,8 @@ class _Import:
             if name in turned:
                 line = f", line {ours[name].line}" if ours[name].line else ""
                 found[name] = ScenePoint(name, turned[name], f"{ours[name].name}{line}")
-            elif name in needed and name in words.derived:
-                rule = words.derived[name]
-                derived = RULES[rule.rule]([turned[other] for other in rule.of], out, axis)
-                if derived is not None:
-                    place, how = derived
-                    found[name] = ScenePoint(
-                        name, place, f"from {' and '.join(rule.of)}: {how}", derived=True
-                    )
+            elif name in needed and (one := derived(name, structure, turned, out, axis)) is not None:
+                found[name] = ScenePoint(name, *one, derived=True)
         return found
 
     def angles(

@@ -180,6 +180,16 @@ class Measured:
     rates: tuple[Series, ...] = ()
     held_rates: Mapping[str, float] = field(default_factory=dict)
 
+    def taken(self, keep: NDArray[np.bool_]) -> Measured:
+        """Some of its rows."""
+        return replace(
+            self,
+            independent=tuple(s.taken(keep) for s in self.independent),
+            numbers=tuple(s.taken(keep) for s in self.numbers),
+            rates=tuple(s.taken(keep) for s in self.rates),
+            rows=tuple(row for row, kept in zip(self.rows, keep, strict=True) if kept),
+        )
+
 
 def read_results(file: str, map: str | None, scene: Scene) -> Measured:
     """Read a file of results of a scene's car.
@@ -665,14 +675,4 @@ def _without_repeats(measured: Measured) -> Measured:
         notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {where} on")
     if not keep.any():
         raise FileError(measured.source, "", "no row says at which pose it is", "at least one")
-    if keep.all():
-        return measured
-    rows = tuple(row for row, kept in zip(measured.rows, keep, strict=True) if kept)
-    return replace(
-        measured,
-        independent=tuple(s.taken(keep) for s in measured.independent),
-        numbers=tuple(s.taken(keep) for s in measured.numbers),
-        rates=tuple(s.taken(keep) for s in measured.rates),
-        rows=rows,
-        notes=tuple(notes),
-    )
+    return replace(measured.taken(keep), notes=tuple(notes))

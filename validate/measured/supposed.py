@@ -124,12 +124,8 @@ def _some(measured: Measured) -> Measured:
     """Some of its rows, evenly, and of its numbers those that a pose has."""
     rows = np.zeros(len(measured.rows), dtype=bool)
     rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).astype(int))] = True
-    return replace(
-        measured,
-        independent=tuple(s.taken(rows) for s in measured.independent),
-        numbers=tuple(s.taken(rows) for s in measured.numbers if of_a_pose(s.meaning)),
-        rows=tuple(row for row, kept in zip(measured.rows, rows, strict=True) if kept),
-    )
+    numbers = tuple(s for s in measured.numbers if of_a_pose(s.meaning))
+    return replace(measured, numbers=numbers).taken(rows)
 
 
 @dataclass(frozen=True, repr=False)

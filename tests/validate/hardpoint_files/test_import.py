@@ -13,7 +13,6 @@ from pointcoord import PointcoordError, Scene, simulate, standing
 from pointcoord.mechanism import mechanism_file, shipped
 from validate.cli import main
 from validate.hardpoint_files.axes import DIRECTIONS, Axes, UnknownAxes
-from validate.hardpoint_files.derived import RULES
 from validate.hardpoint_files.format import FORMS, formats
 from validate.hardpoint_files.importing import Imported, import_hardpoints
 from validate.tables.errors import FileError
@@ -149,9 +148,16 @@ def test_no_angle_hangs_on_where_the_rod_ends_on_the_strut_axis(tmp_path: Path) 
         np.testing.assert_allclose(got[name], values, rtol=0, atol=2e-14, err_msg=name)
 
 
-def test_static_angles_make_the_spin_axis_that_a_table_lacks(tmp_path: Path) -> None:
-    text = table({name: place for name, place in CAR.items() if name != "wheel_axis_inner"})
-    with pytest.raises(FileError, match=r"lacks wheel_axis_inner .* --camber and --toe will do"):
+@pytest.mark.parametrize(
+    "text",
+    [
+        table({name: place for name, place in CAR.items() if name != "wheel_axis_inner"}),
+        "\n".join(line for line in lotus_report().splitlines() if "spindle" not in line),
+    ],
+    ids=["optimumk", "lotus"],
+)
+def test_static_angles_make_the_spin_axis_that_a_file_lacks(text: str, tmp_path: Path) -> None:
+    with pytest.raises(FileError, match=r"lacks wheel_axis_inner.* --camber and --toe will do"):
         imported(tmp_path, text)
     found = imported(tmp_path, text, camber=-2.0, toe=0.5)
     assert degrees(found.bounce.angles["camber"]) == pytest.approx(-2.0, abs=1e-11)
@@ -478,14 +484,11 @@ def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("name", formats())
-def test_a_format_s_table_speaks_of_points_and_rules_that_there_are(name: str) -> None:
+def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
     assert one.form in FORMS
     for kind, words in one.suspensions.items():
-        assert {*words.names, *words.derived} <= {*mechanism_file(kind).points}
-        for rule in words.derived.values():
-            assert rule.rule in RULES
-            assert {*rule.of} <= {*mechanism_file(kind).points}
+        assert {*words.names} <= {*mechanism_file(kind).points}
         theirs = [name for names in words.names.values() for name in names]
         assert len(theirs) == len({*theirs})
 
