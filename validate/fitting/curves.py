@@ -24,11 +24,12 @@ from pointcoord.data_classes import dataclass
 from validate.fitting.errors import FitError
 from validate.measured.comparing import ours_of
 from validate.measured.mapping import Measured
-from validate.measured.poses import TIGHT, Driven, Found, of_a_pose, poses_of
+from validate.measured.poses import Driven, Found, of_a_pose, poses_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
+TIGHT = 1e-12  # mm, of poses
 STEP = 0.02  # mm, of differences by coordinates
 
 

@@ -23,8 +23,10 @@ from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import close_drawing
 from validate.formulations.asked_numbers import per_second
 from validate.measured.mapping import (
     CONTACT,
@@ -49,7 +51,6 @@ Numbers = dict[str, dict[str, Array]]
 WIDEST = {"rad": 1.2, "mm": 0.5}
 # Part of that by which an input that stands still is moved: to see what it moves, and for its rates.
 LITTLE = 1e-3
-TIGHT = 1e-12  # mm, of poses that others are measured from
 SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 1)
 
 
@@ -138,11 +139,11 @@ class Driven:
         """
         if self.columns == (TIME,):
             return replace(self, scene=driven)
-        inputs = drawn_inputs(drawn)
+        inputs, home = _closed(drawn)
         known = {name: inputs.get(name, 0.0) for name in driven.mechanism.topology.required_inputs}
         for name in known.keys() - inputs.keys():
-            # Driven by a travel the same car may close elsewhere.
-            home, there = (solve_poses(*one, TIGHT).position for one in ((drawn, inputs), (driven, known)))
+            # As an input it counts from the drawing as it stands, which need not close.
+            there = {point: np.array(place) for point, place in driven.mechanism.points.items()}
             known[name] = _height(driven, name, home) - _height(driven, name, there)
         return replace(self, scene=driven, drawn=known)
 
@@ -184,7 +185,7 @@ class Driven:
         """Between which values inputs have a meaning and are no slip."""
         mechanism, found = scene_mechanism(self.scene), {}
         for drive in mechanism.topology.drives:
-            name, wide = drive.input, widest(self.scene, drive.input)
+            name, wide = drive.input, widest(mechanism, drive.input)
             beyond = drive.extremes(mechanism.drawing)
             ends = [float(np.ravel(drive.input_value(end, mechanism.drawing))[0]) for end in beyond]
             low, high = sorted(ends) if np.isfinite(ends).all() else (-np.inf, np.inf)
@@ -222,10 +223,10 @@ def of_a_pose(meaning: Meaning) -> bool:
     return not meaning.per and (meaning.quantity == PLACES or angle_of(meaning) is not None)
 
 
-def widest(scene: Scene, name: str) -> float:
+def widest(mechanism: Mechanism, name: str) -> float:
     """How far an input goes to either side at most, rad or mm."""
-    unit = scene.mechanism.topology.input_units[name]
-    return WIDEST[unit] * (float(scene_mechanism(scene).unit) if unit == "mm" else 1.0)
+    unit = mechanism.topology.input_units[name]
+    return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
@@ -262,6 +263,15 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
     return Scene.from_mapping(content, scene.title or "scene")
 
 
+def _closed(scene: Scene) -> tuple[dict[str, float], dict[str, Array]]:
+    """The inputs of a closed drawing and where its points are, mm."""
+    mechanism = scene_mechanism(scene)
+    y, unit = close_drawing(mechanism).y, float(mechanism.unit)
+    read = mechanism.input_values(y[mechanism.map.unknowns :])
+    inputs = {name: float(read[name]) + 0.0 for name in mechanism.topology.required_inputs}
+    return inputs, {name: place * unit + mechanism.origin for name, place in mechanism.places(y).items()}
+
+
 def _height(scene: Scene, travel: str, places: Mapping[str, Array]) -> float:
     """How high the point that travels is, mm."""
     part, point = scene.mechanism, travel.partition(".")[2]
@@ -281,7 +291,7 @@ def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
     """The input by which a point rises most, each moved by the same part of its widest range."""
     drawn, up, found = drawn_inputs(scene), np.array(scene.mechanism.up), {}
     for name in inputs:
-        step = LITTLE * widest(scene, name)
+        step = LITTLE * widest(scene_mechanism(scene), name)
         place = solve_poses(scene, drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
         found[name] = float(np.abs(np.nan_to_num(np.diff(place @ up)))[0])
     return max(found, key=lambda name: found[name], default="")
@@ -412,7 +422,7 @@ class OverMap:
             # Every row may have the same pose, by a heave or by held inputs alone; a map wants a free input.
             alone = name == required[0] and not any(n in driven.columns for n in required)
             if low == high and (name in driven.columns or moving or alone):
-                wide = LITTLE * widest(driven.scene, name)
+                wide = LITTLE * widest(scene_mechanism(driven.scene), name)
                 low, high = low - wide, high + wide
             ranges[name] = low, high
         return cls(
