@@ -57,6 +57,7 @@ ROOMS = {
         "cars",
         "strategies",
         "adjudication",
+        "tables",
         "measured",
         "fitting",
         "published",

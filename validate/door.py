@@ -15,7 +15,6 @@ from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import UnknownFormulation
 from validate.hardpoint_files.axes import UnknownAxes
-from validate.hardpoint_files.contents import HardpointFileError
 from validate.output.console import Console
 from validate.output.files import OutputError, UnknownEnding
 from validate.solvers.plain import NoSolver
@@ -29,7 +28,7 @@ MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exi
         (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, NoSolver),
         ExitStatus.WRONG_INPUT,
     ),
-    ((HardpointFileError, UnknownAxes), ExitStatus.WRONG_INPUT),
+    (UnknownAxes, ExitStatus.WRONG_INPUT),
     ((RecordsError, NoCluster), ExitStatus.WRONG_INPUT),
     ((ClusterLost, TaskFailed), ExitStatus.NOT_FINISHED),
     (FormulationError, ExitStatus.NO_VERDICT),

@@ -40,7 +40,6 @@ from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.importing import import_hardpoints
 from validate.html.folder import require_folder
 from validate.html.hard_cases import read_hard_cases
 from validate.measured.reading import columns_of_text
@@ -203,21 +202,7 @@ def in_no_step(patch: pytest.MonkeyPatch) -> object:
     return solve_car(TABLE, {"arm_angle": (1.1, 0, 0)})
 
 
-def report_of_two_numbers(folder: Path) -> object:
-    """A Lotus report in which a coordinate of a point is missing."""
-    report = folder / "report.txt"
-    report.write_text(
-        "LOTUS SUSPENSION ANALYSIS\n\n  257.00  69.00  POINT ( 1 ) = Lower wishbone front pivot\n"
-    )
-    return import_hardpoints(report)
-
-
 RECIPES: dict[str, Recipe] = {
-    "validate.hardpoint_files.contents.HardpointFileError": Recipe(
-        lambda folder, _: report_of_two_numbers(folder),
-        ("report.txt: line 3: has 2 numbers before POINT", "'257.00  69.00'", "allowed: x, y and z"),
-        {"line": 3, "allowed": "x, y and z"},
-    ),
     "validate.hardpoint_files.axes.UnknownAxes": Recipe(
         lambda *_: Axes.of("forward,rearward,up"),
         ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
@@ -339,7 +324,7 @@ RECIPES: dict[str, Recipe] = {
             "corrections": bool,
         },
     ),
-    "validate.measured.errors.ResultsError": Recipe(
+    "validate.tables.errors.FileError": Recipe(
         lambda *_: columns_of_text("time,camber\n0,1.2\n1,l.3\n", "mine.csv"),
         ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
         {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},

@@ -49,7 +49,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
         brief: whether nothing is said but the verdict in a sentence, and where the page is.
     Raises:
         UsageError: the options do not go together.
-        ResultsError: the file, or the map of its columns, is wrong.
+        FileError: the file, or the map of its columns, is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
         MissingPackage: Parquet needs pyarrow, a page its own packages.
         OutputError: the results or the page cannot be written.

@@ -103,7 +103,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         NO_VERDICT if least squares did not end.
     Raises:
         UsageError, UnknownEnding: the options do not go together, or the target has no name for a scene.
-        ResultsError, FitError, UnknownName: the file, its map or an option is wrong.
+        FileError, FitError, UnknownName: the file, its map or an option is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
         OutputError: a result cannot be written.
     """

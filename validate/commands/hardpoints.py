@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import argparse
 import os
+from dataclasses import fields
 from typing import BinaryIO
 
 from validate.closed_drawing import warnings_of
 from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import require_target
 from validate.exit_status import ExitStatus
-from validate.hardpoint_files.axes import DIRECTIONS, UNITS
+from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
-from validate.hardpoint_files.importing import PARTS, SIDES, Imported, import_hardpoints, names_of
+from validate.hardpoint_files.importing import PARTS, SIDES, Choices, Imported, import_hardpoints, names_of
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_whole
 from validate.plain_text import shown
+from validate.tables.units import LENGTHS
 
 ENDINGS = (".toml",)
 
@@ -61,7 +63,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         metavar="X,Y,Z",
         help=f"where the file's x, y and z point, such as forward,left,up, of {', '.join(DIRECTIONS)}",
     )
-    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(UNITS)}")
+    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(LENGTHS)}")
     parser.add_argument(
         "--camber",
         metavar="DEG",
@@ -80,7 +82,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
     Raises:
         UsageError, UnknownEnding: the scene has no name, or another ending than .toml.
-        SceneError, HardpointFileError, UnknownName, UnknownAxes: the file or an option is wrong.
+        SceneError, FileError, UnknownName, UnknownAxes: the file or an option is wrong.
         AssemblyError: the points cannot be put together.
         OutputError: the scene cannot be written.
     """
@@ -94,19 +96,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)
-    found = import_hardpoints(
-        options.file,
-        format=options.format,
-        suspension=options.suspension,
-        side=options.side,
-        part=options.part,
-        names=options.names,
-        axes=options.axes,
-        unit=options.unit,
-        camber=options.camber,
-        toe=options.toe,
-        mirror=options.mirror,
-    )
+    said = {one.name: getattr(options, one.name) for one in fields(Choices)}
+    found = import_hardpoints(options.file, **said)
     name = shown(options.file)
     told = (*found.doubts, *warnings_of(found.scene, found.bounce.closing))
     if target is None:

@@ -295,11 +295,8 @@ def _without_derivatives(measured: Measured) -> tuple[Measured, tuple[str, ...]]
 
 def _notes(curves: Curves, start: Solved) -> tuple[str, ...]:
     """Inputs that the file does not give, and rows that are left out."""
-    solved = curves.solved_input
     drawn = [
-        f"{name} is as drawn in every design: the file does not give it"
-        for name in curves.as_drawn
-        if name != solved
+        f"{name} is as drawn in every design: the file does not give it" for name in curves.driven.as_drawn
     ]
     lost = [
         f"{curves.measured.rows[row]} is left out: {reason}"
@@ -336,7 +333,7 @@ class _Search:
 
     def slopes(self, amounts: Array) -> Array:
         """Of the used numbers."""
-        return self.curves.slopes(amounts, self._design(amounts), self.used)
+        return self.curves.slopes(amounts, self.used)
 
     def _design(self, amounts: Array) -> Solved:
         key = amounts.tobytes()

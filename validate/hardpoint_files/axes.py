@@ -13,6 +13,7 @@ from decimal import Decimal
 from itertools import permutations
 
 from validate.hardpoint_files.contents import Place
+from validate.tables.units import LENGTHS
 
 # Which of the scene's coordinates a direction is, and its sign there.
 DIRECTIONS = {
@@ -23,14 +24,6 @@ DIRECTIONS = {
     "up": (2, 1),
     "down": (2, -1),
 }
-UNITS = {
-    "mm": Decimal(1),
-    "cm": Decimal(10),
-    "m": Decimal(1000),
-    "in": Decimal("25.4"),
-    "ft": Decimal("304.8"),
-}
-"""mm in a unit."""
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
@@ -97,7 +90,7 @@ class Axes:
         turned = [Decimal(0)] * 3
         for word, number in zip(self.directions, place, strict=True):
             at, sign = DIRECTIONS[word]
-            turned[at] = number * sign * UNITS[unit] + 0
+            turned[at] = number * sign * LENGTHS[unit] + 0
         return turned[0], turned[1], turned[2]
 
 

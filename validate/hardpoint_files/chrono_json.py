@@ -20,12 +20,12 @@ from pointcoord.toml_text import read_file
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
-    HardpointFileError,
     Place,
     SpinAxis,
     finite,
     short,
 )
+from validate.tables.errors import FileError
 
 CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
 FORM = "JSON of a Project Chrono suspension"
@@ -43,7 +43,7 @@ def read(text: str, source: str) -> Contents:
     """The points of a suspension, or of those that a vehicle names, and where their spin axes point.
 
     Raises:
-        HardpointFileError: it is no JSON, no suspension and no vehicle, has a point that is none, or names a
+        FileError: it is no JSON, no suspension and no vehicle, has a point that is none, or names a
             file that is not there.
         SceneError: a file that it names cannot be read.
     """
@@ -68,7 +68,7 @@ def _read(text: str, source: str, on_the_way: tuple[str, ...]) -> Contents:
     told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
     if not isinstance(kind, str):
         told = "is JSON without a Type, which every file of Chrono's has"
-    raise HardpointFileError(source, _line(clean, "Type"), told, KINDS)
+    raise FileError(source, _line(clean, "Type"), told, KINDS)
 
 
 def _data(text: str, source: str) -> tuple[dict[str, Any], str]:
@@ -77,11 +77,11 @@ def _data(text: str, source: str) -> tuple[dict[str, Any], str]:
     try:
         data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=_no_number)
     except json.JSONDecodeError as error:
-        raise HardpointFileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
+        raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
     except (ValueError, RecursionError, DecimalException) as error:
-        raise HardpointFileError(source, 0, f"is no JSON: {error}", FORM) from None
+        raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
     if not isinstance(data, dict):
-        raise HardpointFileError(source, 1, f"is a {type(data).__name__}", FORM)
+        raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
     return data, clean
 
 
@@ -120,9 +120,7 @@ def _vehicle(data: Mapping[str, Any], clean: str, source: str) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
     axles = data[AXLES]
     if not axles or not all(isinstance(axle, dict) for axle in axles):
-        raise HardpointFileError(
-            source, _line(clean, AXLES), f"has no {AXLES}", f"one with {SUSPENSION} each"
-        )
+        raise FileError(source, _line(clean, AXLES), f"has no {AXLES}", f"one with {SUSPENSION} each")
     places = [
         _place(axle.get(PLACE), clean, source, f"{PLACE} of axle {number}", PLACE)
         for number, axle in enumerate(axles, 1)
@@ -136,20 +134,18 @@ def _vehicle(data: Mapping[str, Any], clean: str, source: str) -> Contents:
         x, y, z = place
         name = axle.get(SUSPENSION)
         if not isinstance(name, str):
-            raise HardpointFileError(
+            raise FileError(
                 source, _line(clean, AXLES), f"has no {SUSPENSION} of an axle", "the name of a file"
             )
         if y:
             told = f"{PLACE} of its {label} axle has y {y}, beside the middle of the car"
-            raise HardpointFileError(source, _line(clean, PLACE), told, "y 0")
+            raise FileError(source, _line(clean, PLACE), told, "y 0")
         path, text = _named(name, source, _line(clean, name))
         inner, inner_clean = _data(text, path)
         template = inner.get("Template")
         if inner.get("Type") != "Suspension" or not isinstance(template, str):
             told = f"is of Type {short(str(inner.get('Type')))}, and {source} has it as a suspension"
-            raise HardpointFileError(
-                path, _line(inner_clean, "Type"), told, "Type Suspension with a Template"
-            )
+            raise FileError(path, _line(inner_clean, "Type"), told, "Type Suspension with a Template")
         one = _suspension(inner, template, inner_clean, path)
         points += [
             replace(point, part=label, place=(point.place[0] + x, point.place[1] + y, point.place[2] + z))
@@ -190,11 +186,11 @@ def _steering(
     there = steerings if isinstance(steerings, list) else []
     if not isinstance(index, Decimal) or index != int(index) or not 0 <= index < len(there):
         told = f"{STEERING} is {short(str(index))}, but there are {len(there)} {STEERINGS}"
-        raise HardpointFileError(source, _line(clean, STEERING), told, "the number of one, from 0")
+        raise FileError(source, _line(clean, STEERING), told, "the number of one, from 0")
     one = there[int(index)]
     name = one.get("Input File") if isinstance(one, dict) else None
     if not isinstance(name, str):
-        raise HardpointFileError(
+        raise FileError(
             source, _line(clean, STEERINGS), f"has no Input File of {STEERINGS} {index}", "the name of a file"
         )
     path, text = _named(name, source, _line(clean, name))
@@ -226,7 +222,7 @@ def _named(name: str, source: str, line: int) -> tuple[str, str]:
             return str(path), text
     told = f"names {short(name)}, which is in none of the folders above it"
     allowed = "a vehicle in Chrono's folder of data with the files that it names, or a suspension's own file"
-    raise HardpointFileError(source, line, told, allowed)
+    raise FileError(source, line, told, allowed)
 
 
 # JSON.
@@ -264,10 +260,10 @@ def _numbers(value: Any, count: int, text: str, source: str, name: str, *keys: s
     words = {3: "three", 4: "four"}[count]
     if not isinstance(value, list) or len(value) != count:
         told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
-        raise HardpointFileError(source, line, f"{name} has {told}", f"a list of {words} numbers")
+        raise FileError(source, line, f"{name} has {told}", f"a list of {words} numbers")
     for axis, number in zip("xyz" if count == 3 else "wxyz", value, strict=True):
         if not isinstance(number, Decimal):
-            raise HardpointFileError(source, line, f"{axis} of {name} is {short(str(number))}", "a number")
+            raise FileError(source, line, f"{axis} of {name} is {short(str(number))}", "a number")
         finite(number, source, line, f"{axis} of {name}")
     return value
 
@@ -276,5 +272,5 @@ def _angle(data: Mapping[str, Any], key: str, text: str, source: str) -> float:
     value = data.get(key, Decimal(0))
     if not isinstance(value, Decimal) or not abs(finite(value, source, _line(text, key), key)) < 90:
         allowed = "an angle below 90 deg"
-        raise HardpointFileError(source, _line(text, key), f"{key} is {short(str(value))}", allowed)
+        raise FileError(source, _line(text, key), f"{key} is {short(str(value))}", allowed)
     return radians(float(value))

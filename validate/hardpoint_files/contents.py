@@ -8,31 +8,13 @@ from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 
 from validate.plain_text import shown
+from validate.tables.errors import FileError
 
 Place = tuple[Decimal, Decimal, Decimal]
 """Three coordinates with the digits that were printed: a metre is 1000 mm and not 1000.0000000000001."""
 
 # No hardpoint is farther off, in any unit, and no number of a file is longer than this makes it.
 FARTHEST = Decimal("1e9")
-
-
-class HardpointFileError(Exception):
-    """A file of hardpoints, or a table of their names, cannot be used as it is.
-
-    Args:
-        source: the file.
-        line: the line at fault; 0 if it is none in particular.
-        problem: what is wrong, with the value.
-        allowed: what would be right, or what to try.
-    """
-
-    def __init__(self, source: str, line: int, problem: str, allowed: str) -> None:
-        self.source = source
-        self.line = line
-        self.problem = problem
-        self.allowed = allowed
-        where = f"{source}: line {line}" if line else source
-        super().__init__(shown(f"{where}: {problem}; allowed: {allowed}"))
 
 
 @dataclass(frozen=True)
@@ -72,7 +54,7 @@ class Spoilt:
     """
 
     point: FilePoint
-    error: HardpointFileError
+    error: FileError
     value: str
 
     def __str__(self) -> str:
@@ -97,7 +79,7 @@ class Contents:
         unit: of its lengths, if it says so.
         angles: static angles that it prints, by part and its own words, deg.
         spin_axes: by part, where its wheel's spin axis points, if said without a point.
-        axes: where x, y and z point, if it says so. turned: words of axes of its own that are not known here.
+        axes: where x, y and z point, if it says so.
         spoilt: lines that hold no point; right unless they are called like one.
         notes: by part, what the user should know of its points. doubts: by part, what may make them another
             car than the file's.
@@ -109,7 +91,6 @@ class Contents:
     angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
     spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
     axes: tuple[str, ...] = ()
-    turned: str = ""
     spoilt: tuple[Spoilt, ...] = ()
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -119,12 +100,12 @@ def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
     """A finite number with the digits of its text.
 
     Raises:
-        HardpointFileError: it is none.
+        FileError: it is none.
     """
     try:
         number = Decimal(text.strip())
     except InvalidOperation:
-        raise HardpointFileError(source, line, f"{what} is {short(text)}", "a number") from None
+        raise FileError(source, line, f"{what} is {short(text)}", "a number") from None
     return finite(number, source, line, what)
 
 
@@ -132,11 +113,11 @@ def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
     """A number that a coordinate or an angle can be.
 
     Raises:
-        HardpointFileError: it is not finite, or farther off than any car.
+        FileError: it is not finite, or farther off than any car.
     """
     # The exponent first: 1e-999999999 compares as small and has a billion digits.
     if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
-        raise HardpointFileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
+        raise FileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
     return number
 
 

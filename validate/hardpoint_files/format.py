@@ -16,8 +16,9 @@ from typing import Any
 from pointcoord.errors import UnknownName
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, HardpointFileError, plain
+from validate.hardpoint_files.contents import Contents, plain
 from validate.hardpoint_files.vocabulary import Vocabulary
+from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
 FORMS: Mapping[str, Callable[..., Contents]] = {
@@ -32,31 +33,17 @@ HEAD = 4000
 
 
 @dataclass(frozen=True)
-class Derived:
-    """A point that a file does not have and that follows from others.
-
-    Attributes:
-        rule: how. of: from which points.
-    """
-
-    rule: str
-    of: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class Names:
     """A suspension in the words of a format.
 
     Attributes:
         called: what the format calls it, for people, with a pattern of each; empty if it does not say.
         names: what it calls each of our points, any of several names.
-        derived: points that follow from others where the file does not have them.
         notes: what the user should know of these points.
     """
 
     called: Mapping[str, str]
     names: Mapping[str, tuple[str, ...]]
-    derived: Mapping[str, Derived]
     notes: tuple[str, ...] = ()
 
 
@@ -70,12 +57,12 @@ class Format:
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        endings, beginnings: sides and axles by what a point's name ends or begins with.
         vocabulary: other words for those of its names; None if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
-        our_own_names: whether its points may have our own names; where all do, its axes are ours as well.
+        our_own_names: whether its points may have our own names, and words for a wheel before or after a
+            name; where all have our own, its axes are ours as well.
         suspensions: by our name of each.
     """
 
@@ -87,8 +74,6 @@ class Format:
     unit: str
     side: str
     axes_told_by: str
-    endings: Mapping[str, Mapping[str, str]]
-    beginnings: Mapping[str, Mapping[str, str]]
     vocabulary: Vocabulary | None
     refused: str
     refused_words: str
@@ -122,10 +107,10 @@ class Format:
         Args:
             said: which columns the user means, of a table.
         Raises:
-            HardpointFileError: it is not written as it must be.
+            FileError: it is not written as it must be.
         """
         if said and self.form != "columns":
-            raise HardpointFileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
+            raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
         return FORMS[self.form](text, source, said) if said else FORMS[self.form](text, source)
 
     def holds_nothing(self, name: str) -> bool:
@@ -150,8 +135,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
         unit=table["unit"],
         side=table.get("side", ""),
         axes_told_by=table.get("axes_told_by", ""),
-        endings=_senses(table.get("endings", {})),
-        beginnings=_senses(table.get("beginnings", {})),
         vocabulary=Vocabulary.of(table["vocabulary"], table["idle"]["words"])
         if "vocabulary" in table
         else None,
@@ -164,10 +147,6 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
             kind: Names(
                 called=own.get("called", {}),
                 names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
-                derived={
-                    ours: Derived(rule["rule"], tuple(rule["of"]))
-                    for ours, rule in own.get("derived", {}).items()
-                },
                 notes=tuple(own.get("notes", ())),
             )
             for kind, own in table["suspensions"].items()
@@ -175,21 +154,17 @@ def _format(name: str, table: Mapping[str, Any]) -> Format:
     )
 
 
-def _senses(table: Mapping[str, Mapping[str, str]]) -> dict[str, Mapping[str, str]]:
-    return {plain(word): sense for word, sense in table.items()}
-
-
 def format_of(text: str, name: str | None, source: str) -> Format:
     """The format that is named, or the first that the beginning of a text shows.
 
     Raises:
         UnknownName: there is none of that name.
-        HardpointFileError: it is a file of a known program that is not read.
+        FileError: it is a file of a known program that is not read.
     """
     known = formats()
     for one in known.values():
         if one.refused and re.search(one.refused, text):
-            raise HardpointFileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
+            raise FileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
     if name is not None:
         if name not in known:
             raise UnknownName("format", name, known)

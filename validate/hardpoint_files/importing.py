@@ -6,37 +6,39 @@ without a name of ours, points of ours that the file lacks.
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from math import radians, tan
 from pathlib import Path
+from typing import Any
 
 from pointcoord import Scene
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.mechanism.file import AS_DRAWN
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, UNITS, Axes, axes_seen
+from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
+from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
-    HardpointFileError,
     Place,
     SpinAxis,
     Spoilt,
     plain,
     short,
 )
-from validate.hardpoint_files.derived import RULES
+from validate.hardpoint_files.derived import derived
 from validate.hardpoint_files.format import Format, Names, format_of
-from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, read_names
-from validate.hardpoint_files.names_to_fill_in import names_to_fill_in
-from validate.hardpoint_files.slips import slips
+from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+from validate.tables.cells import text_of
+from validate.tables.errors import FileError
+from validate.tables.units import LENGTHS
 
 # mm: the points of one wheel's suspension, from model cars to lorries, span no less and no more.
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
@@ -69,6 +71,18 @@ class Choices:
     toe: float | None = None
     mirror: bool = False
 
+    def __post_init__(self) -> None:
+        allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
+            ("suspension", self.suspension, shipped()),
+            ("side", self.side, SIDES),
+            ("unit", self.unit, LENGTHS),
+        )
+        for kind, chosen, names in allowed:
+            if chosen is not None and chosen not in names:
+                raise UnknownName(kind, chosen, names)
+        if self.part is not None and not self.part.isdecimal() and self.part not in PARTS:
+            raise UnknownName("part", self.part, (*PARTS, "1", "2", "3"))
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -95,35 +109,19 @@ class Imported:
     doubts: tuple[str, ...]
 
 
-def import_hardpoints(
-    path: str | Path,
-    *,
-    format: str | None = None,
-    suspension: str | None = None,
-    side: str | None = None,
-    part: str | None = None,
-    names: str | None = None,
-    axes: str | None = None,
-    unit: str | None = None,
-    camber: float | None = None,
-    toe: float | None = None,
-    mirror: bool = False,
-) -> Imported:
+def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     """Make a scene from a file of hardpoints; the arguments are those of `Choices`.
 
     Raises:
         SceneError: the file cannot be read.
-        HardpointFileError: it is not as it must be, or does not say all that is needed.
+        FileError: it is not as it must be, or does not say all that is needed.
         UnknownName: no such format, suspension, side, part, unit or point.
         UnknownAxes: `axes` are none.
         AssemblyError: its points cannot be put together.
     """
-    choices = Choices(format, suspension, side, part, names, axes, unit, camber, toe, mirror)
-    _known_choices(choices)
-    source = str(path)
-    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
-    own_names = NO_NAMES if names is None else read_names(names)
-    found = format_of(text, format, source)
+    choices, source = Choices(**said), str(path)
+    own_names = NO_NAMES if choices.names is None else read_names(choices.names)
+    found, text = _opened(source, choices)
     return _Import(source, choices, found, found.read(text, source, own_names.table), own_names).result()
 
 
@@ -131,45 +129,25 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     """A file of names (TOML) for a file of hardpoints, ready to be filled in.
 
     Raises:
-        SceneError, HardpointFileError, UnknownName: as `import_hardpoints`.
+        SceneError, FileError, UnknownName: as `import_hardpoints`.
     """
-    choices = Choices(format, suspension)
-    _known_choices(choices)
-    source = str(path)
-    text = _decoded(read_file(path, "the path of a file of hardpoints"), source)
-    found = format_of(text, format, source)
+    choices, source = Choices(format, suspension), str(path)
+    found, text = _opened(source, choices)
     try:
         contents = found.read(text, source, {})
-    except HardpointFileError:
+    except FileError:
         # Such as a table whose columns are not known: they can be said in the same file.
         contents = Contents(())
     return _Import(source, choices, found, contents, NO_NAMES).to_fill_in()
 
 
-def _known_choices(choices: Choices) -> None:
-    allowed: tuple[tuple[str, str | None, Iterable[str]], ...] = (
-        ("suspension", choices.suspension, shipped()),
-        ("side", choices.side, SIDES),
-        ("unit", choices.unit, UNITS),
-    )
-    for kind, chosen, names in allowed:
-        if chosen is not None and chosen not in names:
-            raise UnknownName(kind, chosen, names)
-    if choices.part is not None and not choices.part.isdecimal() and choices.part not in PARTS:
-        raise UnknownName("part", choices.part, (*PARTS, "1", "2", "3"))
-
-
-def _decoded(data: bytes, source: str) -> str:
-    """Text as programs write it: UTF-8, UTF-16 with its mark, or the code page of Western Windows."""
-    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-    for code in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
-        try:
-            text = data.decode(code)
-        except UnicodeDecodeError:
-            continue
-        if "\0" not in text:
-            return text
-    raise HardpointFileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
+def _opened(source: str, choices: Choices) -> tuple[Format, str]:
+    """A file's format and its text."""
+    text = text_of(read_file(source, "the path of a file of hardpoints"))
+    if text is None:
+        allowed = "a text file; of a workbook, one sheet saved as CSV"
+        raise FileError(source, 0, "is no text", allowed)
+    return format_of(text, choices.format, source), text
 
 
 @dataclass(frozen=True)
@@ -182,12 +160,12 @@ class _Import:
     contents: Contents
     own: NamesFile
 
-    def refuse(self, problem: str, allowed: str, line: int = 0) -> HardpointFileError:
-        return HardpointFileError(self.source, line, problem, allowed)
+    def refuse(self, problem: str, allowed: str, line: int = 0) -> FileError:
+        return FileError(self.source, line, problem, allowed)
 
     def result(self) -> Imported:
         kind = self.suspension()
-        words = self.format.suspensions.get(kind, Names({}, {}, {}))
+        words = self.format.suspensions.get(kind, Names({}, {}))
         topology = mechanism_file(kind).topology()
         if not (topology.wheel_axis and topology.inboard):
             raise self.refuse(
@@ -204,7 +182,7 @@ class _Import:
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned, axes)
-        points = self.placed(topology, words, ours, turned, axis, side)
+        points = self.placed(kind, ours, turned, axis, side)
         facts = [self.turning(axes, axes_by, unit)]
         facts += (*self.contents.notes.get(part, self.contents.notes.get("", ())), *words.notes)
         if values:
@@ -279,7 +257,7 @@ class _Import:
 
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        words = self.format.suspensions.get(kind, Names({}, {}, {})).names
+        words = self.format.suspensions.get(kind, Names({}, {})).names
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in mechanism_file(kind).points}
@@ -294,43 +272,30 @@ class _Import:
         def known(name: str) -> str:
             return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
 
-        # Beside names with a lonely f an r may be rear as well as right.
-        every = [plain(point.name).split() for point in self.contents.points]
-        parted = [part for name in every for part in ((name[:1], name[1:]), (name[-1:], name[:-1]))]
-        doubtful = any(edge == ["f"] and known(" ".join(rest)) for edge, rest in parted)
-
         def found(point: FilePoint) -> tuple[str, FilePoint]:
-            for base, begins, ends in self.readings(point.name):
+            for base, (side, part) in self.readings(point.name):
                 if our := known(base):
-                    if doubtful and "r" in (begins, ends):
-                        return "", point
-                    for sense in (self.format.beginnings.get(begins, {}), self.format.endings.get(ends, {})):
-                        if point.side and sense.get("side", point.side) != point.side:
-                            raise self.refuse(
-                                f"has {short(point.name)} for the {point.side} wheel", "one side", point.line
-                            )
-                        point = replace(
-                            point, side=sense.get("side", point.side), part=sense.get("part", point.part)
-                        )
-                    return our, point
+                    if side and point.side and side != point.side:
+                        told = f"has {short(point.name)} for the {point.side} wheel"
+                        raise self.refuse(told, "one side", point.line)
+                    return our, replace(point, side=side or point.side, part=part or point.part)
             return "", point
 
         return found
 
-    def readings(self, name: str) -> Iterator[tuple[str, str, str]]:
-        """A name whole, and without the words of a wheel that it begins or ends with, and these words."""
-        yield name, "", ""
-        begins, ends = self.format.beginnings, self.format.endings
-        words = re.findall(r"[^\W_]+", name)
-        for ahead, behind in ((0, 1), (2, 0), (1, 0), (2, 1), (1, 1)):
+    def readings(self, name: str) -> Iterator[tuple[str, Wheel]]:
+        """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
+        yield name, NO_WHEEL
+        words = re.findall(r"[^\W_]+", name) if self.format.our_own_names else []
+        for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
             base = words[ahead : len(words) - behind]
-            first, last = plain(" ".join(words[:ahead])), plain(" ".join(words[len(words) - behind :]))
-            if base and (not ahead or first in begins) and (not behind or last in ends):
-                yield " ".join(base), first, last
+            edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
+            if base and all(word in WHEELS for word in edge):
+                yield " ".join(base), wheel_of(edge)
 
     def holds_nothing(self, point: FilePoint) -> bool:
         """Whether a point is known and not needed, whatever tells its wheel."""
-        return any(self.format.holds_nothing(base) for base, _, _ in self.readings(point.name))
+        return any(self.format.holds_nothing(base) for base, _ in self.readings(point.name))
 
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names, and the others."""
@@ -428,8 +393,9 @@ class _Import:
         values: Sequence[str],
     ) -> None:
         lacking = self.missing(topology, ours.items())
-        # The rule of the spin axis gives nothing without a direction.
-        lost = [name for name in lacking if not self.follows(name, words, ours, axis)]
+        there = {name: point.place for name, point in ours.items()}
+        structure = mechanism_file(kind).structures[AS_DRAWN]
+        lost = [name for name in lacking if derived(name, structure, there, 1, axis) is None]
         if not lost:
             return
         theirs = [
@@ -442,7 +408,7 @@ class _Import:
         listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
-        if any(name in words.derived and words.derived[name].rule == "spin axis" for name in lost):
+        if topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
         raise self.refuse(
             f"lacks {', '.join(theirs)} of a {kind}"
@@ -450,12 +416,6 @@ class _Import:
             + (f"; no points: {_some(values)}" if values else ""),
             advice,
         )
-
-    def follows(self, name: str, words: Names, ours: Mapping[str, FilePoint], axis: SpinAxis | None) -> bool:
-        rule = words.derived.get(name)
-        if rule is None or any(other not in ours for other in rule.of):
-            return False
-        return RULES[rule.rule]([ours[other].place for other in rule.of], 1, axis) is not None
 
     def spin_axis(self, part: str) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
@@ -490,11 +450,9 @@ class _Import:
         telling = (
             [point for point in read.values() if re.fullmatch(told_by, plain(point.name))] if told_by else []
         )
-        if not self.contents.turned and (not told_by or telling):
+        if not told_by or telling:
             return self.format.axes, f"names such as {short(telling[0].name)}" if telling else "its format"
-        told = (
-            f"has a {self.contents.turned}" if self.contents.turned else "does not say where x, y and z point"
-        )
+        told = "does not say where x, y and z point"
         seen, outboard, words = self.seen(topology, ours)
         if seen is None:
             raise self.refuse(told, f"--axes with {ALLOWED}")
@@ -524,12 +482,12 @@ class _Import:
     def is_our_own(self, ours: str, point: FilePoint) -> bool:
         """Whether a point of the file has our own name as we write it, with or without a side and an axle."""
         base, _, ending = point.name.rpartition("_")
-        return ours in (point.name, base if plain(ending) in self.format.endings else "")
+        return ours in (point.name, base if plain(ending) in WHEELS else "")
 
     def unit(self) -> str:
         said, chosen = self.contents.unit, self.choices.unit
-        if said and said not in UNITS:
-            raise self.refuse(f"has lengths in {short(said)}", ", ".join(UNITS))
+        if said and said not in LENGTHS:
+            raise self.refuse(f"has lengths in {short(said)}", ", ".join(LENGTHS))
         if said and chosen and said != chosen:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
         return chosen or said or self.format.unit
@@ -550,7 +508,6 @@ class _Import:
         if seen is None or _same_but_for_left(axes, seen):
             return []
         told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
-        told += self.slipped(topology, ours, axes)
         if self.choices.axes is not None:
             return [f"{told}: are these the right axes and names?"]
         # Which way is left no point shows: it decides which wheel this is.
@@ -560,24 +517,16 @@ class _Import:
         allowed = f"{' or '.join(ways)} if that is so, --axes {axes.option} if not"
         raise self.refuse(told, allowed)
 
-    def slipped(self, topology: Topology, ours: Mapping[str, FilePoint], axes: Axes) -> str:
-        """The points that one slip puts apart from all others, and without it the axes fit, as a question."""
-        places = {name: point.place for name, point in ours.items()}
-        found = []
-        for name, place, words in slips(places, (*topology.front_and_rear, *topology.steering_axis)):
-            seen = self.seen(topology, {**ours, name: replace(ours[name], place=place)})[0]
-            if seen is not None and _same_but_for_left(axes, seen):
-                found.append(f"{short(ours[name].name)} on line {ours[name].line} ({words} would fit)")
-        return f" (or is one of these wrong: {', '.join(found)}?)" if found else ""
-
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
         places = [point.place for point in ours.values()]
         span = max(max(column) - min(column) for column in zip(*places, strict=True))
-        if SMALLEST <= span * UNITS[unit] <= LARGEST:
+        if SMALLEST <= span * LENGTHS[unit] <= LARGEST:
             return []
-        fitting = {other: span * size for other, size in UNITS.items() if SMALLEST <= span * size <= LARGEST}
-        told = f"spans {float(span * UNITS[unit]):.4g} mm if its lengths are in {unit}"
+        fitting = {
+            other: span * size for other, size in LENGTHS.items() if SMALLEST <= span * size <= LARGEST
+        }
+        told = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
         others = "; ".join(f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
         if self.choices.unit is not None:
             return [f"the file {told}" + (f"; {others}" if others else "")]
@@ -615,14 +564,15 @@ class _Import:
 
     def placed(
         self,
-        topology: Topology,
-        words: Names,
+        kind: str,
         ours: Mapping[str, FilePoint],
         turned: Mapping[str, Place],
         axis: SpinAxis | None,
         side: str,
     ) -> dict[str, ScenePoint]:
         """The scene's points in the order of its topology, with where each comes from."""
+        file = mechanism_file(kind)
+        topology, structure = file.topology(), file.structures[AS_DRAWN]
         out = 1 if side == "right" else -1
         needed = {*topology.required_points, *topology.wheel_axis}
         found = {}
@@ -630,14 +580,8 @@ class _Import:
             if name in turned:
                 line = f", line {ours[name].line}" if ours[name].line else ""
                 found[name] = ScenePoint(name, turned[name], f"{ours[name].name}{line}")
-            elif name in needed and name in words.derived:
-                rule = words.derived[name]
-                derived = RULES[rule.rule]([turned[other] for other in rule.of], out, axis)
-                if derived is not None:
-                    place, how = derived
-                    found[name] = ScenePoint(
-                        name, place, f"from {' and '.join(rule.of)}: {how}", derived=True
-                    )
+            elif name in needed and (one := derived(name, structure, turned, out, axis)) is not None:
+                found[name] = ScenePoint(name, *one, derived=True)
         return found
 
     def angles(
@@ -647,7 +591,7 @@ class _Import:
         parts = {point.part for point in ours.values()} | {""}
         printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
-        return check_angles(self.format.angles, printed, drawn, places, UNITS[unit], topology)
+        return check_angles(self.format.angles, printed, drawn, places, LENGTHS[unit], topology)
 
 
 def _same_but_for_left(axes: Axes, seen: Axes) -> bool:

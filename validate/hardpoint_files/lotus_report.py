@@ -10,11 +10,11 @@ import re
 from validate.hardpoint_files.contents import (
     Contents,
     FilePoint,
-    HardpointFileError,
     Printed,
     decimal_of,
     short,
 )
+from validate.tables.errors import FileError
 
 _AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
 _TYPE = re.compile(r"^\s*TYPE\s+\d+\s+(.*\S)")
@@ -27,7 +27,7 @@ def read(text: str, source: str) -> Contents:
     """The points and static angles of a report.
 
     Raises:
-        HardpointFileError: a line of a point is not as it must be, or there is none.
+        FileError: a line of a point is not as it must be, or there is none.
     """
     points: list[FilePoint] = []
     called: dict[str, str] = {}
@@ -46,7 +46,7 @@ def read(text: str, source: str) -> Contents:
             value = decimal_of(found[2], source, line, found[1].strip())
             angles.setdefault((part, found[1].strip()), Printed(value, line))
     if not points:
-        raise HardpointFileError(
+        raise FileError(
             source,
             0,
             "has no points",
@@ -58,11 +58,11 @@ def read(text: str, source: str) -> Contents:
 def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePoint:
     given = numbers.split()
     if len(given) != 3:
-        raise HardpointFileError(
+        raise FileError(
             source, line, f"has {len(given)} numbers before POINT ({short(numbers.strip())})", "x, y and z"
         )
     if not name:
-        raise HardpointFileError(source, line, "has a point without a name", "POINT ( number ) = name")
+        raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
     x, y, z = (
         decimal_of(number, source, line, f"{axis} of {short(name)}")
         for axis, number in zip("xyz", given, strict=True)

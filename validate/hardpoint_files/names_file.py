@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, DecimalException
 from typing import Any
@@ -24,7 +24,10 @@ from typing import Any
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import FilePoint, HardpointFileError, finite, short
+from validate.hardpoint_files.contents import FilePoint, finite, short
+from validate.plain_text import shown
+from validate.tables.errors import FileError
+from validate.toml_written import value_of
 
 COLUMNS = ("name", "x", "y", "z")
 FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z]'
@@ -52,7 +55,7 @@ def read_names(path: str) -> NamesFile:
 
     Raises:
         SceneError: it cannot be read.
-        HardpointFileError: it is not written as it must be.
+        FileError: it is not written as it must be.
         UnknownName: a point is none of ours.
     """
     try:
@@ -61,18 +64,18 @@ def read_names(path: str) -> NamesFile:
         )
     except (ValueError, RecursionError, DecimalException) as error:
         found = re.search(r"at line (\d+)", str(error))
-        raise HardpointFileError(path, int(found[1]) if found else 0, f"is not TOML: {error}", FORM) from None
+        raise FileError(path, int(found[1]) if found else 0, f"is not TOML: {error}", FORM) from None
     columns, table = data.pop("table", {}), data.pop("names", None)
     if data or not isinstance(table, dict | None) or (table is None and not columns):
         told = f"has the key {short(next(iter(data)))}" if data else "has no table [names]"
-        raise HardpointFileError(path, 0, told, FORM)
+        raise FileError(path, 0, told, FORM)
     if columns and (
         not isinstance(columns, dict)
         or not {*COLUMNS} <= columns.keys() <= {*COLUMNS, "corner"}
         or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in columns.values())
     ):
         told = f"[table] is {short(str(columns))}"
-        raise HardpointFileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
+        raise FileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
     ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
     names: dict[str, str] = {}
     points: dict[str, FilePoint] = {}
@@ -89,8 +92,31 @@ def read_names(path: str) -> NamesFile:
 def _place(value: Any, path: str, name: str) -> tuple[Decimal, Decimal, Decimal]:
     numbers = value if isinstance(value, list) else []
     if len(numbers) != 3 or any(isinstance(n, bool) or not isinstance(n, int | Decimal) for n in numbers):
-        raise HardpointFileError(path, 0, f"{name} is {short(str(value))}", FORM)
+        raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
     x, y, z = (
         finite(Decimal(n), path, 0, f"{axis} of {name}") for axis, n in zip("xyz", numbers, strict=True)
     )
     return x, y, z
+
+
+def names_to_fill_in(
+    source: str, kind: str, needed: Iterable[str], ours: Mapping[str, FilePoint], others: Iterable[FilePoint]
+) -> str:
+    """The text of a file of names (TOML).
+
+    Args:
+        needed: our names of the points that a car of this kind has.
+        ours: the points of the file that are known. others: those that are not.
+    """
+    points = [f"#   {shown(p.name)}, line {p.line}" for p in others]
+    lines = [f"# Which points of {shown(source)} are which of a {kind}. Fill in, and take the # away."]
+    lines += ["# Points of the file that are not known:", *points] if points else []
+    lines += ["", "[names]"]
+    for name in needed:
+        if name in ours:
+            lines.append(f"{name} = {value_of(shown(ours[name].name))}")
+        else:
+            lines.append(f'# {name} = "its name", or [x, y, z] in the axes and unit of the file')
+    table = ('name = "Point"', 'x = "X"', 'y = "Y"', 'z = "Z"')
+    lines += ["", "# [table]    # columns of a table: their titles, or their numbers from 1"]
+    return "\n".join([*lines, *(f"# {line}" for line in table)]) + "\n"

@@ -27,12 +27,13 @@ little tested in a file of them alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.data_classes import dataclass
@@ -44,12 +45,12 @@ from validate.diagnosis.evidence import Evidence, Solved
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import SPEED, Found, Numbers, Poses, asked_scene, poses_of
-from validate.measured.supposed import in_reach, likely
-from validate.measured.units import named
+from validate.measured.poses import SPEED, Driven, Found, Numbers, Poses, of_a_pose, poses_of
+from validate.measured.supposed import Supposed, in_reach, likely
 from validate.plain_text import shown
+from validate.tables.errors import FileError
+from validate.tables.units import named
 from validate.toml_written import key_of
 
 Array = NDArray[np.float64]
@@ -57,8 +58,7 @@ Bools = NDArray[np.bool_]
 
 EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
-TRIED_RADIUS = 300.0  # mm, of a wheel: any would do
-SECANTS = 4
+RADII = (50.0, 1500.0)  # mm, of wheels
 # Suppositions on an independent column that the whole file is held to; of several columns a map takes long.
 TRIED = 3
 # How much an offset that least squares found may leave: the largest difference is the least near it only.
@@ -174,15 +174,15 @@ def compare_results(
             what a map says of a column goes before it. None: not said, see the top of this file.
         factor: how many times the tolerance to hold differences to.
     Raises:
-        ResultsError: no row can be reached, or nothing can be compared.
+        FileError: no row can be reached, or nothing can be compared.
         MissingPackage: digits in full without an accuracy need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     poses = poses_of(scene, measured)
     try:
         held, ours, notes = _held(measured, scene, accuracy, poses)
-    except ResultsError as error:
-        raise _with_meant(error, measured, scene, poses) from None
+    except FileError as error:
+        raise _with_meant(error, measured, poses.driven) from None
     solution = _solution(measured, held, measured.source)
     rows = [
         _row(name, measured, quantity, of, columns, factor)
@@ -191,7 +191,7 @@ def compare_results(
     ]
     lacking, absent = _lacking(scene, measured)
     compared = int(np.any([np.isfinite(h.gap) & np.isfinite(h.tolerance) for h in held], axis=0).sum())
-    faults = _too_few(measured, scene, poses, held, compared)
+    faults = _too_few(measured, poses.driven, held, compared)
     outcome = Outcome(
         name,
         tuple(rows),
@@ -204,7 +204,7 @@ def compare_results(
     )
     explanations = _explained(scene, measured, held, ours, outcome, factor)
     if outcome.disagreements:
-        others = _other_independent(scene, measured, held, outcome, accuracy, poses)
+        others = _other_independent(scene, measured, held, outcome, accuracy, poses.driven)
         # Of a single number its own fault is as likely.
         whole = len(rows) == 1 and any(one.leftover <= 1.0 for one in explanations)
         travel = _other_travel(scene, measured, held, outcome, accuracy)
@@ -224,20 +224,18 @@ def _other_independent(
     held: Sequence[Held],
     outcome: Outcome,
     accuracy: float | None,
-    poses: Poses,
+    driven: Driven,
 ) -> tuple[Explanation, ...]:
     """Whether the columns that rows are taken by are meant otherwise, such as in another unit."""
     lost = len(measured.rows) - int(np.isfinite(np.stack([h.ours for h in held])).any(axis=0).sum())
     names = tuple(f"{row.quantity}.{row.name}" for row in outcome.disagreements)
-    # A map that was made for a travel reaches as far as the car does.
-    same = all(s.meaning.kind == TRAVEL for s in measured.independent)
-    few = islice(likely(scene, measured, poses), TRIED if len(measured.independent) == 1 else 1)
+    few = islice(_likely(measured, driven), TRIED if len(measured.independent) == 1 else 1)
     for one in few:
         try:
-            other, _, _ = _held(one.measured, scene, accuracy, poses if same else None)
+            other, _, _ = _held(one.measured, scene, accuracy)
         except PointcoordError:
             continue
-        leftover = _signed(other)[1] / outcome.factor
+        leftover = _largest(other) / outcome.factor
         further = len(measured.rows) - int(np.isfinite(np.stack([h.ours for h in other])).any(axis=0).sum())
         # Fewer rows that agree are no explanation of those that are out of reach then.
         if leftover <= (NEARLY if one.found else 1.0) and further <= lost:
@@ -246,28 +244,30 @@ def _other_independent(
     return ()
 
 
-def _with_meant(error: ResultsError, measured: Measured, scene: Scene, poses: Poses) -> ResultsError:
+def _with_meant(error: FileError, measured: Measured, driven: Driven) -> FileError:
     """A file of which no row can be reached, with what its columns may be meant as."""
-    meant = _meant(measured, scene, poses)
+    meant = _meant(measured, driven)
     if not meant:
         return error
     allowed = f"{error.allowed}; they nearly are if {meant}"
-    return ResultsError(error.source, error.place, error.problem, allowed)
+    return FileError(error.source, error.place, error.problem, allowed)
 
 
-def _meant(measured: Measured, scene: Scene, poses: Poses) -> str:
+def _likely(measured: Measured, driven: Driven) -> Iterator[Supposed]:
+    return likely(driven, measured, lambda s, found: ours_of(s, found, driven.scene)[0])
+
+
+def _meant(measured: Measured, driven: Driven) -> str:
     """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely."""
-    known = (one.words for one in likely(scene, measured, poses))
-    return next(known, "") or next(in_reach(scene, measured, poses), "")
+    known = (one.words for one in _likely(measured, driven))
+    return next(known, "") or next(in_reach(driven, measured), "")
 
 
-def _too_few(
-    measured: Measured, scene: Scene, poses: Poses, held: Sequence[Held], compared: int
-) -> tuple[str, ...]:
+def _too_few(measured: Measured, driven: Driven, held: Sequence[Held], compared: int) -> tuple[str, ...]:
     """That most of what is given cannot be compared, and what the file may be meant as, if that is so."""
     there = int(np.any([np.isfinite(h.series.values) for h in held], axis=0).sum())
     if 2 * compared < there:
-        meant = _meant(measured, scene, poses)
+        meant = _meant(measured, driven)
         more = f"; nearly all can if {meant}" if meant else ""
         return (f"only {compared} of {there} rows that hold numbers can be compared{more}",)
     few = [h for h in held if h.few and not h.unknown and h.counts[0]]
@@ -282,7 +282,7 @@ def _other_travel(
 ) -> tuple[Explanation, ...]:
     """Whether the travel of the wheel's centre is meant where that of the contact is said, or the other way.
 
-    Where no rolling radius R is said it is fitted, from the contact of R = 0, which is the centre.
+    Where no rolling radius is said it is the one that leaves least.
     """
     centre = scene.mechanism.topology.wheel_centre
     said = next((s for s in measured.independent if s.meaning.kind == TRAVEL), None)
@@ -291,29 +291,25 @@ def _other_travel(
     meant = replace(said.meaning, name=centre if said.meaning.name == CONTACT else CONTACT)
     independent = tuple(replace(s, meaning=meant) if s is said else s for s in measured.independent)
 
-    def trial(radius: float) -> tuple[Array, float]:
-        other = replace(measured, independent=independent, rolling_radius=radius)
-        return _signed(_held(other, scene, accuracy)[0])
+    def other(radius: float) -> Measured:
+        return replace(measured, independent=independent, rolling_radius=radius)
+
+    def left(radius: float) -> float:
+        """The largest difference in its tolerance, of poses alone: the radius is where it is least."""
+        driven = Driven.of(scene, other(radius))
+        found = driven.poses([s.values for s in independent], measured.numbers)
+        parts = [
+            (h.series.values - np.asarray(ours_of(h.series, found, scene)[0])) / (h.tolerance + SMALLEST)
+            for h in held
+            if of_a_pose(h.series.meaning)
+        ]
+        return float(np.max(np.abs(np.nan_to_num(parts)), initial=0.0))
 
     try:
         radius = measured.rolling_radius
-        if not radius > 0.0:
-            before, radius = 0.0, TRIED_RADIUS
-            there = _signed(held)[0]
-            for _ in range(SECANTS):
-                here, _ = trial(radius)
-                slope = np.nan_to_num(here - there) / (radius - before)
-                step = float(np.nan_to_num(here) @ slope) / max(float(slope @ slope), SMALLEST)
-                before, there, radius = radius, here, radius - step
-                if not (radius > 0.0 and abs(step) > 1e-3 * radius):
-                    break
-            # Least squares come near it; what counts is the largest difference, and so near all is linear.
-            near = (radius - before) + radius * np.linspace(-0.02, 0.02, 401)
-            largest = np.abs(np.nan_to_num(there) + near[:, None] * slope).max(axis=-1)
-            radius = before + float(near[np.argmin(largest)])
-        if not radius > 0.0:
-            return ()
-        _, leftover = trial(radius)
+        if meant.name == CONTACT and not radius > 0.0:
+            radius = float(minimize_scalar(left, bounds=RADII, method="bounded", options={"xatol": 0.1}).x)
+        leftover = _largest(_held(other(radius), scene, accuracy)[0])
     except PointcoordError:
         return ()
     leftover /= outcome.factor
@@ -325,10 +321,10 @@ def _other_travel(
     return (Explanation(words, "travel", names, leftover),)
 
 
-def _signed(held: Sequence[Held]) -> tuple[Array, float]:
-    """Differences of all columns in their tolerances, and the largest; infinite if there is none."""
+def _largest(held: Sequence[Held]) -> float:
+    """The largest difference of all columns in its tolerance; infinite if there is none."""
     parts = np.concatenate([(h.series.values - h.ours) / (h.tolerance + SMALLEST) for h in held])
-    return parts, float(np.nanmax(np.abs(parts), initial=0.0)) if np.isfinite(parts).any() else math.inf
+    return float(np.nanmax(np.abs(parts), initial=0.0)) if np.isfinite(parts).any() else math.inf
 
 
 def _explained(
@@ -410,7 +406,7 @@ def as_solution(measured: Measured, scene: Scene, accuracy: float | None = None)
     Its times are those of `DataOutcome.outcome`; components that the file does not give are NaN, and claim 0.
 
     Raises:
-        ResultsError, PointcoordError: see `compare_results`.
+        FileError, PointcoordError: see `compare_results`.
     """
     held, _, _ = _held(measured, scene, accuracy)
     return _solution(measured, held, measured.source)
@@ -423,18 +419,18 @@ def _held(
     values = [s.values for s in (*measured.independent, *measured.rates)]
     first = len(measured.independent)
     here = poses.at(values[:first], values[first:])
-    notes = [*measured.notes, *poses.notes, *_out_of_reach(measured, here)]
+    notes = [*measured.notes, *poses.driven.notes, *_out_of_reach(measured, here)]
     if not here.reached.any():
         row = min(here.reasons)
         problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
-        raise ResultsError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
+        raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
-    stated = _taken_for_granted(measured, scene, here) if unsaid else here
+    stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
     around: list[tuple[bool, Found, Found]] = []
     for i, s in enumerate((*measured.independent, *measured.rates)):
-        off = s.off + poses.extra(s)
+        off = s.off
         if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
             off = off + scene.tolerance
         if off.any():
@@ -481,7 +477,7 @@ def _held(
     return found, solution, tuple(notes)
 
 
-def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Found:
+def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found:
     """Ours, held to what placing every point to the scene's tolerance makes of each number.
 
     Where that says nothing of a number, its bound is NaN.
@@ -489,13 +485,13 @@ def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Found:
     # Their packages are an extra that printed files need not.
     from validate.formulations.input_rates import rates
 
-    rows, asked = here.reached, asked_scene(scene, measured)
+    rows, scene = here.reached, driven.scene
     if measured.independent[0].meaning.kind == TIME:
         times = measured.independent[0].values[rows]
         laws = {name: rates(law, times) for name, law in scene.inputs.items()}
     else:
         laws = {n: np.column_stack([value[rows], here.laws[n][rows]]) for n, value in here.inputs.items()}
-    bounds = _stated(asked, here, laws)
+    bounds = _stated(scene, here, laws)
     slopes, nothing = {}, np.zeros((int(rows.sum()), 2))
     for per, slope in here.slopes.items():
         speeds = bounds[SPEED]
@@ -503,18 +499,18 @@ def _taken_for_granted(measured: Measured, scene: Scene, here: Found) -> Found:
             going = {n: np.column_stack([law[:, 0], nothing]) for n, law in laws.items()}
             for name, law in slope.laws.items():
                 going[name][:, 1] = law[rows]
-            speeds = _stated(asked, here, going)[SPEED]
+            speeds = _stated(scene, here, going)[SPEED]
         slopes[per] = replace(slope, bounds=speeds)
     return replace(here, bounds=bounds, slopes=slopes)
 
 
-def _stated(asked: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
+def _stated(scene: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
     """What placing every point to the scene's tolerance makes of each number, by inputs and their rates."""
     from validate.solvers.held import accuracy_at
 
     rows = here.reached
     places = {name: place[rows] for name, place in here.numbers[PLACES].items()}
-    stated = accuracy_at(asked, asked.tolerance, places, laws)
+    stated = accuracy_at(scene, scene.tolerance, places, laws)
     blind = np.zeros(int(rows.sum()), dtype=bool) if stated.blind is None else stated.blind
     found: Numbers = {}
     for quantity, part in stated.claims.items():

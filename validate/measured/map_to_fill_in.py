@@ -13,7 +13,7 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
     """The text of a map (TOML) of a file of results of a scene's car.
 
     Raises:
-        ResultsError: the file cannot be read.
+        FileError: the file cannot be read.
         MissingPackage: Parquet needs pyarrow.
     """
     columns = read_columns(file)

@@ -50,10 +50,10 @@ from pointcoord.effects.angle import Angle, WheelAngles
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
-from validate.measured.errors import ResultsError
 from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
-from validate.measured.units import allowed_units, below_of, factor_of, is_unit
 from validate.plain_text import shown
+from validate.tables.errors import FileError
+from validate.tables.units import allowed_units, below_of, factor_of, is_unit
 
 Array = NDArray[np.float64]
 
@@ -180,6 +180,16 @@ class Measured:
     rates: tuple[Series, ...] = ()
     held_rates: Mapping[str, float] = field(default_factory=dict)
 
+    def taken(self, keep: NDArray[np.bool_]) -> Measured:
+        """Some of its rows."""
+        return replace(
+            self,
+            independent=tuple(s.taken(keep) for s in self.independent),
+            numbers=tuple(s.taken(keep) for s in self.numbers),
+            rates=tuple(s.taken(keep) for s in self.rates),
+            rows=tuple(row for row, kept in zip(self.rows, keep, strict=True) if kept),
+        )
+
 
 def read_results(file: str, map: str | None, scene: Scene) -> Measured:
     """Read a file of results of a scene's car.
@@ -187,7 +197,7 @@ def read_results(file: str, map: str | None, scene: Scene) -> Measured:
     Args:
         map: file that says what the columns are; None where they carry our own names.
     Raises:
-        ResultsError: the file or the map is wrong, or nothing in it can be compared.
+        FileError: the file or the map is wrong, or nothing in it can be compared.
         MissingPackage: Parquet needs pyarrow.
     """
     columns = read_columns(file)
@@ -200,7 +210,7 @@ def _map_of(path: str) -> dict[str, Any]:
     try:
         return parsed(read_file(path, "the path of a map of columns (TOML)"), shown(path))
     except SceneError as error:
-        raise ResultsError(shown(path), error.key, error.problem, error.allowed or "TOML") from None
+        raise FileError(shown(path), error.key, error.problem, error.allowed or "TOML") from None
 
 
 def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where: str) -> Measured:
@@ -209,7 +219,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     Args:
         where: what to call the map in messages.
     Raises:
-        ResultsError: see `read_results`.
+        FileError: see `read_results`.
     """
     map = _Map(where, content, columns, scene)
     found = map.series()
@@ -221,7 +231,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     taken = {s.column for s in (*independent, *rates)}
     numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
     if not numbers:
-        raise ResultsError(
+        raise FileError(
             columns.source, "", "holds nothing to compare", f"columns such as {', '.join(map.known[:4])}"
         )
     beside = [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]
@@ -329,16 +339,16 @@ class _Map:
         """What is said of columns, by their names."""
         return self._part("columns")
 
-    def _wrong(self, place: str, problem: str, allowed: str) -> ResultsError:
+    def _wrong(self, place: str, problem: str, allowed: str) -> FileError:
         """The map is at fault."""
-        return ResultsError(self.where, place, problem, allowed)
+        return FileError(self.where, place, problem, allowed)
 
-    def _is(self, place: str, value: object, allowed: str) -> ResultsError:
+    def _is(self, place: str, value: object, allowed: str) -> FileError:
         return self._wrong(place, f"is {shown(repr(value))}", allowed)
 
-    def _column(self, column: str, problem: str, allowed: str) -> ResultsError:
+    def _column(self, column: str, problem: str, allowed: str) -> FileError:
         """A column of the file is at fault."""
-        return ResultsError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
+        return FileError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
 
     def number_at(
         self, key: str, default: float, part: Mapping[str, Any] | None = None, at: str = ""
@@ -421,7 +431,7 @@ class _Map:
         """What a column is; None for what is to be left out.
 
         Raises:
-            ResultsError: the map gives it a name that there is not.
+            FileError: the map gives it a name that there is not.
         """
         part = self._parts.get(column)
         if part is None or "is" not in part:
@@ -488,7 +498,7 @@ class _Map:
             near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
             problem = f"none of {', '.join(map_shown(self.columns.names))} is a name that we know{near}"
             allowed = f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)"
-            raise ResultsError(self.columns.source, "names of the columns", problem, allowed)
+            raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
     def _unit_of(self, column: str) -> str:
@@ -554,7 +564,7 @@ class _Map:
             where = f"{self.columns.rows[row]}, column {shown(column)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {FARTHEST:g} {meaning.unit}, or nothing or nan for none"
-            raise ResultsError(self.columns.source, where, problem, allowed)
+            raise FileError(self.columns.source, where, problem, allowed)
         least = {key: self.number_at(key, 0.0, part, place) for key in ("printed", "accuracy") if key in part}
         for key, value in least.items():
             if value < 0.0:
@@ -607,7 +617,7 @@ class _Map:
             names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
             allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
             problem = "no column says at which pose a row is"
-            raise ResultsError(self.columns.source, "names of the columns", problem, allowed)
+            raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return (*travels, *inputs)
 
 
@@ -635,7 +645,7 @@ def _without_repeats(measured: Measured) -> Measured:
     """Rows that stand twice are taken once.
 
     Raises:
-        ResultsError: two rows are at the same pose and say different things.
+        FileError: two rows are at the same pose and say different things.
     """
     keys = np.stack([s.values for s in measured.independent], axis=-1)
     whole = np.stack([s.values for s in (*measured.numbers, *measured.rates)], axis=-1)
@@ -652,7 +662,7 @@ def _without_repeats(measured: Measured) -> Measured:
             )
             problem = f"is at {at} as {measured.rows[first]} is, and says something else"
             allowed = "one row for each pose; of a loop its two ways in files of their own"
-            raise ResultsError(measured.source, measured.rows[i], problem, allowed)
+            raise FileError(measured.source, measured.rows[i], problem, allowed)
         again.append(i)
     lost: NDArray[np.bool_] = np.asarray(np.isnan(keys).any(axis=-1))
     keep: NDArray[np.bool_] = np.logical_not(lost)
@@ -664,15 +674,5 @@ def _without_repeats(measured: Measured) -> Measured:
         where = measured.rows[int(np.argmax(lost))]
         notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {where} on")
     if not keep.any():
-        raise ResultsError(measured.source, "", "no row says at which pose it is", "at least one")
-    if keep.all():
-        return measured
-    rows = tuple(row for row, kept in zip(measured.rows, keep, strict=True) if kept)
-    return replace(
-        measured,
-        independent=tuple(s.taken(keep) for s in measured.independent),
-        numbers=tuple(s.taken(keep) for s in measured.numbers),
-        rates=tuple(s.taken(keep) for s in measured.rates),
-        rows=rows,
-        notes=tuple(notes),
-    )
+        raise FileError(measured.source, "", "no row says at which pose it is", "at least one")
+    return replace(measured.taken(keep), notes=tuple(notes))

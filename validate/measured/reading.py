@@ -11,7 +11,6 @@ them are taken as written in full.
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections import Counter
@@ -26,24 +25,18 @@ from pointcoord import SceneError
 from pointcoord.data_classes import dataclass
 from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
-from validate.measured.errors import ResultsError
-from validate.measured.units import is_unit
 from validate.plain_text import shown
+from validate.tables.cells import NUMBER, Row, is_number, joined, lines_of, text_of
+from validate.tables.errors import FileError
+from validate.tables.units import is_unit
 
 Array = NDArray[np.float64]
 
-COMMENTS = ("#", "%", "//", "!")
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 NOTHING_AT_ALL = "nothing"
 # Digits that only a double in full has.
 DOUBLE = 15
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?")
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?")
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
-_WORDS = re.compile(r'"[^"]*"|\S+')
-
-Row = tuple[int, list[str]]
-"""The number of a line, and its cells."""
 
 
 @dataclass(frozen=True)
@@ -74,33 +67,28 @@ class Columns:
         (name, count), *_ = Counter(self.names).most_common(1)
         if count > 1:
             problem, allowed = f"{shown(name)!r} is there {count} times", "each name once; rename one of them"
-            raise ResultsError(self.source, "names of the columns", problem, allowed)
+            raise FileError(self.source, "names of the columns", problem, allowed)
 
 
 def read_columns(path: str) -> Columns:
     """Read a file: Parquet by its first bytes or its ending, anything else as text.
 
     Raises:
-        ResultsError: it cannot be read, is empty, or holds what is no table of numbers.
+        FileError: it cannot be read, is empty, or holds what is no table of numbers.
         MissingPackage: Parquet needs pyarrow.
     """
     source = shown(path)
     try:
         data = b"PAR1" if path.endswith(".parquet") else read_file(path, "the path of a table")
     except SceneError as error:
-        raise ResultsError(
+        raise FileError(
             source, "", error.problem, error.allowed or "a table; larger ones as Parquet"
         ) from None
     if data[:4] == b"PAR1":
         return _parquet(path, source)
-    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
-    if b"\0" in data and not wide:
-        raise ResultsError(source, "", "holds bytes that are no text", "text, or Parquet")
-    try:
-        text = data.decode("utf-16" if wide else "utf-8-sig")
-    except UnicodeDecodeError:
-        # What spreadsheets of Western Europe write; only names and units have such letters.
-        text = data.decode("cp1252", "replace")
+    text = text_of(data)
+    if text is None:
+        raise FileError(source, "", "holds bytes that are no text", "text, or Parquet")
     return columns_of_text(text, source)
 
 
@@ -117,7 +105,7 @@ def _parquet(path: str, source: str) -> Columns:
     # pyarrow's errors have no family of their own.
     except Exception as error:
         problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
-        raise ResultsError(source, "", problem, "Parquet, or text") from None
+        raise FileError(source, "", problem, "Parquet, or text") from None
     others = {
         name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"
     }
@@ -125,11 +113,11 @@ def _parquet(path: str, source: str) -> Columns:
     if not found or not table.num_rows:
         holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
         problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
-        raise ResultsError(source, "", problem, "a column of numbers for each quantity, and at least one row")
+        raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
     values = np.stack([column.astype(float) for column in found.values()])
     for column, row in np.argwhere(np.isinf(values))[:1].tolist():
         place = f"row {row + 1}, column {shown([*found][column][0])!r}"
-        raise ResultsError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
+        raise FileError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
     # Single precision rounds to half of the distance to the next number.
     coarse = [c.dtype.kind == "f" and c.dtype.itemsize < 8 for c in found.values()]
     steps = [
@@ -145,33 +133,31 @@ def columns_of_text(text: str, source: str) -> Columns:
     """The columns of a text.
 
     Raises:
-        ResultsError: see `read_columns`.
+        FileError: see `read_columns`.
     """
-    every = enumerate(text.replace("\N{MINUS SIGN}", "-").splitlines(), 1)
-    lines = [(number, line.rstrip()) for number, line in every if line.strip()]
-    body = [(number, line) for number, line in lines if not line.lstrip().startswith(COMMENTS)]
-    if not body:
-        raise ResultsError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
-    mark = _delimiter([line for _, line in body])
-    cells = [(number, _cells(line, mark)) for number, line in body]
+    lines = lines_of(text)
+    cells = lines.rows
+    if not cells:
+        raise FileError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
+    if lines.mixed:
+        problem = "has a decimal comma, and other numbers have decimal points"
+        raise FileError(source, f"line {lines.mixed}", problem, "one sign before the decimals")
     first = next((i for i, (_, row) in enumerate(cells) if _numeric(row)), None)
     if first is None:
-        raise ResultsError(source, "", "has no line of numbers", "a line of numbers for each pose")
+        raise FileError(source, "", "has no line of numbers", "a line of numbers for each pose")
     head, rows = [row for _, row in cells[:first]], cells[first:]
     count = _width(rows, head)
     if not head:
         # As numpy and gnuplot write names: in the last comment before the numbers.
-        before = [
-            _cells(line.lstrip().lstrip("#%/! "), mark) for number, line in lines if number < rows[0][0]
-        ]
-        head = [row for row in before[-1:] if len(_joined(row)) == count]
+        before = [row for number, row in lines.comments if number < rows[0][0]]
+        head = [row for row in before[-1:] if len(joined(row)) == count]
     names, units = _names(head, count, source)
     unsaid = [not name for name in names]
     names = tuple(name or f"column {i + 1}" for i, name in enumerate(names))
     for line, row in rows:
         if len(row) < count or any(row[count:]):
             allowed = f"{count}, one for each of {', '.join(names)}"
-            raise ResultsError(source, f"line {line}", f"has {len(row)} cells", allowed)
+            raise FileError(source, f"line {line}", f"has {len(row)} cells", allowed)
     words = {i: said for i in range(count) if (said := _words([row[i] for _, row in rows], unsaid[i]))}
     kept = [i for i in range(count) if i not in words] or [*range(count)]
     told = {names[i]: said for i, said in words.items() if i not in kept}
@@ -196,51 +182,19 @@ def _words(cells: Sequence[str], unnamed: bool) -> str:
     some = [cell for cell in cells if cell.lower() not in NOTHING]
     if not some:
         return NOTHING_AT_ALL if unnamed else ""
-    return "" if any(map(_NUMBER.fullmatch, some)) else f"{shown(some[0])!r} and the like"
-
-
-def _delimiter(lines: Sequence[str]) -> str:
-    """What stands between the cells; blanks are the empty text."""
-    for one in ";\t":
-        if sum(one in line for line in lines) * 2 > len(lines):
-            return one
-    words = [word for line in lines for word in line.split() if len(line.split()) > 1]
-    commas = sum(bool(_DECIMAL_COMMA.fullmatch(word)) for word in words)
-    numbers = commas + sum(bool(_NUMBER.fullmatch(word)) for word in words)
-    often = sum("," in line for line in lines) * 2 > len(lines)
-    return "," if often and not commas * 2 > numbers else ""
-
-
-def _cells(line: str, mark: str) -> list[str]:
-    """The cells of a line, decimal commas as points."""
-    if mark == ",":
-        return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
-    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True)) if mark else _WORDS.findall(line)
-    plain = (cell.strip() if mark else cell.strip('"') for cell in cells)
-    return [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in plain]
-
-
-def _joined(row: Sequence[str]) -> list[str]:
-    """Names between blanks with the units that stand behind them."""
-    found: list[str] = []
-    for word in row:
-        if found and word[:1] in "[(":
-            found[-1] += f" {word}"
-        else:
-            found.append(word)
-    return found
+    return "" if any(map(is_number, some)) else f"{shown(some[0])!r} and the like"
 
 
 def _numeric(row: Sequence[str]) -> bool:
     """Whether a line is one of numbers: as many of its cells are as are not."""
     told = [cell for cell in row if cell.lower() not in NOTHING]
-    return bool(told) and sum(bool(_NUMBER.fullmatch(cell)) for cell in told) * 2 >= len(told)
+    return bool(told) and sum(map(is_number, told)) * 2 >= len(told)
 
 
 def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
     """How many columns there are, without the empty one behind a delimiter at the end of every line."""
     widths = Counter(len(row) for _, row in rows)
-    named = {len(row) for row in head} | {len(_joined(row)) for row in head}
+    named = {len(row) for row in head} | {len(joined(row)) for row in head}
     count = max(widths, key=lambda width: (widths[width], width in named, width))
     while count > 1 and all(not any(row[count - 1 :]) for row in (*head, *(row for _, row in rows))):
         count -= 1
@@ -250,12 +204,12 @@ def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines above the numbers; a title of another width is passed over."""
     short = [row if any(row[count:]) else row[:count] for row in head]
-    wide = [row if len(row) == count else _joined(row) for row in short]
+    wide = [row if len(row) == count else joined(row) for row in short]
     wide = [row for row in wide if len(row) == count]
     if not wide:
         if head:
-            problem = f"has {count} columns of numbers under {len(_joined(head[-1]))} names"
-            raise ResultsError(source, "names of the columns", problem, "a name for each column")
+            problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
+            raise FileError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
     names, units = (list(part) for part in zip(*map(_name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
@@ -263,7 +217,7 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
         wrong = [cell for cell in told if cell not in ("", "-", "1") and not is_unit(cell)]
         if wrong:
             problem = f"holds {shown(wrong[0])!r}, which is no unit"
-            raise ResultsError(source, "line of units", problem, "mm, deg, rad, s and so on")
+            raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
         units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, told, strict=True)]
     return tuple(names), tuple(units)
 
@@ -282,11 +236,11 @@ def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, i
     """A number, and how many decimals and significant digits it is written with."""
     if cell.lower() in NOTHING:
         return math.nan, 0, 0
-    found = _NUMBER.fullmatch(cell)
+    found = NUMBER.fullmatch(cell)
     value = float(re.sub("[dD]", "e", cell)) if found else math.inf
     if found is None or not math.isfinite(value):
         problem = f"{shown(cell)!r} is no finite number"
         allowed = "a number, or nothing, - or nan for none"
-        raise ResultsError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
+        raise FileError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
     whole, _, part = found.group(1).partition(".")
     return value, len(part) - int(found.group(2) or 0), max(len((whole + part).lstrip("0")), 1)

@@ -9,30 +9,30 @@ file to it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
-from pointcoord import PointcoordError, Scene, solve_poses
+from pointcoord import PointcoordError
 from pointcoord.data_classes import dataclass
-from pointcoord.effects.registry import QUANTITIES
-from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.simulation import scene_mechanism
-from validate.measured.mapping import ARCSINE, INPUT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import OverMap, Plan, Poses, sensible, widest
-from validate.measured.units import KINDS
+from validate.measured.mapping import INPUT, TIME, Measured, Series
+from validate.measured.poses import Driven, Found, of_a_pose
 from validate.plain_text import shown
+from validate.tables.units import KINDS
 
 Array = NDArray[np.float64]
+OursOf = Callable[[Series, Found], Array | None]
+"""Our numbers of a column, (N,); None if they are not known."""
 
 ROWS = 16  # that poses are solved at
 NEARLY_ALL = 0.8  # of them must be in reach
-STEPS = 8  # of least squares
-STEP = {"rad": 1e-5, "mm": 1e-3}  # of its differences
+STEP = {"rad": 1e-5, "mm": 1e-3}  # of differences by an offset
+FAR = 1e3  # spreads of a number, which a row without a pose counts as
 # What a supposition may leave of the differences, of the numbers' own spread, to be held to the whole file.
 PROMISING = 0.05
 # By what a rounded offset may leave more than the found one, which least squares put lowest.
@@ -52,212 +52,168 @@ class Supposed:
 
 @dataclass(frozen=True)
 class _Change:
-    """x = factor v + more, in words of the column; whether the offset was found by least squares."""
+    """x = factor v + more, in words of the column.
 
-    words: str
+    Attributes:
+        cost: how far-fetched it is. found: whether the offset was found by least squares.
+    """
+
+    words: str = ""
     factor: float = 1.0
     more: float = 0.0
+    cost: float = 0.0
     found: bool = False
 
-    @property
-    def nothing(self) -> bool:
-        return self.factor == 1.0 and self.more == 0.0
+
+SAME = _Change()
 
 
-def likely(scene: Scene, measured: Measured, poses: Poses) -> Iterator[Supposed]:
+def likely(driven: Driven, measured: Measured, ours_of: OursOf) -> Iterator[Supposed]:
     """The likeliest suppositions, what is known beforehand before what is found; none over time."""
-    if measured.independent[0].meaning.kind == TIME or not any(map(_is_of_a_pose, measured.numbers)):
+    if measured.independent[0].meaning.kind == TIME or not any(
+        of_a_pose(s.meaning) for s in measured.numbers
+    ):
         return
+    trial = _Trial(driven, _some(measured), ours_of)
     try:
-        trial = _Trial(scene, _some(measured), poses)
-        found = list(_supposed(trial))
+        before = trial.left([SAME] * len(measured.independent))
+        tried = [(trial.left(changes), changes) for changes in trial.supposed()]
     except PointcoordError:
         return
-    before = trial.left([_Change("")] * len(measured.independent))
-    found = [one for one in found if one[0] <= PROMISING and one[0] < before]
+    kept = [(left, changes) for left, changes in tried if left <= PROMISING and left < before]
     # Simple before far-fetched, where both leave as little as the digits of a file allow.
-    found.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), one[1]))
-    for _, _, changes in found:
-        told = [
-            f"{shown(s.column)} {change.words}"
-            for s, change in zip(measured.independent, changes, strict=True)
-            if not change.nothing
-        ]
-        independent = tuple(
-            replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
-            for s, c in zip(measured.independent, changes, strict=True)
-        )
-        words, fitted = ", and ".join(told), any(change.found for change in changes)
-        turned = {s.meaning.words for s, c in zip(independent, changes, strict=True) if c.factor < 0.0}
-        slopes = [s for s in measured.numbers if s.meaning.per in turned]
-        numbers = tuple(
-            replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers
-        )
-        yield Supposed(words, replace(measured, independent=independent, numbers=numbers), fitted)
-        if slopes:
-            # Derivatives by a column that counts the other way do so too, if they were not made of another.
-            names = ", ".join(shown(s.column) for s in slopes)
-            words = f"{words}, and {names} is by it as it is said"
-            yield Supposed(words, replace(measured, independent=independent), fitted)
+    kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1])))
+    for _, changes in kept:
+        yield from _changed(measured, changes)
 
 
-def in_reach(scene: Scene, measured: Measured, poses: Poses) -> Iterator[str]:
+def _changed(measured: Measured, changes: Sequence[_Change]) -> Iterator[Supposed]:
+    """The file with its independent columns changed."""
+    both = list(zip(measured.independent, changes, strict=True))
+    words = ", and ".join(f"{shown(s.column)} {change.words}" for s, change in both if change.words)
+    fitted = any(change.found for change in changes)
+    independent = tuple(
+        replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off) for s, c in both
+    )
+    turned = {s.meaning.words for s, c in both if c.factor < 0.0}
+    slopes = [s for s in measured.numbers if s.meaning.per in turned]
+    numbers = tuple(replace(s, values=-s.values) if s in slopes else s for s in measured.numbers)
+    yield Supposed(words, replace(measured, independent=independent, numbers=numbers), fitted)
+    if slopes:
+        # Derivatives by a column that counts the other way do so too, if they were not made of another.
+        names = ", ".join(shown(s.column) for s in slopes)
+        words = f"{words}, and {names} is by it as it is said"
+        yield Supposed(words, replace(measured, independent=independent), fitted)
+
+
+def in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
     """Units of a column that bring nearly all rows within reach, in words; nearest the said one first."""
-    rates = [s.values for s in measured.rates]
-    for i, s in enumerate(measured.independent):
+    some = _some(measured)
+    for i, s in enumerate(some.independent):
         units = [(n, size / s.factor) for n, size in _units(s.meaning.unit)]
         for name, factor in sorted(units, key=lambda one: abs(math.log(one[1]))):
-            values = [factor * v.values if k == i else v.values for k, v in enumerate(measured.independent)]
-            try:
-                reached = poses.at(values, rates).reached
-            except PointcoordError:
+            values = [factor * v.values if k == i else v.values for k, v in enumerate(some.independent)]
+            _, lost = driven.inputs(values)
+            if abs(factor - 1.0) <= 1e-9 or len(lost) > (1.0 - NEARLY_ALL) * len(some.rows):
                 continue
-            if abs(factor - 1.0) > 1e-9 and reached.mean() >= NEARLY_ALL:
+            if s.meaning.kind == TIME or driven.poses(values).reached.mean() >= NEARLY_ALL:
                 yield f"{shown(s.column)} is in {name}, not in {_unit_of(s)}"
-
-
-def _is_of_a_pose(series: Series) -> bool:
-    unit = QUANTITIES[series.meaning.quantity].unit
-    return not series.meaning.per and "/" not in unit
 
 
 def _some(measured: Measured) -> Measured:
     """Some of its rows, evenly, and of its numbers those that a pose has."""
     rows = np.zeros(len(measured.rows), dtype=bool)
     rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).astype(int))] = True
-    return replace(
-        measured,
-        independent=tuple(s.taken(rows) for s in measured.independent),
-        numbers=tuple(s.taken(rows) for s in measured.numbers if _is_of_a_pose(s)),
-        rows=tuple(row for row, kept in zip(measured.rows, rows, strict=True) if kept),
-    )
-
-
-def _supposed(trial: _Trial) -> Iterator[tuple[float, float, list[_Change]]]:
-    """What is left of the differences, how far-fetched it is, and what is changed of each column."""
-    columns = trial.measured.independent
-    same = [_Change("")] * len(columns)
-    known = [list(trial.known(s)) for s in columns]
-    for i, changes in enumerate(known):
-        for cost, change in changes:
-            every = [*same[:i], change, *same[i + 1 :]]
-            yield trial.left(every), cost, every
-    for (i, first), (j, second) in combinations(enumerate(known), 2):
-        for (cost, one), (further, two) in product(first, second):
-            # Of units of two columns only that both are in the same.
-            if abs(one.factor) != abs(two.factor):
-                continue
-            every = list(same)
-            every[i], every[j] = one, two
-            yield trial.left(every), cost + further + 1.0, every
-    for i, s in enumerate(columns):
-        for factor, words in ((1.0, ""), (-1.0, "counts the other way, and ")):
-            found = trial.found(i, factor)
-            if found is not None:
-                change = _Change(words + trial.offset(s, factor, found), factor, found, found=True)
-                every = [*same[:i], change, *same[i + 1 :]]
-                yield trial.left(every), 3.0 - factor, every
+    numbers = tuple(s for s in measured.numbers if of_a_pose(s.meaning))
+    return replace(measured, numbers=numbers).taken(rows)
 
 
 @dataclass(frozen=True, repr=False)
 class _Trial:
     """A file's numbers by other values of its independent columns."""
 
-    scene: Scene
+    driven: Driven
     measured: Measured
-    poses: Poses
+    ours_of: OursOf
 
-    @cached_property
-    def plan(self) -> Plan:
-        return Plan.of(self.scene, self.measured)
+    def supposed(self) -> Iterator[list[_Change]]:
+        """What each column is changed by: one alone, two together, one by another zero."""
+        columns = self.measured.independent
+        known = [list(self._known(s)) for s in columns]
+        for i, changes in enumerate(known):
+            yield from (_one(len(columns), {i: change}) for change in changes)
+        for (i, first), (j, second) in combinations(enumerate(known), 2):
+            for one, two in product(first, second):
+                # Of units of two columns only that both are in the same.
+                if abs(one.factor) == abs(two.factor):
+                    yield _one(len(columns), {i: replace(one, cost=one.cost + 1.0), j: two})
+        for i in range(len(columns)):
+            for factor in (1.0, -1.0):
+                if change := self._other_zero(i, factor):
+                    yield _one(len(columns), {i: change})
 
-    def known(self, s: Series) -> Iterator[tuple[float, _Change]]:
-        """Changes of a column that nothing is found for, and how far-fetched they are."""
-        unit, drawn = s.meaning.unit, self._drawn(s)
-        yield 1.0, _Change("has the other sign", -1.0)
+    def _known(self, s: Series) -> Iterator[_Change]:
+        """Changes of a column that nothing is found for."""
+        unit, drawn, said = s.meaning.unit, self._drawn(s), _unit_of(s)
         if unit == "rad":
-            yield 1.2, _Change("is pi minus ours", -1.0, math.pi)
-        homes = [("", 0.0)] if not drawn else [("", 0.0), (", and from the drawing on", drawn)]
-        if drawn:
-            yield 1.1, _Change("counts from the drawing on", 1.0, drawn)
-            yield 1.3, _Change("counts from the drawing on, the other way", -1.0, drawn)
-        said = _unit_of(s)
+            yield _Change("is pi minus ours", -1.0, math.pi, 1.2)
         for name, size in _units(unit):
             factor = size / s.factor
-            if abs(factor - 1.0) > 1e-9:
-                for i, (words, more) in enumerate(homes):
-                    yield 1.1 + i, _Change(f"is in {name}, not in {said}{words}", factor, more)
-                    if unit != "rad" or more:
-                        back = f"is in {name}, not in {said}, and has the other sign{words}"
-                        yield 2.1 + i, _Change(back, -factor, more)
+            other = abs(factor - 1.0) > 1e-9
+            of_unit = f"is in {name}, not in {said}" if other else ""
+            if other:
+                yield _Change(of_unit, factor, 0.0, 1.1)
+            if unit != "rad" or not other:
+                yield _Change(_both(of_unit, "has the other sign"), -factor, 0.0, 1.0 + 1.1 * other)
+            if drawn:
+                home = f"{of_unit}, and from the drawing on" if other else "counts from the drawing on"
+                yield _Change(home, factor, drawn, 1.1 + other)
+                yield _Change(f"{home}, the other way", -factor, drawn, 1.3 + 2.0 * other)
 
     def _drawn(self, s: Series) -> float:
         """An input of the drawing; a travel counts from there by itself."""
-        return self.plan.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
-
-    def offset(self, s: Series, factor: float, found: float) -> str:
-        """What is missing of a column, in words."""
-        theirs = found / s.factor
-        unit, word = _unit_of(s), "missing" if found > 0.0 else "too many"
-        drawn = self._drawn(s)
-        if drawn and abs(found - drawn) <= NEAR * abs(drawn) and factor > 0.0:
-            return "counts from the drawing on"
-        return f"counts from another zero: {abs(theirs):.5g} {unit} are {word}"
+        return self.driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
 
     def left(self, changes: Sequence[_Change]) -> float:
         """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
-        values = [
-            c.factor * s.values + c.more for s, c in zip(self.measured.independent, changes, strict=True)
-        ]
-        gap = self._gaps(values)
+        columns = self.measured.independent
+        gap = self._gaps([c.factor * s.values + c.more for s, c in zip(columns, changes, strict=True)])
         told = np.isfinite(gap) | ~np.isfinite(self._theirs)
         # A supposition must make sense of nearly all rows.
         if not told.all(axis=0).mean() >= NEARLY_ALL or not np.isfinite(gap).any():
             return math.inf
         return float(np.sqrt(np.nanmean(gap**2)))
 
-    def found(self, i: int, factor: float) -> float | None:
-        """What least squares adds to a column; None where it does not come near."""
+    def _other_zero(self, i: int, factor: float) -> _Change | None:
+        """The zero that least squares find for a column, as round as it may be; None if none comes near."""
         columns = self.measured.independent
-        begin = [0.0, self._drawn(columns[i])] if self._drawn(columns[i]) else [0.0]
-        best: tuple[float, float] | None = None
-        step = STEP[columns[i].meaning.unit]
-        for more in begin:
-            for _ in range(STEPS):
-                here, there = (
-                    self._gaps([(factor * s.values + c if s is columns[i] else s.values) for s in columns])
-                    for c in (more, more + step)
-                )
-                both = np.isfinite(here) & np.isfinite(there)
-                slope = (there[both] - here[both]) / step
-                square = float(slope @ slope)
-                if not square > 0.0:
-                    break
-                change = -float(slope @ here[both]) / square
-                more += change
-                rest = float(np.sqrt(np.mean((here[both] + slope * change) ** 2)))
-                if best is None or rest < best[0]:
-                    best = rest, more
-                if abs(change) <= 1e-9 * (1.0 + abs(more)):
-                    break
-        if best is None or best[0] > PROMISING:
+        s, drawn, count = columns[i], self._drawn(columns[i]), len(columns)
+        way = "counts the other way, and " if factor < 0.0 else ""
+
+        def change(more: float) -> list[_Change]:
+            return _one(count, {i: _Change("", factor, more)})
+
+        def gaps(more: Array) -> Array:
+            values = [factor * c.values + more if c is s else c.values for c in columns]
+            gap = np.where(np.isfinite(self._theirs), self._gaps(values), 0.0)
+            return np.nan_to_num(gap, nan=FAR).ravel()
+
+        step = STEP[s.meaning.unit]
+        search = partial(least_squares, gaps, x_scale=1e3 * step)
+        found = [
+            float(search([begin], diff_step=step / max(abs(begin), step)).x[0]) for begin in {0.0, drawn}
+        ]
+        best = min(found, key=lambda more: self.left(change(more)))
+        least = self.left(change(best))
+        if not least <= PROMISING:
             return None
-        return self._meant(i, factor, best[1])
-
-    def _meant(self, i: int, factor: float, found: float) -> float:
-        """An offset with as few decimals of the column's own unit as leave no more than what was found."""
-        columns = self.measured.independent
-        same = [_Change("")] * len(columns)
-
-        def left(more: float) -> float:
-            return self.left([*same[:i], _Change("", factor, more), *same[i + 1 :]])
-
-        least = left(found)
-        for decimals in range(7):
-            more = columns[i].factor * round(found / columns[i].factor, decimals)
-            if left(more) <= CLOSE * least:
-                return more
-        return found
+        rounded = (s.factor * round(best / s.factor, decimals) for decimals in range(7))
+        more = next((one for one in rounded if self.left(change(one)) <= CLOSE * least), best)
+        if drawn and factor > 0.0 and abs(more - drawn) <= NEAR * abs(drawn):
+            return _Change("counts from the drawing on", factor, more, 2.0, found=True)
+        missing = "missing" if more > 0.0 else "too many"
+        words = f"{way}counts from another zero: {abs(more / s.factor):.5g} {_unit_of(s)} are {missing}"
+        return _Change(words, factor, more, 3.0 - factor, found=True)
 
     @cached_property
     def _theirs(self) -> Array:
@@ -265,63 +221,32 @@ class _Trial:
 
     @cached_property
     def _spread(self) -> Array:
-        with np.errstate(invalid="ignore"):
-            wide = np.nanmax(self._theirs, axis=1) - np.nanmin(self._theirs, axis=1)
+        there = np.isfinite(self._theirs)
+        highest = np.max(self._theirs, axis=1, where=there, initial=-np.inf)
+        wide = highest - np.min(self._theirs, axis=1, where=there, initial=np.inf)
         return np.where(wide > 0.0, wide, 1.0)[:, None]
 
     def _gaps(self, values: Sequence[Array]) -> Array:
         """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
-        places = self._places(values)
-        part = self.scene.mechanism
-        axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-        ours = []
-        for s in self.measured.numbers:
-            angle = angle_of(s.meaning)
-            if angle is None:
-                place = places.get(s.meaning.name)
-                ours.append(np.full(len(s.values), np.nan) if place is None else place[:, s.meaning.axis])
-                continue
-            start, end = (places[point] for point in angle.ends(part.topology))
-            if s.definition == ARCSINE:
-                line = end - start
-                ours.append(np.arcsin(axes.component(line, angle.sine) / np.linalg.norm(line, axis=-1)))
-            else:
-                ours.append(angle.value(start, end, axes))
-        gap = self._theirs - np.stack(ours)
-        angles = np.array([s.meaning.unit == "rad" for s in self.measured.numbers])[:, None]
+        numbers = self.measured.numbers
+        if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
+            return np.full_like(self._theirs, np.nan)
+        found = self.driven.poses(values, numbers)
+        ours = [self.ours_of(s, found) for s in numbers]
+        nothing = np.full(len(values[0]), np.nan)
+        gap = self._theirs - np.stack([nothing if one is None else one for one in ours])
+        angles = np.array([s.meaning.unit == "rad" for s in numbers])[:, None]
         turned = (gap + math.pi) % (2.0 * math.pi) - math.pi
         return np.asarray(np.where(angles, turned, gap) / self._spread)
 
-    def _places(self, values: Sequence[Array]) -> Mapping[str, Array]:
-        """Where every point is, (rows, 3)."""
-        count = len(values[0])
-        if any(s.meaning.kind == TRAVEL for s in self.measured.independent) or self.plan.level is not None:
-            # The map that the file was held to reaches as far as the car does with a travel.
-            assert isinstance(self.poses, OverMap)
-            found = replace(self.poses, sloped=(), rated=()).at(values)
-            nothing = np.full((count, 3), np.nan)
-            topology = self.scene.mechanism.topology
-            return dict(found.numbers.get(PLACES, dict.fromkeys(topology.points, nothing)))
-        inputs = {name: np.full(count, value) for name, value in self.plan.held.items()}
-        inputs |= {s.meaning.name: v for s, v in zip(self.measured.independent, values, strict=True)}
-        told = np.ones(count, dtype=bool)
-        for name, (low, high) in self._sensible.items():
-            told &= (inputs[name] > low) & (inputs[name] < high)
-            inputs[name] = np.where(told, inputs[name], self.plan.drawn[name])
-        if told.mean() < NEARLY_ALL:
-            return dict.fromkeys(self.scene.mechanism.topology.points, np.full((count, 3), np.nan))
-        poses = solve_poses(self.scene, inputs)
-        told &= poses.solved
-        return {n: np.where(told[:, None], a, np.nan) for n, a in poses.position.items()}
 
-    @cached_property
-    def _sensible(self) -> dict[str, tuple[float, float]]:
-        """Between which values inputs have a meaning and are no slip, as the map has it."""
-        mechanism, found = scene_mechanism(self.scene), {}
-        for name in mechanism.topology.required_inputs:
-            wide, drawn = widest(mechanism, name), self.plan.drawn[name]
-            found[name] = sensible(mechanism, name, (drawn - wide, drawn + wide))
-        return found
+def _one(count: int, changes: dict[int, _Change]) -> list[_Change]:
+    """Some columns changed, and the others as they are."""
+    return [changes.get(i, SAME) for i in range(count)]
+
+
+def _both(first: str, second: str) -> str:
+    return f"{first}, and {second}" if first else second
 
 
 def _unit_of(s: Series) -> str:

@@ -336,7 +336,7 @@ def test_what_angles_cannot_see_is_what_moves_no_angle_in_closed_form() -> None:
     free = free_coordinates(car, ())
     data = measured(text, car, held={"rack": 0.0})
     curves, zero = Curves(car, data, free), np.zeros(len(free))
-    matrix = curves.slopes(zero, curves.solved(zero), np.ones(len(wheel) * 31, dtype=bool))
+    matrix = curves.slopes(zero, np.ones(len(wheel) * 31, dtype=bool))
     points = {name: np.array(place) for name, place in car.mechanism.points.items() if f"{name}.x" in free}
     drawn = np.arccos(
         (points["lower_ball_joint"] - points["lower_arm_front"])[2]

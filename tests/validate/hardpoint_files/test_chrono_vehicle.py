@@ -11,8 +11,8 @@ import pytest
 from foreign_files import STRUT, WISHBONE, chrono
 
 from validate.cli import main
-from validate.hardpoint_files.contents import HardpointFileError
 from validate.hardpoint_files.importing import Imported, import_hardpoints
+from validate.tables.errors import FileError
 
 AHEAD = {"front": [1.5, 0, 0.25], "rear": [-1.25, 0, 0.125]}
 POINTS = WISHBONE.mechanism.points
@@ -123,7 +123,7 @@ def test_axles_are_front_and_rear_by_where_they_are_and_numbers_if_there_are_mor
     turned = vehicle(tmp_path / "a", axles={"rear": AHEAD["rear"], "front": AHEAD["front"]})
     assert import_hardpoints(turned, part="rear").scene.mechanism.type == "macpherson"
     more = vehicle(tmp_path / "b", axles=AHEAD | {"rear2": [-2.5, 0, 0.125]})
-    with pytest.raises(HardpointFileError, match="--part 1 or --part 2 or --part 3"):
+    with pytest.raises(FileError, match="--part 1 or --part 2 or --part 3"):
         import_hardpoints(more)
     second, third = (places(import_hardpoints(more, part=part)) for part in "23")
     np.testing.assert_allclose(third["wheel_centre"] - second["wheel_centre"], [1250, 0, 0], atol=1e-12)
@@ -132,7 +132,7 @@ def test_axles_are_front_and_rear_by_where_they_are_and_numbers_if_there_are_mor
 def test_only_the_axle_that_is_asked_for_must_be_one_of_ours(tmp_path: Path) -> None:
     path = vehicle(tmp_path, rear="MultiLink")
     assert import_hardpoints(path, part="front").scene.mechanism.type == "double_wishbone"
-    with pytest.raises(HardpointFileError) as caught:
+    with pytest.raises(FileError) as caught:
         import_hardpoints(path, part="rear")
     for words in (
         "'MultiLink' at its axle rear",
@@ -153,7 +153,7 @@ def test_a_file_that_says_no_axle_is_of_the_one_that_is_said(tmp_path: Path) -> 
 def test_a_template_that_only_contains_a_known_name_is_not_it(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "car.json"
     path.write_text(chrono("double_wishbone", POINTS, 1).replace("DoubleWishbone", kind))
-    with pytest.raises(HardpointFileError, match=f"called '{kind}'"):
+    with pytest.raises(FileError, match=f"called '{kind}'"):
         import_hardpoints(path)
     path.write_text(chrono("double_wishbone", POINTS, 1).replace("DoubleWishbone", "DoubleWishboneReduced"))
     assert import_hardpoints(path).scene.mechanism.type == "double_wishbone"
@@ -171,7 +171,7 @@ def test_a_simulation_s_file_leads_to_its_vehicle(tmp_path: Path) -> None:
         found = places(import_hardpoints(path, part="front"))
         assert all((found[name] == expected[name]).all() for name in expected)
     path.write_text(json.dumps({"Type": "Vehicle", "Vehicle": {"Input File": "own/all.json"}}))
-    with pytest.raises(HardpointFileError, match="Type 'Vehicle' and Template 'None'"):
+    with pytest.raises(FileError, match="Type 'Vehicle' and Template 'None'"):
         import_hardpoints(path)
 
 
@@ -209,7 +209,7 @@ def test_a_broken_vehicle_is_told_in_one_line(
     change: Mapping[str, Any], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = vehicle(tmp_path, **change)
-    with pytest.raises(HardpointFileError, match=words):
+    with pytest.raises(FileError, match=words):
         import_hardpoints(path, part="front")
     assert main(["import", str(path), "--part", "front"]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1

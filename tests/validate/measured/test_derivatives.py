@@ -10,9 +10,9 @@ from scipy.interpolate import CubicSpline
 
 from pointcoord import Motion, Scene, simulate
 from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import understood
 from validate.measured.reading import columns_of_text
+from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -209,7 +209,7 @@ def test_a_rate_that_every_row_has_is_held_by_the_map() -> None:
     motion = moved(arm_angle=[1.8, -0.4], rack=[0.0])
     columns = {"arm_angle [rad]": 1.8 - 0.4 * motion.times, **rates_of(motion)}
     held = {"arm_angle.rate": -0.4, "input.arm_angle.acceleration": 0.0}
-    with pytest.raises(ResultsError, match=r"no input or travel is called 'arm_angle\.rate'"):
+    with pytest.raises(FileError, match=r"no input or travel is called 'arm_angle\.rate'"):
         compared(text(**columns), {"held": held})
     held["input.arm_angle.rate"] = held.pop("arm_angle.rate")
     assert {row.verdict for row in compared(text(**columns), {"held": held}).outcome.rows} == {"agrees"}
@@ -232,7 +232,7 @@ def test_a_derivative_that_is_none_is_refused_with_its_column(
 ) -> None:
     table = f"bump [mm],{head}\n0,0.01\n10,0.02\n"
     map = {"columns": {"bump": {"is": "travel.wheel_centre"}, head.partition(" [")[0]: map}}
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         compared(table, map)
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
@@ -240,7 +240,7 @@ def test_a_derivative_that_is_none_is_refused_with_its_column(
 def test_of_two_columns_that_a_gradient_may_be_by_its_name_says_which() -> None:
     table = "bump [mm],rack [mm],{} [deg/mm]\n0,0,0.01\n10,1,0.02\n"
     bump = {"bump": {"is": "travel.wheel_centre"}}
-    with pytest.raises(ResultsError, match="may be by bump or by rack") as caught:
+    with pytest.raises(FileError, match="may be by bump or by rack") as caught:
         compared(table.format("toe"), {"columns": {**bump, "rack": {}, "toe": {}}})
     assert 'is = "d(wheel.toe)/d(bump)" in a map' in str(caught.value)
     named = {"columns": {**bump, "rack": {}, "toe": {"is": "d(wheel.toe)/d(bump)"}}}

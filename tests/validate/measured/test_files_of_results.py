@@ -13,12 +13,14 @@ import pytest
 
 from pointcoord import Scene, simulate, solve_poses, standing
 from validate.cli import main
+from validate.fitting.curves import Curves
 from validate.measured.comparing import DataOutcome, as_solution, compare_results
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import understood
+from validate.measured.poses import poses_of
 from validate.measured.reading import columns_of_text
 from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3, PrintedRow, compare_with_paper
+from validate.tables.errors import FileError
 
 STEER = Scene.load("steer")
 
@@ -230,7 +232,7 @@ def test_a_map_that_is_not_there_is_written_to_be_filled_in(
 @pytest.mark.parametrize("cells", ["0.1,{}", "{},1.0"])
 def test_a_number_that_no_car_has_is_named_by_line_and_column(number: str, cells: str) -> None:
     text = "time [s],camber [deg]\n0.0,1.0\n" + cells.format(number)
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         understood(columns_of_text(text, "mine.csv"), {}, STEER, "map")
     column = "camber" if cells.endswith("{}") else "time"
     assert f"mine.csv: line 3, column '{column}': is {float(number):g}" in str(caught.value)
@@ -264,7 +266,7 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
 def test_a_wrong_map_or_file_is_refused_with_its_place(
     text: str, content: dict[str, object], words: tuple[str, ...]
 ) -> None:
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         compare_results(understood(columns_of_text(text, "mine.csv"), content, STEER, "map.toml"), STEER, "x")
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
@@ -394,6 +396,35 @@ def test_the_same_file_gives_the_same_bytes(tmp_path: Path) -> None:
         assert main([*words, "double-wishbone", "--quiet", *ends]) == 1
         found.append([file.read_bytes() for file in files])
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("point", ["wheel_centre", "contact"])
+@pytest.mark.parametrize("fitted", [False, True])
+def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: str, fitted: bool) -> None:
+    """The paper's strut closes 9 mm higher than its wheel is drawn; the travel 0 is there, at rack 0."""
+    car = Scene.load("bounce")
+    inputs, radius = standing(car).inputs, 300.0
+    angles = inputs["arm_angle"] + np.array([0.0, 0.1, -0.1, 0.0])
+    racks = np.array([0.0, 0.0, 10.0, 10.0])
+    place = solve_poses(car, {"arm_angle": angles, "rack": racks}).position
+    spin = place["wheel_centre"] - place["strut_lower"]
+    lean = spin[:, 2] / np.linalg.norm(spin, axis=-1)
+    height = place["wheel_centre"][:, 2] - (point == "contact") * radius * np.sqrt(1.0 - lean**2)
+    x = place["wheel_centre"][:, 0]
+    lines = ["bump [mm],rack [mm],position.wheel_centre.x [mm]"]
+    lines += [",".join(map(repr, row)) for row in np.stack([height - height[0], racks, x], axis=-1).tolist()]
+    content = {"rolling_radius": radius, "columns": {"bump": {"is": f"travel.{point}"}, "rack": {}}}
+    measured = understood(columns_of_text("\n".join(lines), "mine.csv"), content, car, "map.toml")
+    if fitted:
+        found = Curves(car, measured, ("wheel_centre.x",)).at(np.zeros(1))
+    else:
+        found = (
+            poses_of(car, measured)
+            .at([s.values for s in measured.independent])
+            .numbers["position"]["wheel_centre"][:, 0]
+        )
+    # Heights of 300 mm are rounded to 6e-14 mm, and poses are solved to 1e-12 mm.
+    np.testing.assert_allclose(found, x, rtol=0, atol=1e-10)
 
 
 def test_a_contact_point_of_a_mechanism_without_a_wheel_is_refused(

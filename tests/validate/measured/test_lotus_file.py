@@ -203,3 +203,16 @@ def test_a_file_of_another_car_disagrees() -> None:
         CAR.model_dump(exclude_none=True) | {"mechanism": CAR.mechanism.model_dump() | {"points": points}}
     )
     assert compared(CSV, scene=other).outcome.disagreements
+
+
+@pytest.mark.parametrize(
+    ("radius", "verdict"), [(ROLLING_RADIUS, "agrees"), (ROLLING_RADIUS + 30.0, "disagrees")]
+)
+def test_the_wheel_radius_of_the_scene_is_taken_where_the_map_has_none(radius: float, verdict: str) -> None:
+    content = {"columns": CONTENT["columns"]}
+    mechanism = CAR.mechanism.model_copy(update={"wheel_radius": radius})
+    found = compared(CSV, content, CAR.model_copy(update={"mechanism": mechanism}))
+    assert verdicts(found)["camber"] == verdict
+    # What the map says goes before it.
+    found = compared(CSV, CONTENT, CAR.model_copy(update={"mechanism": mechanism}))
+    assert verdicts(found)["camber"] == "agrees"

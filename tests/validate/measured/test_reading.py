@@ -7,9 +7,8 @@ import pyarrow
 import pyarrow.parquet
 import pytest
 
-from validate.measured.errors import ResultsError
 from validate.measured.reading import Columns, columns_of_text, read_columns
-from validate.measured.units import factor_of
+from validate.tables.errors import FileError
 
 VALUES = [[0.0, 0.1, 0.25], [1.5, -2.75, 3e-3]]
 WRITTEN = {
@@ -77,28 +76,19 @@ def test_cells_without_a_number_are_none() -> None:
         ("time,time\n0,1\n", ("'time' is there 2 times",)),
         ("a,b,c\n0,1\n", ("2 columns of numbers under 3 names",)),
         ("time,camber\ns,furlong\n0,1\n", ("line of units", "'furlong'")),
+        ("time;camber\n0.5;1\n1.0;1,5\n", ("line 3", "has a decimal comma", "one sign before the decimals")),
     ],
 )
 def test_what_is_no_table_is_refused_with_its_place(text: str, words: tuple[str, ...]) -> None:
-    with pytest.raises(ResultsError) as caught:
+    with pytest.raises(FileError) as caught:
         columns_of_text(text, "mine.csv")
     assert [word for word in ("mine.csv", *words) if word not in str(caught.value)] == [], caught.value
 
 
-def test_units_are_what_they_are_of_ours() -> None:
-    assert factor_of("m/s^2", "mm/s^2") == 1000.0
-    assert factor_of("in", "mm") == 25.4
-    assert factor_of("deg/s", "rad/s") == pytest.approx(np.pi / 180.0, rel=1e-15)
-    assert factor_of("mm/ms", "mm/s") == pytest.approx(1000.0)
-    assert factor_of("deg", "mm") is None
-    assert factor_of("m/s", "mm/s^2") is None
-    assert factor_of("furlong", "mm") is None
-
-
 def test_a_missing_file_is_said_to_be_missing(tmp_path: Path) -> None:
-    with pytest.raises(ResultsError, match="cannot be read"):
+    with pytest.raises(FileError, match="cannot be read"):
         read_columns(str(tmp_path / "none.csv"))
     (tmp_path / "bad.parquet").write_bytes(b"PAR1 and no more")
-    with pytest.raises(ResultsError, match="no Parquet that can be read"):
+    with pytest.raises(FileError, match="no Parquet that can be read"):
         read_columns(str(tmp_path / "bad.parquet"))
     assert isinstance(columns_of_text("1 2\n", "x"), Columns)

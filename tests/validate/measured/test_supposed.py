@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, solve_poses
 from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import understood
 from validate.measured.reading import columns_of_text
+from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -100,7 +100,7 @@ def test_an_angle_that_is_meant_otherwise_is_told_first_even_where_no_row_can_be
     table, map = printed({head: change(TURNS)}, numbers)
     try:
         said = compared(table, map).explanations[0].words
-    except ResultsError as error:
+    except FileError as error:
         # Of columns of which no row can be reached.
         said = error.allowed.removeprefix("rows that the scene's car can have; they nearly are if ")
     assert said == words

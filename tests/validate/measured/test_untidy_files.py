@@ -15,8 +15,8 @@ from validate.ci.record import Record
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.errors import ResultsError
 from validate.measured.mapping import read_results
+from validate.tables.errors import FileError
 
 CAR = Scene.load("double-wishbone")
 TIDY = "rack [mm],camber [deg]\n-5.0,0.3\n0.0,0.0\n5.0,-0.4\n"
@@ -56,9 +56,7 @@ def test_the_same_table_is_read_from_any_of_its_ways_to_be_written(data: bytes, 
 def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
     map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'
-    with pytest.raises(
-        ResultsError, match=r"'toe' of .* holds 'rig' and the like; allowed: columns of numbers"
-    ):
+    with pytest.raises(FileError, match=r"'toe' of .* holds 'rig' and the like; allowed: columns of numbers"):
         read(tmp_path, data, map)
     assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
 
@@ -111,5 +109,5 @@ def test_more_than_half_of_the_rows_have_to_be_left_out_for_that(
 
 
 def test_a_loop_is_refused_with_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(ResultsError, match="of a loop its two ways in files of their own"):
+    with pytest.raises(FileError, match="of a loop its two ways in files of their own"):
         compared(tmp_path, TIDY + "0.0,0.9\n")

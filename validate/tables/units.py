@@ -4,8 +4,25 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 
-LENGTHS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "ft": 304.8}
+# As decimal numbers, in which a metre is 1000 mm and not 1000.0000000000001.
+LENGTHS = {
+    "mm": Decimal(1),
+    "cm": Decimal(10),
+    "m": Decimal(1000),
+    "um": Decimal("0.001"),
+    "in": Decimal("25.4"),
+    "ft": Decimal("304.8"),
+}
+SPELT = {
+    **dict.fromkeys(("inch", "inches"), "in"),
+    **dict.fromkeys(("metre", "meter", "metres", "meters"), "m"),
+    **dict.fromkeys(("millimetre", "millimeter", "millimetres", "millimeters"), "mm"),
+    **dict.fromkeys(("centimetre", "centimeter", "centimetres", "centimeters"), "cm"),
+    **dict.fromkeys(("foot", "feet"), "ft"),
+}
+"""Units of length in words."""
 ANGLES = {
     "rad": 1.0,
     "mrad": 1e-3,
@@ -16,8 +33,18 @@ ANGLES = {
     "arcmin": math.pi / 10800.0,
 }
 TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0}
-KINDS = {"mm": LENGTHS, "rad": ANGLES, "s": TIMES}
+KINDS = {"mm": {name: float(size) for name, size in LENGTHS.items()}, "rad": ANGLES, "s": TIMES}
 _PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([12]?))?")
+
+
+def length_called(word: str) -> str:
+    """The unit of length that a word is; empty if it is none.
+
+    >>> length_called("Metres"), length_called("deg")
+    ('m', '')
+    """
+    name = SPELT.get(word.lower(), word.lower())
+    return name if name in LENGTHS else ""
 
 
 def factor_of(unit: str, ours: str) -> float | None:
@@ -74,6 +101,7 @@ def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
     if found is None:
         return None
     above, below, power = found.group(1), found.group(2), found.group(3)
+    above, below = SPELT.get(above, above), SPELT.get(below, below)
     kind = next((kind for kind, units in KINDS.items() if above in units), None)
     under = next((kind for kind, units in KINDS.items() if below in units), "")
     times = 0 if below is None else int(power or 1)

@@ -1,0 +1,25 @@
+"""What can be wrong with a file of another program, or with the map or the names that explain it."""
+
+from __future__ import annotations
+
+from pointcoord import PointcoordError
+from validate.plain_text import shown
+
+
+class FileError(PointcoordError, ValueError):
+    """A file of results or hardpoints, or what says how to read it, cannot be used as it is.
+
+    Args:
+        source: the file.
+        place: the line, by its number or in words, column or key at fault; empty or 0 for the whole file.
+        problem: what is wrong, with the value.
+        allowed: what would be right, or what to try.
+    """
+
+    def __init__(self, source: str, place: str | int, problem: str, allowed: str) -> None:
+        self.source = source
+        self.place = f"line {place}" if place and isinstance(place, int) else str(place or "")
+        self.problem = problem
+        self.allowed = allowed
+        where = f"{source}: {self.place}" if self.place else source
+        super().__init__(shown(f"{where}: {problem}; allowed: {allowed}"))
