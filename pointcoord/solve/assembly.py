@@ -28,7 +28,6 @@ tangents lead where no few of these are proven to reach the end, and tell where 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Protocol
@@ -158,41 +157,6 @@ def proven_step(
     return best
 
 
-def _proven_step_of_one(
-    system: QuadraticMap, factors: Factors, tangent: Array, correction: Array | None
-) -> float:
-    """What `proven_step` gives, for one place, with plain numbers where that has arrays of one."""
-    n, inverse = system.unknowns, factors.preconditioner
-    bend = np.abs(inverse.dot(system.residual(tangent)))
-    turn = np.abs(inverse.dot(system.jacobian(tangent)))
-    largest = bend.max()
-    weights = np.array([np.ones(n), bend + 0.3 * largest, bend + 0.02 * largest])
-    rows = [bend, *turn.dot(weights.T).T]
-    if correction is not None:
-        own, both = system.residual(correction), 2.0 * system.polar(correction, tangent)
-        rows += [np.abs(correction[:n]), np.abs(inverse.dot(own)), np.abs(inverse.dot(both))]
-    omegas = system.lipschitz(inverse, weights).tolist()
-    best = 0.0
-    for k, omega in enumerate(omegas):
-        chosen = [rows[0], rows[1 + k], *rows[4:]]
-        q, z, *rest = (np.array(chosen) / weights[k]).max(axis=1).tolist()
-        if not math.isfinite(omega + q + z):
-            continue
-        if not rest:
-            down = z + math.sqrt(2.0 * omega * q)
-            best = max(best, 1.0 / down if down > 0.0 else math.inf)
-            continue
-        # The smaller root of (a - s z)^2 = 2 omega (q s^2 + c s + b), with a > 0 left after the correction.
-        e, b, c = rest
-        a = 1.0 - omega * e
-        room, slope = a * a - 2.0 * omega * b, a * z + omega * c
-        if not (a > 0.0 and room > 0.0):
-            continue
-        down = slope + math.sqrt(max(slope * slope - (z * z - 2.0 * omega * q) * room, 0.0))
-        best = max(best, room / down if down > 0.0 else math.inf)
-    return best
-
-
 def follow(
     system: QuadraticMap,
     y: Array,
@@ -212,71 +176,6 @@ def follow(
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
-    if y.ndim == 1 and target.ndim == 1 and (factors is None or factors.matrix.ndim == 2):
-        return _follow_one(system, y, target, factors, tolerance, steps)
-    return follow_plainly(system, y, target, factors, tolerance, steps)
-
-
-def _follow_one(
-    system: QuadraticMap, y: Array, target: Array, factors: Factors | None, tolerance: float, steps: int
-) -> Path:
-    """The same steps for one pose, with plain numbers where `follow_plainly` has arrays of one."""
-    n, start, offset = system.unknowns, y[system.unknowns :], system.residual(y)
-    change = target - start
-    remaining, rest, iterations, work = 1.0, 0.0, 0, Work(residuals=1)
-    if factors is None:
-        factors, work = factorise(system.jacobian(y)), work + Work(factorisations=1)
-    side = float(orientation(system, factors))
-    if change.any() and bool(hidden(system, y, factors)):
-        steps = 0
-    with np.errstate(all="ignore"):
-        while remaining > 0.0 and steps > 0 and not factors.singular:
-            steps -= 1
-            wanted = offset * remaining
-            tangent = np.zeros_like(y)
-            tangent[n:] = change * remaining
-            tangent[:n] = -factors.solve(2.0 * system.polar(y, tangent) + wanted)
-            correction = None
-            if rest > 0.0:
-                correction = np.zeros_like(y)
-                correction[:n] = -factors.solve(system.residual(y) - wanted)
-            step = min(SAFETY * _proven_step_of_one(system, factors, tangent, correction), 1.0)
-            if not (step * remaining >= SMALLEST_STEP or step >= 1.0):
-                break
-            left = 0.0 if step >= 1.0 else remaining * (1.0 - step)
-            guess = y + step * tangent if correction is None else y + step * tangent + correction
-            guess[n:] = target if left == 0.0 else start + change * (1.0 - left)
-            # On the way it is enough to be where Newton's method is proven to converge.
-            reached = newton_refine(system, guess, offset * left, tolerance if left == 0.0 else np.inf)
-            there = factorise(system.jacobian(reached.y))
-            work += reached.work + Work(factorisations=1)
-            if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, left == 0.0))):
-                break
-            y, factors, remaining = reached.y, there, left
-            iterations, rest = int(reached.iterations), float(reached.left)
-            if left > 0.0 and iterations > 1 and rest == 0.0:
-                # Rounding ended it before it was proven: what it is still off is taken along all the same.
-                rest = math.inf
-        if remaining > 0.0 and rest > 0.0:
-            # Where a path ends is told as exactly as an assembly is.
-            end = newton_refine(system, y, offset * remaining)
-            there = factorise(system.jacobian(end.y))
-            work += end.work + Work(factorisations=1)
-            if bool(end.converged) and bool(same_side(system, end.y, there, side, True)):
-                y, factors, rest = end.y, there, 0.0
-    left_over, done = np.asarray(rest), np.asarray(1.0 - remaining)
-    return Path(y.copy(), factors, np.asarray(iterations), left_over, done, work)
-
-
-def follow_plainly(
-    system: QuadraticMap,
-    y: Array,
-    target: Array,
-    factors: Factors | None = None,
-    tolerance: float = 0.0,
-    steps: int = STEPS,
-) -> Path:
-    """The same for any batch of poses."""
     n = system.unknowns
     batch = np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
     y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()

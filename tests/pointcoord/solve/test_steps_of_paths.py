@@ -10,7 +10,7 @@ from sample_cars import SAMPLES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
 from pointcoord.solve import assembly
-from pointcoord.solve.assembly import Pose, assemble, follow, follow_plainly, proven_step
+from pointcoord.solve.assembly import Pose, assemble, follow, proven_step
 
 Array = NDArray[np.float64]
 MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
@@ -53,7 +53,6 @@ def test_a_step_from_a_place_that_is_off_is_as_long_as_its_condition_allows(
         return False
 
     step = float(proven_step(system, factors, tangent, correction))
-    assert assembly._proven_step_of_one(system, factors, tangent, correction) == pytest.approx(step, rel=1e-9)
     if off > 1.0:
         assert step == 0.0
         assert not holds(0.0)
@@ -72,8 +71,7 @@ def test_the_step_of_one_exact_place_is_that_of_many(mechanism: Mechanism) -> No
     steps = proven_step(system, poses.factors, tangents)
     for number, step in enumerate(steps.tolist()):
         one = factorise(system.jacobian(poses.y[number]))
-        found = assembly._proven_step_of_one(system, one, tangents[number], None)
-        assert found == pytest.approx(step, rel=1e-9)
+        assert float(proven_step(system, one, tangents[number])) == pytest.approx(step, rel=1e-9)
 
 
 @by_mechanism
@@ -107,15 +105,15 @@ def test_the_input_that_goes_on_is_the_one_to_bring_back(mechanism: Mechanism, m
 def test_many_poses_are_led_where_each_is_led(mechanism: Mechanism) -> None:
     start, ends = at(mechanism, 1.5, 0.0), at(mechanism, [1.2, 1.6, 1.9], [-20.0, 5.0, 25.0])
     n, eps = mechanism.layout.unknowns, np.finfo(float).eps
-    plain = follow_plainly(mechanism.map, start.y, ends.y[:, n:])
-    assert (plain.done == 1.0).all()
+    many = follow(mechanism.map, start.y, ends.y[:, n:])
+    assert (many.done == 1.0).all()
     for number, end in enumerate(ends.y):
         one = follow(mechanism.map, start.y, end[n:])
         assert one.done == 1.0
         # Each ends with a Newton step that has shrunk to rounding, of coordinates up to 2.
         allowed = 4 * eps * float(ends.condition[number])
         assert np.abs(one.y - end).max() <= allowed
-        assert np.abs(plain.y[number] - end).max() <= allowed
+        assert np.abs(many.y[number] - end).max() <= allowed
 
 
 @by_mechanism
@@ -125,16 +123,3 @@ def test_an_input_that_is_held_is_not_to_be_brought_back(mechanism: Mechanism, m
     inputs[moved] += 1e-3
     goal = mechanism.known_series({name: np.array([value]) for name, value in inputs.items()})[0]
     assert assembly.blocked(mechanism, "no way", pose, goal, np.array(True), None).reduce == moved
-
-
-@by_mechanism
-@pytest.mark.parametrize(("angle", "rack"), [(0.8, 50.0), (2.1, -30.0), (0.05, 0.0)])
-def test_a_path_of_one_pose_is_cut_as_in_a_batch(mechanism: Mechanism, angle: float, rack: float) -> None:
-    start = at(mechanism, 1.5, 0.0)
-    known = mechanism.known_series({"arm_angle": np.array([angle]), "rack": np.array([rack])})[0]
-    one = follow(mechanism.map, start.y, known, start.factors, 1e-10)
-    many = follow_plainly(mechanism.map, start.y, known, start.factors, 1e-10)
-    assert one.work.factorisations > 6
-    # Whether a last correction is noise is told by rounding: one Newton step more or less at either end.
-    assert abs(one.work.factorisations - many.work.factorisations) <= 2
-    np.testing.assert_allclose(one.done, many.done, atol=1e-12)
