@@ -23,6 +23,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.kantorovich import ball
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -132,12 +133,8 @@ def _along_chord(
     n = system.unknowns
     with np.errstate(all="ignore"):
         way = straight_way(system, kept.inverse, y, target, beside)
-        eta, z = float(way.eta), float(way.z)
-        constant = 2.0 * kept.omega * eta / (1.0 - z) ** 2
-        if not (z < 1.0 and constant < 1.0):
-            return None
-        radius = 2.0 * eta / ((1.0 - z) * (1.0 + np.sqrt(1.0 - constant)))
-    rate = z + kept.omega * radius
+        rate = float(ball(*way.norms(np.ones(n)), np.asarray(kept.omega)).contraction)
+    # Infinite where nothing is proven.
     if not rate <= SLOW:
         return None
     here = y + way.tangent

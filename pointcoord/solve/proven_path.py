@@ -38,6 +38,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.curved_path import ROOM, straight_way
 
 Array = NDArray[np.float64]
 
@@ -46,8 +47,6 @@ Array = NDArray[np.float64]
 SHORT, FEW, MANY = 0.03, (4, 1), (14, 2)
 # Series after which a path is left to smaller steps.
 STRETCHES = 3
-# Of 1, what may be taken up in the condition: the rest is far more than anything rounds.
-ROOM = 0.9
 # What a series may leave out at its end, in parts of 1 / omega, where its length is chosen.
 LEFT_OUT = 1e-2
 SMALLEST = float(np.finfo(float).tiny)
@@ -85,7 +84,7 @@ def proven_end(
     n, left, side = system.unknowns, 1.0, float(orientation(system, factors))
     here, local, work = y, factors, Work()
     begun = _begun(system, y, factors, target - y[n:], offset)
-    if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
+    if float(np.abs(begun[1, :n]).max()) < SHORT and straight(system, y, target, factors, offset):
         return _end(system, y + begun[1], target, side, tolerance, Work(residuals=1))
     for _ in range(STRETCHES):
         series, share, spent = _proven_series(system, begun, local, left * offset)
@@ -134,20 +133,12 @@ def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array, offs
     return begun
 
 
-def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bool:
-    r"""Whether the assemblies go on all along a tangent.
-
-    The series ends with it, and X is the inverse at its start: then Z = |X J_1| and Y = |X R_2|. The start is
-    taken for exact, what it is off being counted in the tangent.
-    """
+def straight(system: QuadraticMap, y: Array, target: Array, factors: Factors, offset: Array) -> bool:
+    """Whether a path is proven in one straight step; arguments as of `proven_end`."""
+    inverse = factors.preconditioner
     with np.errstate(all="ignore"):
-        turn = np.abs(factors.preconditioner @ system.jacobian(begun[1]))
-        bend = np.abs(factors.preconditioner.dot(system.residual(begun[1])))
-        weights = bend + 0.3 * max(float(bend.max()), SMALLEST)
-        z = float((turn.dot(weights) / weights).max())
-        omega = float(system.lipschitz(factors.preconditioner, weights))
-        room = ROOM - z
-        return room > 0.0 and room * room >= 2.0 * omega * float((bend / weights).max())
+        way = straight_way(system, inverse, y, target, None, np.stack([offset, np.zeros_like(offset)]))
+        return bool(way.best_proof(system, inverse).holds)
 
 
 def _proven_series(
