@@ -128,7 +128,7 @@ def straight_way(
     y: Array,
     targets: Array,
     beside: Array | None = None,
-    offsets: Array | float = 0.0,
+    offsets: Array | tuple[float, float] = (0.0, 0.0),
 ) -> StraightWay:
     """What the theorem of Newton and Kantorovich asks of the ways; floating point warnings are the caller's.
 
@@ -139,7 +139,7 @@ def straight_way(
         offsets: c at the start and at the end, shape (2, ..., rows).
     """
     n = system.unknowns
-    first, last = np.broadcast_to(offsets, (2, *y.shape[:-1], len(system.rows)))
+    first, last = offsets
     tangent = np.zeros_like(y)
     tangent[..., n:] = targets - y[..., n:]
     here = system.residual(y)
