@@ -15,6 +15,7 @@ from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.solve import assembly, chord, pointwise, standing_still
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.chord import solve_by_chord
+from pointcoord.solve.curved_path import ROOM
 from pointcoord.solve.pointwise import InstantSolver, Solved, solve_from_drawing, solve_instants
 from pointcoord.solve.status import Blocked
 from pointcoord.time_functions import Polynomial, Sine, TimeFunction
@@ -39,8 +40,8 @@ def start_of(mechanism: Mechanism, functions: dict[str, TimeFunction]) -> Pose:
     ("way", "proven"), [(-1.1, 0), (-0.91, 0), (-0.89, 1), (0.89, 1), (0.91, 0), (1.1, 0)]
 )
 def test_the_next_pose_is_proven_as_far_as_the_condition_holds(way: float, proven: int) -> None:
-    # Along w = 1 + s dw: z = |dw| / 2, eta = dw^2 / 8 and omega = 1, so z + sqrt(2 omega eta) = |dw|. It may be
-    # 0.9.
+    # Along w = 1 + s dw: z = |dw| / 2, eta = dw^2 / 8 and omega = 1, so z + sqrt(2 omega eta) is |dw|.
+    assert ROOM == 0.9
     factors = factorise(PARABOLA.jacobian(AT_ONE))
     found = pointwise._proven_ahead(PARABOLA, AT_ONE, factors, np.array([[1.0 + way, 0.0, 1.0]]), 0.0)
     assert len(found.left) == proven
