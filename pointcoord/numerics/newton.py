@@ -90,7 +90,7 @@ def newton_refine(
         The solution; members that do not converge are marked, never raised, and keep their last y.
     """
     n, batch, members = system.unknowns, y.shape[:-1], y.shape[:-1]
-    y, offset, allowed = y.copy(), np.asarray(offset), np.asarray(tolerance)
+    y, offset, allowed = y.copy(), np.asarray(offset), np.minimum(tolerance, LARGEST)
     if batch:
         y = y.reshape(-1, y.shape[-1])
         members = y.shape[:1]
@@ -122,7 +122,7 @@ def newton_refine(
             if asked:
                 lipschitz[active] = omega = system.lipschitz(local.preconditioner)
                 rest = what_is_left(system, local, step, size, omega)
-                done = usable & (rest <= np.minimum(allowed[active], LARGEST))
+                done = usable & (rest <= allowed[active])
             if np.count_nonzero(done) < size.size:
                 rounding = _noise(system, here, local, size)
                 # Below the square root of the rounding unit the error of the next step would be noise as

@@ -99,7 +99,7 @@ class StraightWay:
 
     def norms(self, weights: Array) -> tuple[Array, Array]:
         """eta and z in maximum norms of some weights, shape (..., n): of shape (...,)."""
-        turned = np.einsum("...ij,...j->...i", self.change, weights)
+        turned = (self.change @ weights[..., None])[..., 0]
         return (self.remaining / weights).max(axis=-1), (turned / weights).max(axis=-1)
 
     def proof(self, omega: Array | float, weights: Array) -> Proof:
@@ -136,7 +136,7 @@ def straight_way(
         inverse: X, of C_u near the poses, (n, n), or of each (..., n, n). y: the poses, shape (..., size).
         targets: known coordinates at the ends, shape (..., size - n).
         beside: d, how far the paths go beside the ways, shape (..., size - n); nowhere unless given.
-        offsets: c at the start and at the end, shape (2, ..., rows).
+        offsets: c at the start and at the end, shape (2, ..., rows); 0 unless given.
     """
     n = system.unknowns
     first, last = offsets

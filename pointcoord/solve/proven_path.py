@@ -38,7 +38,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.curved_path import ROOM, straight_way
+from pointcoord.solve.curved_path import LEAST_WEIGHTS, ROOM, StraightWay
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def proven_end(
     n, left, side = system.unknowns, 1.0, float(orientation(system, factors))
     here, local, work = y, factors, Work()
     begun = _begun(system, y, factors, target - y[n:], offset)
-    if float(np.abs(begun[1, :n]).max()) < SHORT and straight(system, y, target, factors, offset):
+    if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
         return _end(system, y + begun[1], target, side, tolerance, Work(residuals=1))
     for _ in range(STRETCHES):
         series, share, spent = _proven_series(system, begun, local, left * offset)
@@ -133,12 +133,17 @@ def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array, offs
     return begun
 
 
-def straight(system: QuadraticMap, y: Array, target: Array, factors: Factors, offset: Array) -> bool:
-    """Whether a path is proven in one straight step; arguments as of `proven_end`."""
-    inverse = factors.preconditioner
+def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bool:
+    """Whether the assemblies go on all along a tangent, as of `straight_way`.
+
+    The start is taken for exact, what it is off being counted in the tangent.
+    """
+    inverse, tangent = factors.preconditioner, begun[1]
     with np.errstate(all="ignore"):
-        way = straight_way(system, inverse, y, target, None, np.stack([offset, np.zeros_like(offset)]))
-        return bool(way.best_proof(system, inverse).holds)
+        bend = np.abs(inverse.dot(system.residual(tangent)))
+        way = StraightWay(tangent, bend, bend, np.abs(inverse @ system.jacobian(tangent)))
+        weights = bend + LEAST_WEIGHTS[0] * max(float(bend.max()), SMALLEST)
+        return bool(way.proof(system.lipschitz(inverse, weights), weights).holds)
 
 
 def _proven_series(

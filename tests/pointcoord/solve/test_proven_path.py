@@ -106,7 +106,7 @@ def test_where_a_tangent_is_proven_every_place_beside_it_is_the_tangents_own(
     offset, factors = system.residual(y), factorise(system.jacobian(y))
     change = known_at(mechanism, float(own["arm_angle"]) + angle, float(own["rack"]) + rack) - y[n:]
     begun = proven_path._begun(system, y, factors, change, offset)
-    if not proven_path.straight(system, y, y[n:] + change, factors, offset):
+    if not proven_path._proven_straight(system, begun, factors):
         return
     shares = np.linspace(0.0, 1.0, 20)
     places = y + shares[:, None] * begun[1]
@@ -125,9 +125,10 @@ def test_no_tangent_is_proven_near_a_fold(w: float) -> None:
     # The root of w comes as near as 0.3 to its mirror image; the condition (1 - z)^2 >= 2 omega q is
     # |1 - w| / 2 <= 1 - |1 - w| / 2 there and fails at the fold itself.
     factors = factorise(PARABOLA.jacobian(AT_ONE))
-    beyond, before = np.array([w, 0.0, 1.0]), np.array([0.5, 0.0, 1.0])
-    assert not proven_path.straight(PARABOLA, AT_ONE, beyond, factors, np.zeros(1))
-    assert proven_path.straight(PARABOLA, AT_ONE, before, factors, np.zeros(1))
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([w - 1.0, 0.0, 0.0]), np.zeros(1))
+    assert not proven_path._proven_straight(PARABOLA, begun, factors)
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([-0.5, 0.0, 0.0]), np.zeros(1))
+    assert proven_path._proven_straight(PARABOLA, begun, factors)
 
 
 @pytest.mark.parametrize("w", [-1.0, -1e-3, 0.0, 1e-9])
