@@ -40,17 +40,17 @@ Array = NDArray[np.float64]
 Law = Callable[[NDArray[np.intp], Array], Array]
 """Known coordinates of members, by number, at shares of their paths, both (m,): (m, size - unknowns)."""
 
-# Part of a step that would just be proven, and how much shorter or longer the next one is at most.
+# Part of a step that would just be proven, and how much longer the next one is at most.
 SAFETY, LONGER = 0.8, 4.0
+# Part of a step that is tried instead where it overflows, or where digits have run out at its end.
+AGAIN = 0.1
 # A path that advances less than this fraction in a step has met the end of what can be assembled: steps
 # shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
 # where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
-# Of a path, or of each part of it that is as long as a step may be.
+# Steps tried for a path, or for each part of it that is as long as a step may be.
 STEPS = 2000
-# What is left of a step from whose end Newton's method leads nowhere: digits have run out there.
-AGAIN = 0.1
 # Turn in one step, rad, at most: of more than half a turn the ends do not tell the way round.
 LONGEST = 1.0
 # How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
@@ -163,9 +163,10 @@ def follow(
             way = straight_way(system, inverse, here, known[:, -1], beside, left_open)
             proof = way.best_proof(system, inverse)
             able = np.flatnonzero(proof.holds)
-            length = (end - begun) * np.minimum(SAFETY / proof.used, LONGER)
-        # False for a NaN as well.
-        step[active] = np.where(length >= 0.0, np.minimum(length, SAFETY * (end - begun)), 0.0)
+            length = np.minimum(SAFETY / proof.used, LONGER) * (end - begun)
+            # Of a step so long that it overflows nothing is known.
+            shorter = np.where(np.isnan(length), AGAIN, SAFETY) * (end - begun)
+        step[active] = np.fmin(length, shorter)
         if able.size:
             guess = (here + way.tangent)[able]
             guess[:, n:] = known[able, -1]

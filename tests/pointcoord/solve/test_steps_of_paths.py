@@ -123,3 +123,23 @@ def test_an_input_that_is_held_is_not_to_be_brought_back(mechanism: Mechanism, m
     inputs[moved] += 1e-3
     goal = mechanism.known_series({name: np.array([value]) for name, value in inputs.items()})[0]
     assert assembly.blocked(mechanism, "no way", pose, goal, np.array(True), None).reduce == moved
+
+
+@by_mechanism
+@pytest.mark.parametrize("bow", [0.0, 0.05])
+@pytest.mark.parametrize("off", [0.0, 1e-3])
+def test_a_law_leads_where_the_straight_path_leads(mechanism: Mechanism, bow: float, off: float) -> None:
+    """Also from a pose that is not closed: what it lacks is taken back along either path."""
+    start, end = at(mechanism, 1.5, 0.0), at(mechanism, 1.2, 20.0)
+    n, y = mechanism.layout.unknowns, start.y.copy()
+    y[:n] += off * np.random.default_rng(8).uniform(-1.0, 1.0, n)
+    first, last = y[n:], end.y[n:]
+
+    def law(members: NDArray[np.intp], shares: Array) -> Array:
+        assert set(members.tolist()) == {0}
+        share = shares[:, None]
+        return np.where(share == 1.0, last, first + (share + bow * share * (1.0 - share)) * (last - first))
+
+    for path in (follow(mechanism.map, y, last), follow(mechanism.map, y, law, longest=0.3)):
+        assert path.done == 1.0
+        assert np.abs(path.y - end.y).max() <= 4 * np.finfo(float).eps * float(end.condition)
