@@ -18,7 +18,7 @@ LU with partial pivoting (see `linear`). A step ends the iteration
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from types import EllipsisType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,122 +89,67 @@ def newton_refine(
     Returns:
         The solution; members that do not converge are marked, never raised, and keep their last y.
     """
-    if y.ndim == 1:
-        return _refine_one(system, y, offset, float(tolerance))
-    return refine_plainly(system, y, offset, tolerance)
-
-
-def _refine_one(system: QuadraticMap, y: Array, offset: Array | float, tolerance: float) -> Converged:
-    """The same steps for one start, with plain numbers where `refine_plainly` has arrays of one."""
-    n, y = system.unknowns, y.copy()
-    converged, iterations = False, 0
-    first_step, last_noise, left, previous, lipschitz = np.nan, np.inf, 0.0, np.inf, np.nan
-    with np.errstate(all="ignore"):
-        while iterations < LIMIT:
-            factors = factorise(system.jacobian(y))
-            step = -factors.solve(system.residual(y) - offset)
-            # A number that is none may hide behind others from Python's own maximum, and a sum shows it.
-            sizes = np.abs(step).tolist()
-            size = max(sizes) if isfinite(sum(sizes)) else np.inf
-            iterations += 1
-            first_step = size if iterations == 1 else first_step
-            last_noise = np.inf
-            if not size < np.inf or factors.singular:
-                previous = size
-                break
-            y[:n] += step
-            if tolerance > 0.0:
-                lipschitz = float(system.lipschitz(factors.preconditioner))
-                left = left_of_one(system, factors, step, size, lipschitz)
-                converged = left <= min(tolerance, LARGEST)
-            if not converged:
-                # What ends in noise has no more left than that.
-                last_noise, converged = 0.0, size < 1e-8 and size >= 0.5 * previous
-                if not size > ROUNDINGS * EPS * float(factors.condition):
-                    noise = _noise(system, y, factors, np.asarray(size))
-                    converged = converged or bool((np.abs(step) <= noise).all())
-                    last_noise = float(noise.max())
-                left = 0.0 if converged else left
-            else:
-                last_noise = 0.0
-            previous = size
-            if converged:
-                break
-    return Converged(
-        y=y,
-        factors=factors,
-        converged=np.asarray(converged),
-        iterations=np.asarray(iterations),
-        first_step=np.asarray(first_step),
-        noise=np.asarray(last_noise),
-        left=np.asarray(left),
-        last_step=np.asarray(previous),
-        work=Work(residuals=iterations, factorisations=iterations),
-        lipschitz=np.asarray(lipschitz),
-    )
-
-
-def refine_plainly(
-    system: QuadraticMap, y: Array, offset: Array | float = 0.0, tolerance: Array | float = 0.0
-) -> Converged:
-    """The same for any batch, each member of which goes on until its own end."""
-    batch, n = y.shape[:-1], system.unknowns
-    y = y.reshape(-1, y.shape[-1]).copy()
-    offset = np.broadcast_to(offset, (*batch, len(system.rows))).reshape(-1, len(system.rows))
-    allowed = np.broadcast_to(tolerance, batch).ravel()
-    members = len(y)
-    converged = np.zeros(members, dtype=bool)
-    iterations = np.zeros(members, dtype=np.int64)
-    first_step = np.full(members, np.nan)
-    last_noise = np.full(members, np.inf)
-    left = np.zeros(members)
-    previous = np.full(members, np.inf)
-    active = np.arange(members)
+    n, batch, members = system.unknowns, y.shape[:-1], y.shape[:-1]
+    y, offset, allowed = y.copy(), np.asarray(offset), np.minimum(tolerance, LARGEST)
+    if batch:
+        y = y.reshape(-1, y.shape[-1])
+        members = y.shape[:1]
+        offset = np.broadcast_to(offset, (*batch, len(system.rows))).reshape(-1, len(system.rows))
+        allowed = np.broadcast_to(allowed, batch).reshape(members)
+    asked = np.count_nonzero(allowed) > 0
+    converged, iterations = np.zeros(members, dtype=bool), np.zeros(members, dtype=np.int64)
+    first_step, last_noise, left = np.zeros(members), np.zeros(members), np.zeros(members)
+    previous, lipschitz = np.full(members, np.inf), np.full(members, np.nan)
+    # All members, of whatever dimensions, and from where the first of them ends the others by number.
+    active: EllipsisType | NDArray[np.intp] = ...
     factors: Factors | None = None
-    evaluations = 0
-    for _ in range(LIMIT):
-        here = y[active]
-        evaluations += len(active)
-        # A start that is not finite shows as a step that is not, which is checked below.
-        with np.errstate(invalid="ignore", over="ignore"):
+    with np.errstate(all="ignore"):
+        for count in range(LIMIT):
+            here = y[active]
             local = factorise(system.jacobian(here))
-            factors = local if factors is None else factors.replaced(active, local)
+            factors = local if factors is None or active is ... else factors.replaced(active, local)
             step = -local.solve(system.residual(here) - offset[active])
-            size = np.abs(step).max(axis=-1)
-            noise = _noise(system, here, local, size)
-        usable = np.isfinite(size) & ~local.singular
-        # Below the square root of the rounding unit the error of the next step would be noise as well,
-        # so a step that no longer shrinks there is noise that the bound above judged too low.
-        stalled = (size < 1e-8) & (size >= 0.5 * previous[active])
-        small = (np.abs(step) <= noise).all(axis=-1) | stalled
-        iterations[active] += 1
-        first_step[active] = np.where(np.isnan(first_step[active]), size, first_step[active])
-        last_noise[active] = noise.max(axis=-1)
-        previous[active] = size
-        y[active, :n] += np.where(usable[:, None], step, 0.0)
-        wanted = allowed[active]
-        # What ends in noise has no more left than that, whatever a step before it left.
-        left[active] = 0.0
-        if (usable & ~small & (wanted > 0.0)).any():
-            rest = what_is_left(system, local, step)
-            left[active] = np.where(small, 0.0, rest)
-            small = small | (rest <= np.minimum(wanted, np.finfo(float).max))
-        converged[active] = usable & small
-        active = active[usable & ~small]
-        if not active.size:
-            break
-    if factors is None:
-        factors = factorise(system.jacobian(y))
+            sizes = np.abs(step)
+            # A start that is not finite shows as a step that is not.
+            size = sizes.max(axis=-1)
+            usable = np.isfinite(size) & ~local.singular
+            y[active, :n] += np.where(usable[..., None], step, 0.0)
+            if count == 0:
+                first_step = np.asarray(size)
+            # What ends in noise has no more left than that, whatever a step before it left.
+            rest = noise = np.zeros(size.shape)
+            done = np.zeros(size.shape, dtype=bool)
+            if asked:
+                lipschitz[active] = omega = system.lipschitz(local.preconditioner)
+                rest = what_is_left(system, local, step, size, omega)
+                done = usable & (rest <= allowed[active])
+            if np.count_nonzero(done) < size.size:
+                rounding = _noise(system, here, local, size)
+                # Below the square root of the rounding unit the error of the next step would be noise as
+                # well, so a step that no longer shrinks there is noise that the bound above judged too low.
+                stalled = (size < 1e-8) & (size >= 0.5 * previous[active])
+                rest, noise = np.where(done, rest, 0.0), np.where(done, 0.0, rounding.max(axis=-1))
+                done = done | (usable & (stalled | (sizes <= rounding).all(axis=-1)))
+            iterations[active], converged[active], previous[active] = count + 1, done, size
+            left[active], last_noise[active] = rest, noise
+            going = usable & ~done
+            if not np.count_nonzero(going):
+                break
+            if np.count_nonzero(going) < size.size:
+                active = np.flatnonzero(going) if active is ... else active[going]
+    assert factors is not None  # LIMIT is no less than 1
+    taken = int(iterations.sum())
     return Converged(
-        y=y.reshape(*batch, -1),
-        factors=factors.reshaped(batch),
+        y=y.reshape(*batch, y.shape[-1]),
+        factors=factors.reshaped(batch) if batch else factors,
         converged=converged.reshape(batch),
         iterations=iterations.reshape(batch),
         first_step=first_step.reshape(batch),
         noise=last_noise.reshape(batch),
         left=left.reshape(batch),
         last_step=previous.reshape(batch),
-        work=Work(residuals=evaluations, factorisations=evaluations),
+        work=Work(residuals=taken, factorisations=taken),
+        lipschitz=lipschitz.reshape(batch),
     )
 
 
@@ -221,35 +166,20 @@ def _noise(system: QuadraticMap, y: Array, factors: Factors, size: Array) -> Arr
     return np.asarray((np.abs(factors.preconditioner) @ rows[..., None])[..., 0])
 
 
-def left_of_one(system: QuadraticMap, factors: Factors, step: Array, size: float, lipschitz: float) -> float:
-    """What `what_is_left` says of one step, of a size and with a Lipschitz constant that are at hand."""
-    d = np.zeros(system.size)
-    d[: system.unknowns] = step
-    bent = np.abs(factors.preconditioner.dot(system.residual(d))).tolist()
-    q, room = max(bent), 1.0 - lipschitz * size
-    if not (room > 0.0 and isfinite(sum(bent))):
-        return np.inf
-    constant = 2.0 * lipschitz * q / (room * room)
-    return 2.0 * q / (room * (1.0 + sqrt(1.0 - constant))) if constant < 1.0 else np.inf
-
-
-def what_is_left(system: QuadraticMap, factors: Factors, step: Array) -> Array:
+def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Array, omega: Array) -> Array:
     """Proven distance to the solution after a Newton step d, rounding apart, shape (...,).
 
-    Infinite where nothing is proven; see the formula above.
+    Infinite where nothing is proven; see the formula above. Floating point warnings are the caller's.
 
     Args:
         factors: of C_u at the place that the step started from. step: d, shape (..., unknowns).
+        size: |d|, shape (...,). omega: Lipschitz constant of X C_u, shape (...,).
     """
     d = np.zeros((*step.shape[:-1], system.size))
     d[..., : system.unknowns] = step
-    inverse = factors.preconditioner
-    with np.errstate(all="ignore"):
-        rows = system.residual(d)
-        bent = inverse.dot(rows) if rows.ndim == 1 else (inverse @ rows[..., None])[..., 0]
-        q = np.abs(bent).max(axis=-1)
-        omega = system.lipschitz(inverse)
-        room = 1.0 - omega * np.abs(step).max(axis=-1)
-        constant = 2.0 * omega * q / room**2
-        rest = 2.0 * q / (room * (1.0 + np.sqrt(np.maximum(1.0 - constant, 0.0))))
+    rows, inverse = system.residual(d), factors.preconditioner
+    bent = inverse.dot(rows) if rows.ndim == 1 else (inverse @ rows[..., None])[..., 0]
+    q, room = np.abs(bent).max(axis=-1), 1.0 - omega * size
+    constant = 2.0 * omega * q / (room * room)
+    rest = 2.0 * q / (room * (1.0 + np.sqrt(1.0 - constant)))
     return np.where((room > 0.0) & (constant < 1.0), rest, np.inf)

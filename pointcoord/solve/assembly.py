@@ -1,26 +1,15 @@
 r"""Assembly: from the drawing to a pose, along a path that cannot change branch.
 
-Between two sets of known coordinates the path is straight, and what is not yet assembled is taken back
-in proportion. One step goes along the tangent y1 to y + s y1, where, because C is quadratic,
-
-    C(y + s y1) - (1 - s) C(y) = s^2 B(y1, y1)      exactly.
-
-So Kantorovich's condition (see `kantorovich`) along the step needs only three constants at its start,
-
-    (1 - s z)^2 >= 2 omega q s^2,   z = |X C_u(y1)|,  q = |X B(y1, y1)|,  omega = Lipschitz(X C_u),
-
-and solves in closed form: up to s = 1 / (z + sqrt(2 omega q)) there is exactly one assembly in a tube
-about the tangent, and it is the continuation of the one that the step started from. The steps shrink on
-their own towards a pose where the path ends.
+Between two sets of known coordinates the path is straight, or a law leads from one to the other; what is not
+yet assembled is taken back in proportion. It is followed in steps that are proven (see `curved_path`): about
+the tangent of each there is exactly one assembly, and it is the continuation of the one that the step started
+from. What a step takes up of the condition goes with its length, so one that is too long tells which is
+proven, and the steps shrink on their own towards a pose where the path ends.
 
 A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as
-a rule; what it is still off, e = -X (C(y) - offset), is taken along with the next tangent, and the condition
-along y + e + s y1 is
-
-    (1 - omega |e| - s z)^2 >= 2 omega |X B(e + s y1, e + s y1)|,
-
-which solves in closed form as well. Only the end is corrected to the tolerance. Rounding is not counted
-here: within the root of EPS of a pose where two branches cross, it may hide that they do.
+a rule; what it is still off is taken along with the next tangent. Only the end is corrected to the tolerance.
+Rounding is not counted here: within the root of EPS of a pose where two branches cross, it may hide that they
+do.
 
 One pose on its way from the drawing takes longer steps, along a power series of the path (see `proven_path`);
 tangents lead where no few of these are proven to reach the end, and tell where a path stops.
@@ -28,8 +17,7 @@ tangents lead where no few of these are proven to reach the end, and tell where 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Protocol
 
@@ -39,26 +27,32 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.curved_path import LONGEST, Path, along
+from pointcoord.solve.curved_path import SHARES, Path, beside_the_way, straight_way
 from pointcoord.solve.proven_path import proven_end
 from pointcoord.solve.status import Blocked
 
 Array = NDArray[np.float64]
+Law = Callable[[NDArray[np.intp], Array], Array]
+"""Known coordinates of members, by number, at shares of their paths, both (m,): (m, size - unknowns)."""
 
-# Fraction of the proven step: at 1 Newton's convergence from the tangent would be only linear.
-SAFETY = 0.8
+# Part of a step that would just be proven, and how much longer the next one is at most.
+SAFETY, LONGER = 0.8, 4.0
+# Part of a step that is tried instead where it overflows, or where digits have run out at its end.
+AGAIN = 0.1
 # A path that advances less than this fraction in a step has met the end of what can be assembled: steps
 # shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
 # where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
+# Steps tried for a path, or for each part of it that is as long as a step may be.
 STEPS = 2000
+# Turn in one step, rad, at most: of more than half a turn the ends do not tell the way round.
+LONGEST = 1.0
 # How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
 # proportion to the step: an end so near the tangent is far from where the step would double back.
 BESIDE = 0.25
@@ -118,233 +112,106 @@ class Pose:
         return pose_bound(self.mechanism, self.y, self.factors)
 
 
-def proven_step(
-    system: QuadraticMap, factors: Factors, tangent: Array, correction: Array | None = None
-) -> Array:
-    """Largest s for which the tangent step is proven to stay on its branch, shape (...,).
-
-    The condition holds if it holds in any weighted maximum norm. Three are tried: plain, and two that
-    weigh each coordinate by the curvature of its own path, so that what hardly moves hardly counts.
-
-    Args:
-        factors: of C_u at the start. tangent: y1, shape (..., size).
-        correction: e, shape (..., size); none if the start is exact.
-    """
-    n, inverse = system.unknowns, factors.preconditioner
-
-    def bent(rows: Array) -> Array:
-        return np.asarray(np.abs(inverse @ rows[..., None])[..., 0])
-
-    bend = bent(system.residual(tangent))
-    turn = np.abs(product_of_few_entries(inverse, system.jacobian(tangent)))
-    largest = bend.max(axis=-1, keepdims=True)
-    best = np.zeros(tangent.shape[:-1])
-    if correction is not None:
-        own, both = bent(system.residual(correction)), bent(2.0 * system.polar(correction, tangent))
-    tried = np.stack([np.ones_like(bend), bend + 0.3 * largest, bend + 0.02 * largest])
-    omegas = system.lipschitz(inverse, tried)
-    for weights, omega in zip(tried, omegas, strict=True):
-        q = (bend / weights).max(axis=-1)
-        z = ((turn @ weights[..., None])[..., 0] / weights).max(axis=-1)
-        if correction is None:
-            best = np.fmax(best, 1.0 / (z + np.sqrt(2.0 * omega * q)))
-            continue
-        # The smaller root of (a - s z)^2 = 2 omega (q s^2 + c s + b), with a > 0 left after the correction.
-        a = 1.0 - omega * (np.abs(correction[..., :n]) / weights).max(axis=-1)
-        b, c = ((part / weights).max(axis=-1) for part in (own, both))
-        room, slope = a * a - 2.0 * omega * b, a * z + omega * c
-        root = np.sqrt(np.maximum(slope * slope - (z * z - 2.0 * omega * q) * room, 0.0))
-        best = np.fmax(best, np.where((a > 0.0) & (room > 0.0), room / (slope + root), 0.0))
-    return best
-
-
-def _proven_step_of_one(
-    system: QuadraticMap, factors: Factors, tangent: Array, correction: Array | None
-) -> float:
-    """What `proven_step` gives, for one place, with plain numbers where that has arrays of one."""
-    n, inverse = system.unknowns, factors.preconditioner
-    bend = np.abs(inverse.dot(system.residual(tangent)))
-    turn = np.abs(inverse.dot(system.jacobian(tangent)))
-    largest = bend.max()
-    weights = np.array([np.ones(n), bend + 0.3 * largest, bend + 0.02 * largest])
-    rows = [bend, *turn.dot(weights.T).T]
-    if correction is not None:
-        own, both = system.residual(correction), 2.0 * system.polar(correction, tangent)
-        rows += [np.abs(correction[:n]), np.abs(inverse.dot(own)), np.abs(inverse.dot(both))]
-    omegas = system.lipschitz(inverse, weights).tolist()
-    best = 0.0
-    for k, omega in enumerate(omegas):
-        chosen = [rows[0], rows[1 + k], *rows[4:]]
-        q, z, *rest = (np.array(chosen) / weights[k]).max(axis=1).tolist()
-        if not math.isfinite(omega + q + z):
-            continue
-        if not rest:
-            down = z + math.sqrt(2.0 * omega * q)
-            best = max(best, 1.0 / down if down > 0.0 else math.inf)
-            continue
-        # The smaller root of (a - s z)^2 = 2 omega (q s^2 + c s + b), with a > 0 left after the correction.
-        e, b, c = rest
-        a = 1.0 - omega * e
-        room, slope = a * a - 2.0 * omega * b, a * z + omega * c
-        if not (a > 0.0 and room > 0.0):
-            continue
-        down = slope + math.sqrt(max(slope * slope - (z * z - 2.0 * omega * q) * room, 0.0))
-        best = max(best, room / down if down > 0.0 else math.inf)
-    return best
-
-
 def follow(
     system: QuadraticMap,
     y: Array,
-    target: Array,
+    target: Array | Law,
     factors: Factors | None = None,
     tolerance: float = 0.0,
     steps: int = STEPS,
+    longest: float = 1.0,
 ) -> Path:
-    """Carry poses along straight paths to other known coordinates.
+    """Carry poses along paths of their known coordinates.
 
     Args:
         y: start, shape (..., size); what its residual is not zero by is taken back along the path.
-        target: known coordinates at the end, shape (..., size - unknowns).
+        target: known coordinates at the end of a straight path, shape (..., size - unknowns), or a law.
         factors: factorisation of C_u at y, if it is at hand.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
-        steps: at most so many.
+        steps: tried at most for each share `longest` of the path.
+        longest: share of the path in one step, so short that SHARES of it show what a law does.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
-    if y.ndim == 1 and target.ndim == 1 and (factors is None or factors.matrix.ndim == 2):
-        return _follow_one(system, y, target, factors, tolerance, steps)
-    return follow_plainly(system, y, target, factors, tolerance, steps)
-
-
-def _follow_one(
-    system: QuadraticMap, y: Array, target: Array, factors: Factors | None, tolerance: float, steps: int
-) -> Path:
-    """The same steps for one pose, with plain numbers where `follow_plainly` has arrays of one."""
-    n, start, offset = system.unknowns, y[system.unknowns :], system.residual(y)
-    change = target - start
-    remaining, rest, iterations, work = 1.0, 0.0, 0, Work(residuals=1)
-    if factors is None:
-        factors, work = factorise(system.jacobian(y)), work + Work(factorisations=1)
-    side = float(orientation(system, factors))
-    if change.any() and bool(hidden(system, y, factors)):
-        steps = 0
-    with np.errstate(all="ignore"):
-        while remaining > 0.0 and steps > 0 and not factors.singular:
-            steps -= 1
-            wanted = offset * remaining
-            tangent = np.zeros_like(y)
-            tangent[n:] = change * remaining
-            tangent[:n] = -factors.solve(2.0 * system.polar(y, tangent) + wanted)
-            correction = None
-            if rest > 0.0:
-                correction = np.zeros_like(y)
-                correction[:n] = -factors.solve(system.residual(y) - wanted)
-            step = min(SAFETY * _proven_step_of_one(system, factors, tangent, correction), 1.0)
-            if not (step * remaining >= SMALLEST_STEP or step >= 1.0):
-                break
-            left = 0.0 if step >= 1.0 else remaining * (1.0 - step)
-            guess = y + step * tangent if correction is None else y + step * tangent + correction
-            guess[n:] = target if left == 0.0 else start + change * (1.0 - left)
-            # On the way it is enough to be where Newton's method is proven to converge.
-            reached = newton_refine(system, guess, offset * left, tolerance if left == 0.0 else np.inf)
-            there = factorise(system.jacobian(reached.y))
-            work += reached.work + Work(factorisations=1)
-            if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, left == 0.0))):
-                break
-            y, factors, remaining = reached.y, there, left
-            iterations, rest = int(reached.iterations), float(reached.left)
-            if left > 0.0 and iterations > 1 and rest == 0.0:
-                # Rounding ended it before it was proven: what it is still off is taken along all the same.
-                rest = math.inf
-        if remaining > 0.0 and rest > 0.0:
-            # Where a path ends is told as exactly as an assembly is.
-            end = newton_refine(system, y, offset * remaining)
-            there = factorise(system.jacobian(end.y))
-            work += end.work + Work(factorisations=1)
-            if bool(end.converged) and bool(same_side(system, end.y, there, side, True)):
-                y, factors, rest = end.y, there, 0.0
-    left_over, done = np.asarray(rest), np.asarray(1.0 - remaining)
-    return Path(y.copy(), factors, np.asarray(iterations), left_over, done, work)
-
-
-def follow_plainly(
-    system: QuadraticMap,
-    y: Array,
-    target: Array,
-    factors: Factors | None = None,
-    tolerance: float = 0.0,
-    steps: int = STEPS,
-) -> Path:
-    """The same for any batch of poses."""
     n = system.unknowns
-    batch = np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
+    batch = y.shape[:-1] if callable(target) else np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
     y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()
-    target = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
-    start, offset = y[:, n:].copy(), system.residual(y)
-    change = target - start
-    remaining, rest = np.ones(len(y)), np.zeros(len(y))
-    iterations = np.zeros(len(y), dtype=np.int64)
-    work = Work(residuals=len(y))
+    if callable(target):
+        law, still, shares = target, np.zeros(len(y), dtype=bool), np.append(SHARES, 1.0)
+    else:
+        goals = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
+        law, still, shares = _straight(y[:, n:].copy(), goals), (goals == y[:, n:]).all(axis=-1), np.ones(1)
+    offset = system.residual(y)
+    done, step, rest = np.zeros(len(y)), np.full(len(y), min(longest, 1.0)), np.zeros(len(y))
+    iterations, work = np.zeros(len(y), dtype=np.int64), Work(residuals=len(y))
     if factors is None or factors.condition.shape != batch:
         factors = factorise(system.jacobian(y))
         work += Work(factorisations=len(y))
     factors = factors.reshaped((len(y),))
     side = orientation(system, factors)
-    active = np.flatnonzero(~factors.singular & ~(change.any(axis=-1) & hidden(system, y, factors)))
-    for _ in range(steps):
+    active = np.flatnonzero(~factors.singular & (still | ~hidden(system, y, factors)))
+    for _ in range(int(steps / min(longest, 1.0))):
         if not active.size:
             break
-        left, local = remaining[active], factors.taken(active)
-        here, wanted = y[active], offset[active] * left[:, None]
-        tangent = _tangent(system, here, local, change[active] * left[:, None], wanted)
-        correction = _correction(system, here, local, wanted) if rest[active].any() else None
+        here, begun, inverse = y[active], done[active], factors.taken(active).preconditioner
+        end = np.minimum(begun + step[active], 1.0)
+        places = np.where(shares == 1.0, end[:, None], begun[:, None] + (end - begun)[:, None] * shares)
+        known = law(np.repeat(active, len(shares)), places.ravel()).reshape(*places.shape, -1)
+        left_open = (1.0 - np.stack([begun, end]))[..., None] * offset[active]
         with np.errstate(all="ignore"):
-            step = np.minimum(SAFETY * proven_step(system, local, tangent, correction), 1.0)
-        # False for a NaN as well; a step that completes the path may be as short as it likes.
-        able = (step * left >= SMALLEST_STEP) | (step >= 1.0)
-        active, tangent, step, left = active[able], tangent[able], step[able], left[able]
-        left = np.where(step >= 1.0, 0.0, left * (1.0 - step))
-        guess = y[active] + step[:, None] * tangent
-        if correction is not None:
-            guess += correction[able]
-        ahead = start[active] + change[active] * (1.0 - left)[:, None]
-        guess[:, n:] = np.where((left == 0.0)[:, None], target[active], ahead)
-        if not active.size:
-            break
-        # On the way it is enough to be where Newton's method is proven to converge.
-        allowed = np.where(left == 0.0, tolerance, np.inf)
-        reached = newton_refine(system, guess, offset[active] * left[:, None], allowed)
-        work = work + reached.work
-        # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
-        # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding. The
-        # factors at hand are of the place before the last step, which may lie on the other side.
-        there = factorise(system.jacobian(reached.y))
-        work += Work(factorisations=len(active))
-        good = reached.converged & same_side(system, reached.y, there, side[active], left == 0.0)
-        active, left = active[good], left[good]
-        y[active], remaining[active], iterations[active] = reached.y[good], left, reached.iterations[good]
-        rest[active] = reached.left[good]
-        factors = factors.replaced(active, there.taken(np.flatnonzero(good)))
-        active = active[left > 0.0]
-    stopped = np.flatnonzero((remaining > 0.0) & (rest > 0.0))
+            beside = None if len(shares) == 1 else beside_the_way(here[:, n:], known[:, :-1], known[:, -1])
+            way = straight_way(system, inverse, here, known[:, -1], beside, left_open)
+            proof = way.best_proof(system, inverse)
+            able = np.flatnonzero(proof.holds)
+            length = np.minimum(SAFETY / proof.used, LONGER) * (end - begun)
+            # Of a step so long that it overflows nothing is known.
+            shorter = np.where(np.isnan(length), AGAIN, SAFETY) * (end - begun)
+        step[active] = np.fmin(length, shorter)
+        if able.size:
+            guess = (here + way.tangent)[able]
+            guess[:, n:] = known[able, -1]
+            # On the way it is enough to be where Newton's method is proven to converge.
+            allowed = np.where(end[able] == 1.0, tolerance, np.inf)
+            reached = newton_refine(system, guess, left_open[1, able], allowed)
+            # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
+            # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding.
+            there = factorise(system.jacobian(reached.y))
+            work += reached.work + Work(factorisations=len(able))
+            apart = np.abs(reached.y - guess)[:, :n]
+            good = reached.converged & proof.taken(able).within(apart)
+            good &= same_side(system, reached.y, there, side[active[able]], end[able] == 1.0)
+            kept, chosen = active[able[good]], np.flatnonzero(good)
+            y[kept], done[kept], rest[kept] = reached.y[chosen], end[able[chosen]], reached.left[chosen]
+            iterations[kept] = reached.iterations[chosen]
+            factors = factors.replaced(kept, there.taken(chosen))
+            step[active[able[~good]]] *= AGAIN
+            step[kept] = np.minimum(length[able[chosen]], longest)
+        # A step that completes a path may be as short as it likes.
+        active = active[
+            (done[active] < 1.0) & (step[active] >= np.minimum(SMALLEST_STEP, 1.0 - done[active]))
+        ]
+    stopped = np.flatnonzero((done < 1.0) & (rest > 0.0))
     if stopped.size:
         # Where a path ends is told as exactly as an assembly is.
-        ends = newton_refine(system, y[stopped], offset[stopped] * remaining[stopped][:, None])
+        ends = newton_refine(system, y[stopped], offset[stopped] * (1.0 - done[stopped])[:, None])
         there = factorise(system.jacobian(ends.y))
         work += ends.work + Work(factorisations=len(stopped))
         good = ends.converged & same_side(system, ends.y, there, side[stopped], True)
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
-    return Path(
-        y=y.reshape(*batch, -1),
-        factors=factors.reshaped(batch),
-        iterations=iterations.reshape(batch),
-        left=rest.reshape(batch),
-        done=(1.0 - remaining).reshape(batch),
-        work=work,
-    )
+    return Path(y, factors, iterations, rest, done, work).reshaped(batch)
+
+
+def _straight(start: Array, goals: Array) -> Law:
+    """The straight paths between known coordinates, each (members, size - unknowns)."""
+    change = goals - start
+
+    def law(members: NDArray[np.intp], shares: Array) -> Array:
+        share = shares[:, None]
+        return np.where(share == 1.0, goals[members], start[members] + change[members] * share)
+
+    return law
 
 
 def led(
@@ -376,36 +243,15 @@ def stepped(system: QuadraticMap, y: Array, target: Array) -> Array | None:
     factors = factorise(system.jacobian(y))
     if factors.singular:
         return None
-    tangent = _tangent(system, y[None], factors.reshaped((1,)), target[None] - y[system.unknowns :], 0.0)[0]
-    guess = y + tangent
-    guess[system.unknowns :] = target
     with np.errstate(all="ignore"):
+        tangent = straight_way(system, factors.preconditioner, y, target).tangent
+        guess = y + tangent
+        guess[system.unknowns :] = target
         reached = newton_refine(system, guess)
         there = factorise(system.jacobian(reached.y))
         beside = np.abs(reached.y - guess).max() <= BESIDE * np.abs(tangent).max()
     kept = float(orientation(system, there)) == float(orientation(system, factors))
     return reached.y if bool(beside and reached.converged) and kept else None
-
-
-def _correction(system: QuadraticMap, y: Array, factors: Factors, wanted: Array) -> Array:
-    """What places are still off, e with C_u e = -(C(y) - wanted), shape (members, size)."""
-    correction = np.zeros_like(y)
-    with np.errstate(all="ignore"):
-        correction[:, : system.unknowns] = -factors.solve(system.residual(y) - wanted)
-    return correction
-
-
-def _tangent(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array | float) -> Array:
-    """What is left of a path if it went on straight, C_u u1 = -(C_w w1 + offset), shape (members, size).
-
-    Args:
-        change: of the known coordinates, w1. offset: residual that is still to be taken back.
-    """
-    tangent = np.zeros_like(y)
-    tangent[:, system.unknowns :] = change
-    with np.errstate(all="ignore"):
-        tangent[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, tangent) + offset)
-    return tangent
 
 
 def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance: float = 0.0) -> Path:
@@ -508,8 +354,8 @@ def driven_to(
         known = (mechanism.taken(members) if cars else mechanism).known_series(values)[..., 0, :]
         return np.where((shares == 1.0)[:, None], goals[members], known)
 
-    path = along(mechanism.map, y, law, LONGEST / max(float(turn.max()), LONGEST), tolerance)
-    return target, path.reshaped(batch)
+    longest = LONGEST / max(float(turn.max()), LONGEST)
+    return target, follow(mechanism.map, y, law, None, tolerance, longest=longest).reshaped(batch)
 
 
 def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:

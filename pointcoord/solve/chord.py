@@ -7,8 +7,9 @@ before, along the tangent T that X gives to the new known coordinates, where the
 Kantorovich holds on all of that straight way (see `curved_path`, whose eta, z and omega these are).
 
 Then there is one assembly near each y0 + s T, they are one branch, and X contracts towards the last by
-k = z + omega r, r the radius of the theorem: after a step d, |u* - u| <= k |d| / (1 - k). Where that is not
-so, X is made anew, and if that is not enough the path is followed in shorter proven steps (see `assembly`).
+k = z + omega r, r the radius of the theorem, which is k = 1 - sqrt((1 - z)^2 - 2 omega eta): after a step d,
+|u* - u| <= k |d| / (1 - k). Where that is not so, X is made anew, and if that is not enough the path is
+followed in shorter proven steps (see `assembly`).
 """
 
 from __future__ import annotations
@@ -132,13 +133,10 @@ def _along_chord(
     n = system.unknowns
     with np.errstate(all="ignore"):
         way = straight_way(system, kept.inverse, y, target, beside)
-        eta, z = float(way.eta), float(way.z)
-        constant = 2.0 * kept.omega * eta / (1.0 - z) ** 2
-        if not (z < 1.0 and constant < 1.0):
-            return None
-        radius = 2.0 * eta / ((1.0 - z) * (1.0 + np.sqrt(1.0 - constant)))
-    rate = z + kept.omega * radius
-    if not rate <= SLOW:
+        eta, z = way.norms(np.ones(n))
+        rate = 1.0 - float(np.sqrt((1.0 - z) ** 2 - 2.0 * kept.omega * eta))
+    # Not a number where nothing is proven.
+    if not (z < 1.0 and rate <= SLOW):
         return None
     here = y + way.tangent
     here[n:] = target

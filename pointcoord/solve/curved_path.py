@@ -1,19 +1,24 @@
-r"""A path of the known coordinates that is not straight, proven step by step against the straight way.
+r"""What is proven of one step of a path: that one branch leads along it, and which pose it leads to.
 
-From a pose y with X = C_u(y)^-1 let T be the tangent that X gives to other known coordinates. C is quadratic,
-so
+From a pose y with X near C_u(y)^-1 let T be the way of Newton's method to other known coordinates, and
+C = c the constraints as far as they are closed: c goes from c_0 to c_1 along the step, in proportion. C is
+quadratic, so
 
-    C(y + s T) = C(y) + s 2 B(y, T) + s^2 B(T, T)      exactly,
+    C(y + s T) - c = (1 - s) (C(y) - c_0) + s (C(y) + 2 B(y, T) - c_1) + s^2 B(T, T)      exactly,
 
 and with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every s
 from 0 to 1 if it does with
 
-    eta = |X C(y)| + |X 2 B(y, T)| + |X B(T, T)|,    z = |I - X C_u(y)| + |X C_u(T)|,
-    2 omega eta < (1 - z)^2.
+    eta = max(|X (C(y) - c_0)|, |X (C(y) + 2 B(y, T) - c_1)|) + |X B(T, T)|,
+    z = |I - X C_u(y)| + |X C_u(T)|,      2 omega eta < (1 - z)^2,  that is  z + sqrt(2 omega eta) < 1.
 
 Then one branch leads along the straight way, and no other assembly lies within (1 - z) / omega of y + T: a
-pose that does is the next one. A turn, which is driven by its cosine and its sine, and inputs that move
-together by different laws go beside that way, by no more than d in each known coordinate. As
+pose that does is the next one. All is true in any weighted maximum norm. The pose y need not be exact: it
+stands for the assembly that u <- u - X (C - c_0) leads to from it, and so does the end of the step before if
+Newton's method is proven to converge from there, because both are about the same y.
+
+A turn, which is driven by its cosine and its sine, and inputs that move together by different laws go beside
+that way, by no more than d in each known coordinate. As
 
     C(y + s T + e) = C(y + s T) + 2 B(y + s T, e) + B(e, e),      |e| <= d,
 
@@ -27,16 +32,13 @@ cross on the circle, as in a parallelogram that lies flat, the chord leads from 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.numerics.branch import hidden, orientation, same_side
+from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 
@@ -45,14 +47,39 @@ Array = NDArray[np.float64]
 # Shares of a step at which it is looked how far its path goes beside the straight way, and how many times as
 # far it may go between these: a parabola 1.19 times, a cubic 1.15.
 SHARES, INFLATED = np.array([0.3, 0.7]), 1.25
-# Turn in one step, rad, at most: of more than half a turn the ends do not tell the way round.
-LONGEST = 1.0
-# Of the path: a shorter step has met its end, as of a straight one (see `assembly`). Steps, at most.
-SHORTEST, MOST = 1e-13, 50_000
-# Part of a step that would just be proven, and how much shorter or longer the next one is at most.
-SAFETY, CHANGE = 0.8, (0.1, 4.0)
-# What |I - X C_u| may be: C_u then has an inverse on all of the way, far beyond any rounding of that bound.
-FARTHEST = 0.9
+# Of 1, what z + sqrt(2 omega eta) may be: the rest is far more than anything rounds, and with less than that
+# Newton's method would converge only linearly from the end of the tangent.
+ROOM = 0.9
+# Parts of the largest curvature that the weights of a coordinate have at least.
+LEAST_WEIGHTS = (0.3, 0.02)
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What holds of straight ways in a maximum norm.
+
+    Attributes:
+        used: z + sqrt(2 omega eta), which goes with the length of a way, shape (...,).
+        alone: no other assembly lies so near the end of the tangent, shape (...,).
+        weights: of the norm, shape (..., n).
+    """
+
+    used: Array
+    alone: Array
+    weights: Array
+
+    @property
+    def holds(self) -> NDArray[np.bool_]:
+        """Whether one branch leads along the way, shape (...,)."""
+        return np.asarray(self.used <= ROOM)
+
+    def taken(self, members: NDArray[np.intp]) -> Proof:
+        """Some members, by number; one batch dimension."""
+        return Proof(self.used[members], self.alone[members], self.weights[members])
+
+    def within(self, apart: Array) -> NDArray[np.bool_]:
+        """Whether places so far from the ends of the tangents, (..., n), are alone there, shape (...,)."""
+        return np.asarray((apart / self.weights).max(axis=-1) <= self.alone)
 
 
 @dataclass(frozen=True)
@@ -60,20 +87,48 @@ class StraightWay:
     """The straight ways from poses to other known coordinates; see the formulas above.
 
     Attributes:
-        tangent: T, shape (..., size). eta, z: shape (...,).
+        tangent: T, shape (..., size).
+        bend, remaining: |X B(T, T)|, and all of eta, element by element, shape (..., n).
+        change: z, element by element, shape (..., n, n).
     """
 
     tangent: Array
-    eta: Array
-    z: Array
+    bend: Array
+    remaining: Array
+    change: Array
 
-    def holds(self, omega: Array | float) -> NDArray[np.bool_]:
-        """Whether one branch leads along it, shape (...,)."""
-        return np.asarray((self.z <= FARTHEST) & (2.0 * omega * self.eta < (1.0 - self.z) ** 2))
+    def norms(self, weights: Array) -> tuple[Array, Array]:
+        """eta and z in maximum norms of some weights, shape (..., n): of shape (...,)."""
+        turned = (self.change @ weights[..., None])[..., 0]
+        return (self.remaining / weights).max(axis=-1), (turned / weights).max(axis=-1)
+
+    def proof(self, omega: Array | float, weights: Array) -> Proof:
+        """In the norm of some weights."""
+        eta, z = self.norms(weights)
+        return Proof(np.asarray(z + np.sqrt(2.0 * omega * eta)), np.asarray((1.0 - z) / omega), weights)
+
+    def best_proof(self, system: QuadraticMap, inverse: Array) -> Proof:
+        """In the best of three norms: plain, and two that weigh each coordinate by how far its path bends.
+
+        So what hardly moves hardly counts.
+        """
+        largest = self.bend.max(axis=-1, keepdims=True)
+        weights = np.stack(
+            [np.ones_like(self.bend), *(self.bend + least * largest for least in LEAST_WEIGHTS)]
+        )
+        every = self.proof(system.lipschitz(inverse, weights), weights)
+        best = np.argmin(np.where(np.isnan(every.used), np.inf, every.used), axis=0)[None]
+        used, alone = (np.take_along_axis(part, best, axis=0)[0] for part in (every.used, every.alone))
+        return Proof(used, alone, np.take_along_axis(weights, best[..., None], axis=0)[0])
 
 
 def straight_way(
-    system: QuadraticMap, inverse: Array, y: Array, targets: Array, beside: Array | None = None
+    system: QuadraticMap,
+    inverse: Array,
+    y: Array,
+    targets: Array,
+    beside: Array | None = None,
+    offsets: Array | tuple[float, float] = (0.0, 0.0),
 ) -> StraightWay:
     """What the theorem of Newton and Kantorovich asks of the ways; floating point warnings are the caller's.
 
@@ -81,27 +136,32 @@ def straight_way(
         inverse: X, of C_u near the poses, (n, n), or of each (..., n, n). y: the poses, shape (..., size).
         targets: known coordinates at the ends, shape (..., size - n).
         beside: d, how far the paths go beside the ways, shape (..., size - n); nowhere unless given.
+        offsets: c at the start and at the end, shape (2, ..., rows); 0 unless given.
     """
     n = system.unknowns
+    first, last = offsets
     tangent = np.zeros_like(y)
     tangent[..., n:] = targets - y[..., n:]
-    tangent[..., :n] = -_times(inverse, 2.0 * system.polar(y, tangent))
-    parts = (system.residual(y), 2.0 * system.polar(y, tangent), system.residual(tangent))
-    eta = np.sum([np.abs(_times(inverse, rows)).max(axis=-1) for rows in parts], axis=0)
-    turned = np.abs(np.eye(n) - inverse @ system.jacobian(y))
-    change = turned + np.abs(inverse @ system.jacobian(tangent))
+    here = system.residual(y)
+    tangent[..., :n] = -_times(inverse, here - last + 2.0 * system.polar(y, tangent))
+    start = np.abs(_times(inverse, here - first))
+    end = np.abs(_times(inverse, here - last + 2.0 * system.polar(y, tangent)))
+    bend = np.abs(_times(inverse, system.residual(tangent)))
+    remaining = np.maximum(start, end) + bend
+    change = np.abs(np.eye(n) - product_of_few_entries(inverse, system.jacobian(y)))
+    change += np.abs(product_of_few_entries(inverse, system.jacobian(tangent)))
     if beside is not None and beside.any():
         d = np.zeros_like(y)
         d[..., n:] = beside
         moved = (n + np.flatnonzero(beside.reshape(-1, beside.shape[-1]).any(axis=0))).tolist()
         driven = np.abs(inverse @ system.derivative_by(np.stack([y, tangent]), tuple(moved))).sum(axis=0)
-        eta = eta + (driven @ d[..., moved, None])[..., 0].max(axis=-1)
+        remaining += (driven @ d[..., moved, None])[..., 0]
         if inverse.ndim == 2 and d.ndim == 2:
             # What is small of second order may as well be the largest of all.
             d = d[np.isfinite(beside).all(axis=-1)].max(axis=0, initial=0.0)
-        eta = eta + _times(np.abs(inverse), system.uncertainty(np.zeros_like(d), d)).max(axis=-1)
-        change = change + np.abs(inverse) @ system.jacobian_uncertainty(d)
-    return StraightWay(tangent, eta, np.asarray(change.sum(axis=-1).max(axis=-1)))
+        remaining += _times(np.abs(inverse), system.uncertainty(np.zeros_like(d), d))
+        change += np.abs(inverse) @ system.jacobian_uncertainty(d)
+    return StraightWay(tangent, bend, remaining, change)
 
 
 def _times(matrix: Array, rows: Array) -> Array:
@@ -156,65 +216,3 @@ class Path:
             self.done.reshape(batch),
             self.work,
         )
-
-
-def along(
-    system: QuadraticMap,
-    y: Array,
-    law: Callable[[NDArray[np.intp], Array], Array],
-    longest: float,
-    tolerance: float,
-) -> Path:
-    """Carry assembled poses along paths of their known coordinates.
-
-    Args:
-        y: the poses, shape (members, size).
-        law: known coordinates of members, by number, at shares of their paths, both (m,).
-        longest: a share, so short that SHARES of it show the path.
-        tolerance: how far the ends may be from the exact assembly, rounding apart, in units.
-    Returns:
-        Poses at the ends of their paths, or where these stop.
-    """
-    n, y = system.unknowns, y.copy()
-    factors = factorise(system.jacobian(y))
-    side = orientation(system, factors)
-    done, step, left = np.zeros(len(y)), np.full(len(y), min(longest, 1.0)), np.zeros(len(y))
-    iterations, work = np.zeros(len(y), dtype=np.int64), Work(factorisations=len(y))
-    active = np.flatnonzero(~(factors.singular | hidden(system, y, factors)))
-    for _ in range(MOST):
-        if not active.size:
-            break
-        here, begun, local = y[active], done[active], factors.taken(active)
-        end = np.minimum(begun + step[active], 1.0)
-        # What would be left is no step of its own.
-        end = np.where(1.0 - end < SHORTEST, 1.0, end)
-        places = begun[:, None] + (end - begun)[:, None] * SHARES
-        between = law(np.repeat(active, len(SHARES)), places.ravel()).reshape(*places.shape, -1)
-        target = law(active, end)
-        with np.errstate(all="ignore"):
-            beside = beside_the_way(here[:, n:], between, target)
-            way = straight_way(system, local.preconditioner, here, target, beside)
-            omega = system.lipschitz(local.preconditioner)
-            able = np.flatnonzero(way.holds(omega))
-            # z goes with the length of a step, and eta with its square.
-            longer = SAFETY / (way.z + np.sqrt(2.0 * omega * way.eta))
-        work += Work(residuals=3 * len(active))
-        longer = np.where(np.isfinite(longer), np.clip(longer, *CHANGE), CHANGE[0])
-        step[active] = (end - begun) * np.minimum(longer, SAFETY)
-        if able.size:
-            with np.errstate(all="ignore"):
-                guess = (here + way.tangent)[able]
-                guess[:, n:] = target[able]
-                reached = newton_refine(system, guess, 0.0, tolerance)
-                off = np.abs(reached.y - guess).max(axis=-1) + reached.left
-                there = factorise(system.jacobian(reached.y))
-                good = reached.converged & (off * omega[able] <= 1.0 - way.z[able])
-                good &= same_side(system, reached.y, there, side[active[able]], end[able] == 1.0)
-            work += reached.work + Work(factorisations=len(able))
-            kept, chosen = active[able[good]], np.flatnonzero(good)
-            y[kept], done[kept] = reached.y[chosen], end[able[chosen]]
-            left[kept], iterations[kept] = reached.left[chosen], reached.iterations[chosen]
-            factors = factors.replaced(kept, there.taken(chosen))
-            step[kept] = np.minimum((end - begun)[able[chosen]] * longer[able[chosen]], longest)
-        active = active[(done[active] < 1.0) & (step[active] >= SHORTEST)]
-    return Path(y, factors, iterations, left, done, work)

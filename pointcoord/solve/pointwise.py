@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
@@ -33,8 +33,8 @@ from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-from pointcoord.solve.assembly import Pose, blocked, close_drawing, driven_to, follow
-from pointcoord.solve.curved_path import LONGEST, SHARES, Path, along, straight_way
+from pointcoord.solve.assembly import LONGEST, Pose, blocked, close_drawing, driven_to, follow
+from pointcoord.solve.curved_path import SHARES, Path, straight_way
 from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
@@ -177,8 +177,8 @@ class Between:
         known = self.mechanism.known_series({n: f.series(instants, 0) for n, f in self.functions.items()})
         return self.part.known(self.here, known)[:, 0]
 
-    def at_shares(self, number: int, shares: Array) -> Array:
-        """On the way to an instant, by its number."""
+    def at_shares(self, number: int, _: NDArray[np.intp], shares: Array) -> Array:
+        """On the way to an instant, by its number; see `Law`."""
         first, last = self.times[number - 1 : number + 1]
         return self.known(np.where(shares == 1.0, last, first + (last - first) * shares))
 
@@ -209,8 +209,8 @@ class Between:
         if not beside.any():
             return follow(self.part.system, y, goal, factors, tolerance)
         longest = LONGEST / max(float(self.turned[number - 1]), LONGEST)
-        path = along(self.part.system, y[None], lambda _, s: self.at_shares(number, s), longest, tolerance)
-        return path.reshaped(())
+        law = partial(self.at_shares, number)
+        return follow(self.part.system, y, law, factors, tolerance, longest=longest)
 
 
 @dataclass(frozen=True)
@@ -251,9 +251,9 @@ def _proven_ahead(
         beside = None if beside is None else beside[: len(here)]
         way = straight_way(system, inverse, here, following[:, n:], beside)
         omega = float(system.lipschitz(inverse, np.ones(n)))
-        off = np.abs(following - here - way.tangent)[:, :n].max(axis=-1) + reached.left
-        good = reached.converged & way.holds(omega)
-        good &= off * omega <= 1.0 - way.z
+        apart = np.abs(following - here - way.tangent)[:, :n] + reached.left[:, None]
+        proof = way.proof(omega, np.ones(n))
+        good = reached.converged & proof.holds & proof.within(apart)
     count = _first_false(np.asarray(good))
     return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
 

@@ -38,6 +38,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.curved_path import LEAST_WEIGHTS, ROOM, StraightWay
 
 Array = NDArray[np.float64]
 
@@ -46,8 +47,6 @@ Array = NDArray[np.float64]
 SHORT, FEW, MANY = 0.03, (4, 1), (14, 2)
 # Series after which a path is left to smaller steps.
 STRETCHES = 3
-# Of 1, what may be taken up in the condition: the rest is far more than anything rounds.
-ROOM = 0.9
 # What a series may leave out at its end, in parts of 1 / omega, where its length is chosen.
 LEFT_OUT = 1e-2
 SMALLEST = float(np.finfo(float).tiny)
@@ -135,19 +134,16 @@ def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array, offs
 
 
 def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bool:
-    r"""Whether the assemblies go on all along a tangent.
+    """Whether the assemblies go on all along a tangent, as of `straight_way`.
 
-    The series ends with it, and X is the inverse at its start: then Z = |X J_1| and Y = |X R_2|. The start is
-    taken for exact, what it is off being counted in the tangent.
+    The start is taken for exact, what it is off being counted in the tangent.
     """
+    inverse, tangent = factors.preconditioner, begun[1]
     with np.errstate(all="ignore"):
-        turn = np.abs(factors.preconditioner @ system.jacobian(begun[1]))
-        bend = np.abs(factors.preconditioner.dot(system.residual(begun[1])))
-        weights = bend + 0.3 * max(float(bend.max()), SMALLEST)
-        z = float((turn.dot(weights) / weights).max())
-        omega = float(system.lipschitz(factors.preconditioner, weights))
-        room = ROOM - z
-        return room > 0.0 and room * room >= 2.0 * omega * float((bend / weights).max())
+        bend = np.abs(inverse.dot(system.residual(tangent)))
+        way = StraightWay(tangent, bend, bend, np.abs(inverse @ system.jacobian(tangent)))
+        weights = bend + LEAST_WEIGHTS[0] * max(float(bend.max()), SMALLEST)
+        return bool(way.proof(system.lipschitz(inverse, weights), weights).holds)
 
 
 def _proven_series(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
-from pointcoord.numerics.newton import newton_refine, refine_plainly
+from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.solve.assembly import Pose, assemble
 
@@ -92,7 +92,7 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
     reached = newton_refine(strut.map, batch)
     assert not reached.converged[0, 1]
     for member in ((0, 0), (1, 0), (1, 1)):
-        alone = refine_plainly(strut.map, batch[member])
+        alone = newton_refine(strut.map, batch[member][None])
         assert reached.converged[member]
         assert reached.iterations[member] == alone.iterations
         # The same operations on each member: at most the order of a sum differs.
@@ -104,10 +104,10 @@ def test_the_factors_are_those_that_the_last_step_was_made_with(
 ) -> None:
     monkeypatch.setattr(newton, "LIMIT", 1)
     start = displaced(pose, 4, 1e-3)
-    for reached in (newton_refine(strut.map, start), refine_plainly(strut.map, start)):
+    for reached in (newton_refine(strut.map, start), newton_refine(strut.map, np.stack([start, start]))):
         # Rows are scaled by powers of two.
-        matrix = reached.factors.matrix / reached.factors.row_scale[:, None]
-        assert np.array_equal(matrix, strut.map.jacobian(start))
+        matrices = reached.factors.matrix / reached.factors.row_scale[..., None]
+        assert (matrices == strut.map.jacobian(start)).all()
 
 
 def test_work_counts_every_member_at_every_step(strut: Mechanism, pose: Pose) -> None:
@@ -132,20 +132,22 @@ def test_one_start_takes_the_steps_that_it_takes_in_a_batch(
     strut: Mechanism, pose: Pose, seed: int, power: float, tolerance: float
 ) -> None:
     start = displaced(pose, seed, 10.0**power)
-    one, plainly = (
-        newton_refine(strut.map, start, 0.0, tolerance),
-        refine_plainly(strut.map, start, 0.0, tolerance),
+    # Of the others one ends sooner, and one later.
+    batch = np.stack([displaced(pose, seed, 1e-14), start, displaced(pose, seed, 3e-2)])
+    one, many = (newton_refine(strut.map, each, 0.0, tolerance) for each in (start, batch))
+    converged, y, first, left, iterations = (
+        part[1] for part in (many.converged, many.y, many.first_step, many.left, many.iterations)
     )
     # Each solves C(y) = 0 to the noise of a step, at most n eps times the condition number of coordinates
     # up to 2, or to what it proves to be left of it.
     noise = 2 * 17 * EPS * float(pose.condition)
-    assert one.converged == plainly.converged
-    assert np.abs(one.y - plainly.y).max() <= noise + one.left + plainly.left
-    for found, right in ((one.first_step, plainly.first_step), (one.left, plainly.left)):
+    assert one.converged == converged
+    assert np.abs(one.y - y).max() <= noise + one.left + left
+    for found, right in ((one.first_step, first), (one.left, left)):
         # A step's size is as uncertain as the step; what it leaves goes as its square.
         assert abs(found - right) <= noise + 1e-6 * right
     # Noise may end the iteration one step sooner or later.
-    assert abs(int(one.iterations) - int(plainly.iterations)) <= (1 if tolerance == 0.0 else 0)
+    assert abs(int(one.iterations) - int(iterations)) <= (1 if tolerance == 0.0 else 0)
 
 
 @pytest.mark.parametrize("start", [2.0, 1.2, 1.01, 0.9])
@@ -155,10 +157,11 @@ def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) ->
     parabola = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], 1, 4)
     y = np.array([start, 1.0, 0.0, 1.0])
     after = (start + 1.0 / start) / 2.0
-    for found in (newton_refine(parabola, y, 0.0, np.inf), refine_plainly(parabola, y, 0.0, np.inf)):
+    for start_of in (y, y[None]):
+        found = newton_refine(parabola, start_of, 0.0, np.inf)
         assert found.converged
         assert found.iterations == 1
-        assert found.y[0] == pytest.approx(after, rel=4 * EPS)
+        assert found.y[..., 0] == pytest.approx(after, rel=4 * EPS)
         # Five roundings of numbers near 1 in what is left.
         if start > 1.0:
             assert found.left == pytest.approx(after - 1.0, abs=16 * EPS)
@@ -171,4 +174,4 @@ def test_one_start_that_leads_nowhere_is_marked(strut: Mechanism, pose: Pose, va
     start = pose.y.copy()
     start[:17] = value
     assert not newton_refine(strut.map, start).converged
-    assert not refine_plainly(strut.map, start).converged
+    assert not newton_refine(strut.map, start[None]).converged

@@ -13,6 +13,7 @@ import pointcoord.solve.assembly
 from pointcoord import AssemblyError, MechanismError
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.solve.assembly import close_drawing
+from pointcoord.solve.curved_path import Proof
 
 Array = NDArray[np.float64]
 # Only a drawing that closes says by itself on which side it stands.
@@ -83,10 +84,11 @@ def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> N
     assert len(sides(car, 1e-5, 20)) == 20
 
 
-def test_without_the_sign_of_the_determinant_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_what_guards_the_end_of_a_step_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         pointcoord.solve.assembly, "same_side", lambda system, y, *_: np.ones(y.shape[:-1], bool)
     )
+    monkeypatch.setattr(Proof, "within", lambda self, apart: np.ones(apart.shape[:-1], bool))
     assert not all(
         side for car in CLOSING for power in (-9, -8) for side in sides(car, 5.0 * 10.0**power, 40)
     )

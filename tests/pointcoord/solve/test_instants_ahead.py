@@ -117,8 +117,8 @@ def at(poses: list[Array], targets: Array, unknowns: int) -> Array:
 def test_eta_of_a_straight_way_is_at_least_what_is_left_all_along_it(name: str) -> None:
     """Also with the inverse of another pose, where C_u T does not take back all of C_w dw.
 
-    There the cross term of C(y + s T) = C(y) + s 2 B(y, T) + s^2 B(T, T) is the largest of the three. With
-    half of it, or without either of the others, what is left is somewhere more than eta.
+    There the end of the tangent lacks most. Without that, or without what the pose lacks, or the curvature,
+    what is left is somewhere more than eta.
     """
     mechanism = prepare_task(Scene.load(name), NEWTON).readout.mechanism
     system, n, rng = mechanism.map, mechanism.map.unknowns, np.random.default_rng(5)
@@ -134,10 +134,12 @@ def test_eta_of_a_straight_way_is_at_least_what_is_left_all_along_it(name: str) 
         y[:n] += off * rng.uniform(-1.0, 1.0, n)
         inverse = drawing.factors.preconditioner
         way = straight_way(system, inverse, y, mechanism.known_series(target)[0])
-        rows = system.residual(y), 2.0 * system.polar(y, way.tangent), system.residual(way.tangent)
-        first, cross, last = (np.abs(inverse @ each).max() for each in rows)
+        eta, _ = way.norms(np.ones(n))
+        start, bend = system.residual(y), system.residual(way.tangent)
+        rows = start, start + 2.0 * system.polar(y, way.tangent), bend
+        first, end, last = (np.abs(inverse @ each).max() for each in rows)
         for s in (0.25, 0.5, 1.0):
             left = np.abs(inverse @ system.residual(y + s * way.tangent)).max()
-            assert left <= way.eta * (1.0 + 1e-9) + 1e-15
-            noticed |= left > np.array([cross + last, first + 0.5 * cross + last, first + cross])
+            assert left <= eta * (1.0 + 1e-9) + 1e-15
+            noticed |= left > np.array([end + last, first + last, max(first, end)])
     assert noticed.all()
