@@ -163,7 +163,7 @@ def regular_between(system: QuadraticMap, y: Array, variables: int = 1) -> NDArr
         sign, size = _determinants(system, y)
         good = np.ones(y.shape[: -1 - variables], dtype=bool)
         for axis in range(-1 - variables, -1):
-            along = np.moveaxis(sign * np.exp(size - size.max(axis=axis, keepdims=True)), axis, -2)
+            along = np.swapaxes(sign * np.exp(size - size.max(axis=axis, keepdims=True)), axis, -2)
             found = _finer() @ along
             # What is not finite is not above anything.
             clear = np.maximum(found.min(axis=-2), -found.max(axis=-2)) > LEAST

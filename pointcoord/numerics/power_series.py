@@ -17,6 +17,7 @@ of two differences that both move take part in the sum, and many rows share one 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,18 +146,21 @@ def _recursion(
     # Of one input there are few pairs of each.
     squares = inputs > 1 and terms.ends.shape[-1] == terms.count
     pairs, times = every.pairs(squares), every.times.reshape(-1, *[1] * (left.ndim - inputs))
+    places = [every.places(low, high) for low, high in pairwise(edges)]
     table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
+    sums = np.zeros((every.count - edges[every.order], *left.shape[inputs:]))
     for degree in range(first, every.order + 1):
         low, high = edges[degree], edges[degree + 1]
+        here, each = own[low:high, ..., :n], sums[: high - low]
         if degree > 1:
-            sums = np.empty((high - low, *left.shape[inputs:]))
-            for (up, down), out in zip(pairs[low:high], sums, strict=True):
-                np.einsum(subscripts, left[up], right[down], out=out)
+            for place in range(low, high):
+                up, down = pairs[place]
+                np.einsum(subscripts, left[up], right[down], out=each[place - low])
             if squares:
-                sums *= times[low:high]
-            own[low:high, ..., :n] -= solved(sums)
-        table[every.places(low, high)] = terms.factors(own[low:high])
+                each *= times[low:high]
+            here -= solved(each)
+        table[places[degree]] = terms.factors(own[low:high])
     own[0, ..., :n] = y[..., :n]
     own[0, ..., n:-1] = known[0]
     return own[..., :-1]

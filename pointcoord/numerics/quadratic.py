@@ -407,8 +407,19 @@ class MovingProducts:
 
     def factors(self, moving: Array) -> Array:
         """The differences of every product, of coordinates that move and a last 0, (..., sides * count)."""
+        if moving.shape[-1] * len(self.ends[0]) <= DENSE:
+            return np.asarray(moving @ self._differences)
         plus, minus = self.ends
         return np.asarray(moving.take(plus, axis=-1) - moving.take(minus, axis=-1))
+
+    @cached_property
+    def _differences(self) -> Array:
+        """The same as a matrix, two entries +-1 a column: a difference is rounded once, as by itself."""
+        plus, minus = self.ends
+        matrix = np.zeros((self.ends.max() + 1, len(plus)))
+        matrix[plus, np.arange(len(plus))] += 1.0
+        matrix[minus, np.arange(len(minus))] -= 1.0
+        return matrix
 
     def gather(self, products: Array) -> Array:
         """Sum products, shape (..., count), into rows, shape (..., rows)."""
