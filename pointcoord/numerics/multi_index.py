@@ -64,7 +64,7 @@ class Powers:
         return edges
 
     def pairs(self, alike: bool) -> list[tuple[Places, Places]]:
-        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table with an axis an exponent.
+        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table of all exponents.
 
         Args:
             alike: of a square, where an exponent of k is odd, half of them, so that i, k - i is there and
