@@ -35,6 +35,9 @@ CLOSED = 1e3 * EPS
 # Of a row at an answer, in the size of its coordinates: it has at most 24 products, each rounded with the
 # differences in it three times, and their sum.
 ROUNDED = 64.0 * EPS
+# Of symmetric mechanisms many rows are as far from those before: the first one is taken, not the one that
+# rounding makes the farthest, which differs by processor.
+NEARLY = 1.0 - 1e-6
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,7 @@ def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
         waiting = list(group)
         while waiting and len(kept) < n:
             lengths = np.linalg.norm(rest[waiting], axis=1)
-            best = int(np.argmax(lengths))
+            best = int(np.argmax(lengths >= NEARLY * lengths.max()))
             if lengths[best] <= least:
                 break
             row = waiting.pop(best)
