@@ -274,7 +274,8 @@ def test_every_way_finds_the_closed_form(way: str, unknowns: int) -> None:
     if row.error is None:
         # Powell's method, which makes up its Jacobian by differences, ends early at some starts and not at
         # others that differ in the last digit; it must say so, and no other way may.
-        assert way == "scipy-root" and "not making good progress" in row.reason
+        assert way == "scipy-root"
+        assert "not making good progress" in row.reason
         return
     # Series and Newton keep to the tolerance; a step of scipy that ends at 1e-12 of the coordinates leaves
     # less, because its error falls faster than its steps.
