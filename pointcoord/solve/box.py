@@ -288,9 +288,8 @@ class _Boxed:
             s = np.stack(grid, axis=-1).reshape(-1, 1, count)
             sums = (s ** every.exponents[within][:, stage.inputs]).prod(axis=-1)
             y = np.repeat(start[left, None], len(s), axis=1)
-            y[..., places[read]] = np.tensordot(sums, moving[np.ix_(within, left, read)], axes=1).swapaxes(
-                0, 1
-            )
+            terms = moving[np.ix_(within, left, read)]
+            y[..., places[read]] = np.tensordot(sums, terms, axes=1).swapaxes(0, 1)
             poses = part.taken(y.reshape(len(y), *[len(points)] * count, -1))
             good[left] &= regular_between(part.system, poses, count)
         return good
